@@ -1,0 +1,6 @@
+//! Fretting wear of elastically graded media.
+pub mod error;
+pub mod half_space;
+pub mod indenter;
+
+pub use error::{Error, Result};
