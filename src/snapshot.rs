@@ -1,0 +1,135 @@
+//! The result file of a run: snapshots, the limit, and what a restart needs, in HDF5 that is also valid netCDF-4.
+//!
+//! [`RunWriter`] collects snapshots and replaces the file as a whole at each save; [`RunFile`] reads it back.
+//! Names, units and shapes of all datasets stand in one table ([`layout`]).
+//!
+//! A file is laid out in memory, written to a temporary beside it, synchronised and renamed, so a run killed at
+//! any moment leaves either the previous save or the new one, never a torn file.
+
+mod atomic;
+mod encode;
+mod labelled;
+pub mod layout;
+mod reader;
+mod writer;
+
+pub use reader::RunFile;
+pub use writer::RunWriter;
+
+/// What does not change during a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RunHeader {
+    /// Title of the scene.
+    pub title: Option<String>,
+    /// The scene as TOML text, complete: a restart needs nothing else.
+    pub scene: String,
+    /// Radius of the nodes, m, shape `(node,)`, increasing.
+    pub radius: Vec<f64>,
+    /// The limiting shape, where it has a closed form.
+    pub limit: Option<LimitCurves>,
+}
+
+/// The limiting shape on the nodes of a run [S, Eqs. (3) and (9)].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LimitCurves {
+    /// Limiting profile, m, shape `(node,)`.
+    pub profile: Vec<f64>,
+    /// Depth worn away in the limit, m, shape `(node,)`.
+    pub wear_depth: Vec<f64>,
+}
+
+/// The contact after some number of cycles.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Snapshot {
+    /// Number of cycles since the start, a real number.
+    pub cycles: f64,
+    /// Dimensionless time `τ`.
+    pub tau: f64,
+    /// Worn volume, m³.
+    pub wear_volume: f64,
+    /// Contact radius, m.
+    pub contact_radius: f64,
+    /// Radius of the stick zone, m.
+    pub stick_radius: f64,
+    /// Indentation depth, m.
+    pub indentation: f64,
+    /// Normal force, N.
+    pub normal_force: f64,
+    /// Energy dissipated by friction since the start, J.
+    pub dissipated_energy: f64,
+    /// Worn profile, m, shape `(node,)`.
+    pub profile: Vec<f64>,
+    /// Wear depth, m, shape `(node,)`.
+    pub wear_depth: Vec<f64>,
+    /// Contact pressure, Pa, shape `(node,)`.
+    pub pressure: Vec<f64>,
+    /// Slip amplitude, m, shape `(node,)`.
+    pub slip: Vec<f64>,
+}
+
+/// What a restart needs besides the header and the snapshots; every value survives the file bit for bit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Checkpoint {
+    /// Compression of the springs, m, shape `(spring,)`.
+    pub compression: Vec<f64>,
+    /// Number of cycles done.
+    pub cycles: f64,
+    /// Energy dissipated by friction since the start, J.
+    pub dissipated_energy: f64,
+    /// Step to be tried next, cycles.
+    pub next_step: f64,
+    /// Error of the last accepted step over its tolerance, memory of the step-size controller.
+    pub previous_error: f64,
+    /// Worn volume per cycle at the start, m³.
+    pub first_rate: f64,
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps rejected.
+    pub rejected_steps: u64,
+    /// Evaluations of the wear rate.
+    pub rate_evaluations: u64,
+    /// Index of the next entry of the output plan.
+    pub next_output: u64,
+    /// Wall time used, s.
+    pub wall_seconds: f64,
+    /// Estimate of the error of time stepping, relative to the largest depth of the limit.
+    pub error_estimate: Option<f64>,
+}
+
+/// Why a run stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StopReason {
+    /// The last cycle asked for was reached.
+    End,
+    /// The rate of worn volume fell to the fraction asked for.
+    Rate,
+    /// A signal came, or the file is a checkpoint of a run that goes on.
+    Interrupted,
+    /// No pressure is left anywhere.
+    WornOut,
+}
+
+impl StopReason {
+    const ALL: [Self; 4] = [Self::End, Self::Rate, Self::Interrupted, Self::WornOut];
+
+    /// Name in files and JSON: `end`, `rate`, `interrupted` or `worn-out`.
+    ///
+    /// ```
+    /// use fretwear::snapshot::StopReason;
+    /// assert_eq!(StopReason::WornOut.name(), "worn-out");
+    /// assert_eq!(StopReason::from_name("worn-out"), Some(StopReason::WornOut));
+    /// ```
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::End => "end",
+            Self::Rate => "rate",
+            Self::Interrupted => "interrupted",
+            Self::WornOut => "worn-out",
+        }
+    }
+
+    /// The reason of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|reason| reason.name() == name)
+    }
+}

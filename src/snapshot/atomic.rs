@@ -1,0 +1,180 @@
+//! Files that are replaced as a whole: whoever opens one sees the old content or the new one, even after a crash.
+
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+
+const CHOOSE: &str = "choose another output with -o";
+
+/// One output file and the temporary beside it, `.NAME.PID.tmp`.
+#[derive(Debug)]
+pub(super) struct AtomicFile {
+    path: PathBuf,
+    folder: PathBuf,
+    prefix: OsString,
+    may_replace: bool,
+}
+
+impl AtomicFile {
+    /// Checks that `path` can be written, and clears what killed runs left beside it; creates nothing.
+    ///
+    /// An existing file is replaced only with `overwrite`. A link is followed: the file it points to is replaced.
+    ///
+    /// # Errors
+    /// [`Error::File`] names the path and the cure.
+    pub(super) fn new(path: &Path, overwrite: bool) -> Result<Self> {
+        let refuse = |why: &str| Err(Error::File { path: path.to_owned(), why: why.to_owned() });
+        let mut target = path.to_owned();
+        match fs::metadata(path) {
+            Ok(found) if found.is_dir() => return refuse("is a directory; name a file in it with -o"),
+            Ok(found) if !found.is_file() => return refuse(&format!("is not a regular file; {CHOOSE}")),
+            Ok(_) if !overwrite => {
+                return refuse(&format!("exists already; give --force to overwrite it, or {CHOOSE}"));
+            }
+            Ok(_) => target = fs::canonicalize(path).map_err(|error| failure(path, &error))?,
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => return Err(failure(path, &error)),
+        }
+        let Some(name) = target.file_name() else {
+            return refuse("is not the name of a file; name one with -o");
+        };
+        if target.to_str().is_none() {
+            return refuse("is not valid UTF-8, which the HDF5 library needs; rename it");
+        }
+        let mut prefix = OsString::from(".");
+        prefix.push(name);
+        prefix.push(".");
+        let folder = match target.parent() {
+            Some(parent) if parent != Path::new("") => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let this = Self { path: target, folder, prefix, may_replace: overwrite };
+        this.remove_leftovers();
+        drop(this.temporary().map_err(|error| failure(path, &error))?);
+        Ok(this)
+    }
+
+    /// The file.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Replaces the content, and returns when it is safe on the disk.
+    ///
+    /// # Errors
+    /// [`Error::File`] names the path and the cure; the previous content is then still there.
+    pub(super) fn write(&mut self, bytes: &[u8]) -> Result<()> {
+        self.try_write(bytes).map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => Error::File {
+                path: self.path.clone(),
+                why: format!("was created by another program during the run; {CHOOSE}"),
+            },
+            _ => failure(&self.path, &error),
+        })?;
+        self.may_replace = true;
+        Ok(())
+    }
+
+    fn try_write(&self, bytes: &[u8]) -> io::Result<()> {
+        let mut temporary = self.temporary()?;
+        temporary.file.write_all(bytes)?;
+        temporary.file.sync_all()?;
+        if self.may_replace {
+            fs::rename(&temporary.path, &self.path)?;
+        } else {
+            // A link, other than a renaming, fails where a file has appeared meanwhile.
+            match fs::hard_link(&temporary.path, &self.path) {
+                Ok(()) => {}
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => return Err(error),
+                Err(_) if self.path.symlink_metadata().is_ok() => return Err(ErrorKind::AlreadyExists.into()),
+                Err(_) => fs::rename(&temporary.path, &self.path)?,
+            }
+        }
+        drop(temporary);
+        self.synchronise_folder()
+    }
+
+    /// Makes the new name safe, where the file system can do that.
+    fn synchronise_folder(&self) -> io::Result<()> {
+        let Ok(folder) = File::open(&self.folder) else { return Ok(()) };
+        match folder.sync_all() {
+            Err(error) if !matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
+                Err(error)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// An empty temporary, locked so that nobody takes it for a leftover.
+    fn temporary(&self) -> io::Result<Temporary> {
+        let mut name = self.prefix.clone();
+        name.push(format!("{}.tmp", std::process::id()));
+        let path = self.folder.join(name);
+        let create = || OpenOptions::new().write(true).create_new(true).open(&path);
+        let file = match create() {
+            // A killed process had the same number.
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                fs::remove_file(&path)?;
+                create()
+            }
+            other => other,
+        }?;
+        let temporary = Temporary { file, path };
+        // Without locks on this file system leftovers stay, which does no harm.
+        let _ = temporary.file.try_lock();
+        Ok(temporary)
+    }
+
+    /// Removes the temporaries of this output whose processes are gone; their locks went with them.
+    fn remove_leftovers(&self) {
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        for path in entries.filter(|entry| self.is_temporary(&entry.file_name())).map(|entry| entry.path()) {
+            let abandoned =
+                OpenOptions::new().write(true).open(&path).is_ok_and(|file| file.try_lock().is_ok());
+            if abandoned {
+                // Failing to remove it is no reason to fail the run.
+                let _ = fs::remove_file(&path);
+            }
+        }
+    }
+
+    fn is_temporary(&self, name: &OsStr) -> bool {
+        let rest = name.as_encoded_bytes().strip_prefix(self.prefix.as_encoded_bytes());
+        let process = rest.and_then(|rest| rest.strip_suffix(b".tmp"));
+        process.is_some_and(|digits| !digits.is_empty() && digits.iter().all(u8::is_ascii_digit))
+    }
+}
+
+/// A temporary that is removed when dropped, unless it has been renamed by then.
+struct Temporary {
+    file: File,
+    path: PathBuf,
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // After a renaming there is nothing of this name to remove.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// The error of a file operation, with what to do about it.
+pub(super) fn failure(path: &Path, error: &io::Error) -> Error {
+    let cure = match error.kind() {
+        ErrorKind::NotFound => "; create its directory first, or check the spelling",
+        ErrorKind::NotADirectory => "; a part of the path is a file, check the spelling",
+        ErrorKind::PermissionDenied => {
+            "; change the permissions of the file or of its directory, or choose another one"
+        }
+        ErrorKind::ReadOnlyFilesystem => "; choose a directory that can be written",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+            "; free some space there, or choose another disk"
+        }
+        ErrorKind::InvalidFilename => "; choose a shorter name",
+        _ => "",
+    };
+    Error::File { path: path.to_owned(), why: format!("{error}{cure}") }
+}

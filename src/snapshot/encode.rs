@@ -1,0 +1,92 @@
+//! A run as the bytes of its file.
+
+use hdf5::{Group, Result};
+
+use super::labelled::{Dimension, bytes_of, create_group, file_in_memory, put_array, put_integer, put_text};
+use super::layout::*;
+use super::{Checkpoint, RunHeader, Snapshot, StopReason};
+
+/// Everything that one save stores.
+pub(super) struct Run<'a> {
+    pub header: &'a RunHeader,
+    pub snapshots: &'a [Snapshot],
+    pub checkpoint: &'a Checkpoint,
+    pub stop_reason: StopReason,
+    pub complete: bool,
+}
+
+impl Run<'_> {
+    /// The file of this run. The same run gives the same bytes: no times of creation are stored.
+    pub(super) fn encode(&self) -> Result<Vec<u8>> {
+        // One lock for the whole file: files in memory of two threads must not exist side by side under one name.
+        hdf5::sync::sync(|| {
+            let file = file_in_memory()?;
+            self.put_attributes(&file)?;
+            let time = Dimension::create(&file, TIME, self.snapshots.len(), true)?;
+            let node = Dimension::create(&file, NODE, self.header.radius.len(), false)?;
+            self.put_series(&file, &time)?;
+            self.put_node_curves(&file, &node)?;
+            self.put_curves(&file, &time, &node)?;
+            self.put_checkpoint(&file)?;
+            bytes_of(&file)
+        })
+    }
+
+    fn put_attributes(&self, file: &Group) -> Result<()> {
+        put_text(file, "title", self.header.title.as_deref().unwrap_or_default())?;
+        put_text(file, "format", FORMAT)?;
+        put_integer(file, "format_version", FORMAT_VERSION)?;
+        put_text(file, "program_version", env!("CARGO_PKG_VERSION"))?;
+        put_text(file, "scene", &self.header.scene)?;
+        put_text(file, "stop_reason", self.stop_reason.name())?;
+        put_integer(file, "complete", self.complete.into())
+    }
+
+    fn put_series(&self, file: &Group, time: &Dimension) -> Result<()> {
+        for field in &SERIES {
+            let values: Vec<f64> = self.snapshots.iter().map(field.of).copied().collect();
+            let dataset = put_array(file, field.label, &[time], &values)?;
+            if !["cycles", "tau"].contains(&field.label.name) {
+                put_text(&dataset, "coordinates", "cycles tau")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn put_node_curves(&self, file: &Group, node: &Dimension) -> Result<()> {
+        put_array(file, RADIUS, &[node], &self.header.radius)?;
+        if let Some(limit) = &self.header.limit {
+            for (label, values) in [(LIMIT_PROFILE, &limit.profile), (LIMIT_WEAR_DEPTH, &limit.wear_depth)] {
+                put_text(&*put_array(file, label, &[node], values)?, "coordinates", "radius")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn put_curves(&self, file: &Group, time: &Dimension, node: &Dimension) -> Result<()> {
+        let mut values = Vec::with_capacity(self.snapshots.len() * self.header.radius.len());
+        for field in &CURVES {
+            values.clear();
+            self.snapshots.iter().for_each(|snapshot| values.extend_from_slice((field.of)(snapshot)));
+            let dataset = put_array(file, field.label, &[time, node], &values)?;
+            put_text(&dataset, "coordinates", "cycles tau radius")?;
+        }
+        Ok(())
+    }
+
+    fn put_checkpoint(&self, file: &Group) -> Result<()> {
+        let group = create_group(file, CHECKPOINT)?;
+        let spring = Dimension::create(&group, SPRING, self.checkpoint.compression.len(), false)?;
+        put_array(&group, COMPRESSION, &[&spring], &self.checkpoint.compression)?;
+        for field in &CHECKPOINT_REALS {
+            put_array(&group, field.label, &[], &[*(field.of)(self.checkpoint)])?;
+        }
+        for field in &CHECKPOINT_COUNTS {
+            put_array(&group, field.label, &[], &[*(field.of)(self.checkpoint)])?;
+        }
+        if let Some(estimate) = self.checkpoint.error_estimate {
+            put_array(&group, ERROR_ESTIMATE, &[], &[estimate])?;
+        }
+        Ok(())
+    }
+}

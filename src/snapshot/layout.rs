@@ -1,0 +1,139 @@
+//! Names, units and meaning of all datasets of a run file: the writer and the reader both go by these tables.
+
+use super::{Checkpoint, Snapshot};
+
+/// Value of the root attribute `format`.
+pub const FORMAT: &str = "fretwear-run";
+/// Value of the root attribute `format_version` that this program writes and reads.
+pub const FORMAT_VERSION: i32 = 1;
+/// Group that holds what a restart needs.
+pub const CHECKPOINT: &str = "checkpoint";
+
+/// Name, units (in the spelling of UDUNITS) and meaning of one dataset.
+#[derive(Debug, Clone, Copy)]
+pub struct Label {
+    /// Name of the dataset in its group.
+    pub name: &'static str,
+    /// Attribute `units`; "1" for a pure number.
+    pub units: &'static str,
+    /// Attribute `long_name`.
+    pub long_name: &'static str,
+}
+
+const fn label(name: &'static str, units: &'static str, long_name: &'static str) -> Label {
+    Label { name, units, long_name }
+}
+
+/// Index coordinate along time, shape `(time,)`, resizable.
+pub const TIME: Label = label("time", "1", "index of the snapshot");
+/// Index coordinate along the nodes, shape `(node,)`.
+pub const NODE: Label = label("node", "1", "index of the node");
+/// Index coordinate along the springs, shape `(spring,)`, in the group of the checkpoint.
+pub const SPRING: Label = label("spring", "1", "index of the spring");
+/// Radius of the nodes, shape `(node,)`.
+pub const RADIUS: Label = label("radius", "m", "distance from the axis");
+/// Limiting profile, shape `(node,)`.
+pub const LIMIT_PROFILE: Label = label("limit_profile", "m", "profile in the limit of many cycles");
+/// Depth worn away in the limit, shape `(node,)`.
+pub const LIMIT_WEAR_DEPTH: Label = label("limit_wear_depth", "m", "wear depth in the limit of many cycles");
+/// Compression of the springs, shape `(spring,)`, in the group of the checkpoint.
+pub const COMPRESSION: Label = label("compression", "m", "compression of the springs");
+/// Error estimate, scalar, in the group of the checkpoint; absent where there is none.
+pub const ERROR_ESTIMATE: Label = label(
+    "error_estimate",
+    "1",
+    "estimated error of time stepping relative to the largest depth of the limit",
+);
+
+/// A dataset, and the place of its values in the record it stores.
+pub(super) struct Field<Record, Value> {
+    pub label: Label,
+    pub of: fn(&Record) -> &Value,
+    pub of_mut: fn(&mut Record) -> &mut Value,
+}
+
+const fn field<Record, Value>(
+    label: Label,
+    of: fn(&Record) -> &Value,
+    of_mut: fn(&mut Record) -> &mut Value,
+) -> Field<Record, Value> {
+    Field { label, of, of_mut }
+}
+
+/// Shape `(time,)`.
+pub(super) const SERIES: [Field<Snapshot, f64>; 8] = [
+    field(label("cycles", "1", "number of fretting cycles"), |it| &it.cycles, |it| &mut it.cycles),
+    field(label("tau", "1", "dimensionless time"), |it| &it.tau, |it| &mut it.tau),
+    field(label("wear_volume", "m3", "worn volume"), |it| &it.wear_volume, |it| &mut it.wear_volume),
+    field(
+        label("contact_radius", "m", "contact radius"),
+        |it| &it.contact_radius,
+        |it| &mut it.contact_radius,
+    ),
+    field(
+        label("stick_radius", "m", "radius of the stick zone"),
+        |it| &it.stick_radius,
+        |it| &mut it.stick_radius,
+    ),
+    field(label("indentation", "m", "indentation depth"), |it| &it.indentation, |it| &mut it.indentation),
+    field(label("normal_force", "N", "normal force"), |it| &it.normal_force, |it| &mut it.normal_force),
+    field(
+        label("dissipated_energy", "J", "energy dissipated by friction since the start"),
+        |it| &it.dissipated_energy,
+        |it| &mut it.dissipated_energy,
+    ),
+];
+
+/// Shape `(time, node)`.
+pub(super) const CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
+    field(label("profile", "m", "worn profile"), |it| &it.profile, |it| &mut it.profile),
+    field(label("wear_depth", "m", "wear depth"), |it| &it.wear_depth, |it| &mut it.wear_depth),
+    field(label("pressure", "Pa", "contact pressure"), |it| &it.pressure, |it| &mut it.pressure),
+    field(label("slip", "m", "slip amplitude"), |it| &it.slip, |it| &mut it.slip),
+];
+
+/// Scalars of the checkpoint, real.
+pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 6] = [
+    field(label("cycles", "1", "number of fretting cycles done"), |it| &it.cycles, |it| &mut it.cycles),
+    field(
+        label("dissipated_energy", "J", "energy dissipated by friction since the start"),
+        |it| &it.dissipated_energy,
+        |it| &mut it.dissipated_energy,
+    ),
+    field(
+        label("next_step", "1", "number of cycles to be tried in the next step"),
+        |it| &it.next_step,
+        |it| &mut it.next_step,
+    ),
+    field(
+        label("previous_error", "1", "error of the last accepted step over its tolerance"),
+        |it| &it.previous_error,
+        |it| &mut it.previous_error,
+    ),
+    field(
+        label("first_rate", "m3", "worn volume per cycle at the start"),
+        |it| &it.first_rate,
+        |it| &mut it.first_rate,
+    ),
+    field(label("wall_seconds", "s", "wall time used"), |it| &it.wall_seconds, |it| &mut it.wall_seconds),
+];
+
+/// Scalars of the checkpoint, whole numbers.
+pub(super) const CHECKPOINT_COUNTS: [Field<Checkpoint, u64>; 4] = [
+    field(label("steps", "1", "steps accepted"), |it| &it.steps, |it| &mut it.steps),
+    field(
+        label("rejected_steps", "1", "steps rejected"),
+        |it| &it.rejected_steps,
+        |it| &mut it.rejected_steps,
+    ),
+    field(
+        label("rate_evaluations", "1", "evaluations of the wear rate"),
+        |it| &it.rate_evaluations,
+        |it| &mut it.rate_evaluations,
+    ),
+    field(
+        label("next_output", "1", "index of the next entry of the output plan"),
+        |it| &it.next_output,
+        |it| &mut it.next_output,
+    ),
+];

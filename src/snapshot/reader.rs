@@ -1,0 +1,230 @@
+//! Reading the file of a run; nothing in a file is trusted.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use hdf5::types::VarLenUnicode;
+use hdf5::{Dataset, File, Group, H5Type};
+
+use super::atomic::failure;
+use super::layout::*;
+use super::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
+use crate::error::{Error, Result};
+
+const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
+const NOT_A_RUN: &str = "give a file that `fretwear run` wrote";
+const WRITE_AGAIN: &str = "the file is damaged or was edited, write it again with `fretwear run`";
+
+/// Deflate cannot do better than this, so a dataset that claims more values than this per stored byte is not genuine.
+const LARGEST_COMPRESSION: u64 = 1032;
+
+/// A run read back from its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunFile {
+    /// What does not change during the run.
+    pub header: RunHeader,
+    /// The snapshots, in the order of time.
+    pub snapshots: Vec<Snapshot>,
+    /// What a restart needs, where the file has it.
+    pub checkpoint: Option<Checkpoint>,
+    /// Why the run stopped.
+    pub stop_reason: StopReason,
+    /// Whether the run reached its end.
+    pub complete: bool,
+    /// Version of the program that wrote the file.
+    pub program_version: String,
+}
+
+impl RunFile {
+    /// Reads a file that [`RunWriter`] wrote.
+    ///
+    /// # Errors
+    /// [`Error::File`] names the file, the dataset or attribute that cannot be used, and the cure.
+    pub fn open(path: &Path) -> Result<Self> {
+        check_signature(path)?;
+        let source = Source { path: path.to_owned() };
+        let file = File::open(path).map_err(|error| {
+            source
+                .error(format!("is damaged, cut short or locked by another program ({error}); {WRITE_AGAIN}"))
+        })?;
+        source.check_format(&file)?;
+        let header = source.header(&file)?;
+        let snapshots = source.snapshots(&file, header.radius.len())?;
+        let checkpoint = if file.link_exists(CHECKPOINT) { Some(source.checkpoint(&file)?) } else { None };
+        let reason = source.text(&file, "stop_reason")?;
+        let stop_reason = StopReason::from_name(&reason)
+            .ok_or_else(|| source.error(format!("stop_reason = {reason:?} is not known; {WRITE_AGAIN}")))?;
+        let complete = source.integer(&file, "complete")? != 0;
+        let program_version = source.text(&file, "program_version")?;
+        Ok(Self { header, snapshots, checkpoint, stop_reason, complete, program_version })
+    }
+
+    /// A writer that goes on after the snapshots of this file and replaces `path` at its first save.
+    ///
+    /// # Errors
+    /// [`Error::File`] if `path` cannot be written.
+    pub fn into_writer(self, path: &Path) -> Result<RunWriter> {
+        RunWriter::with_snapshots(path, self.header, self.snapshots, true)
+    }
+}
+
+/// Tells missing and foreign files apart before the HDF5 library sees them.
+fn check_signature(path: &Path) -> Result<()> {
+    let refuse = |why: &str| Err(Error::File { path: path.to_owned(), why: format!("{why}; {NOT_A_RUN}") });
+    let found = fs::metadata(path).map_err(|error| failure(path, &error))?;
+    if !found.is_file() {
+        return refuse("is not a file");
+    }
+    let mut start = Vec::new();
+    let file = fs::File::open(path).map_err(|error| failure(path, &error))?;
+    file.take(SIGNATURE.len() as u64).read_to_end(&mut start).map_err(|error| failure(path, &error))?;
+    match start.as_slice() {
+        [] => refuse("is empty"),
+        start if start != SIGNATURE => refuse("is not an HDF5 file"),
+        _ => Ok(()),
+    }
+}
+
+/// The file that is read, for its name in errors.
+struct Source {
+    path: PathBuf,
+}
+
+impl Source {
+    fn error(&self, why: String) -> Error {
+        Error::File { path: self.path.clone(), why }
+    }
+
+    fn damaged(&self, what: &str, why: &dyn std::fmt::Display) -> Error {
+        self.error(format!("{what}: {why}; {WRITE_AGAIN}"))
+    }
+
+    fn check_format(&self, file: &Group) -> Result<()> {
+        if file.attr("format").is_err() || self.text(file, "format")? != FORMAT {
+            return Err(self
+                .error(format!("is an HDF5 file, but has no attribute format = \"{FORMAT}\"; {NOT_A_RUN}")));
+        }
+        match self.integer(file, "format_version")? {
+            FORMAT_VERSION => Ok(()),
+            other => Err(self.error(format!(
+                "has format_version {other}, this program reads {FORMAT_VERSION}; use the fretwear that wrote it"
+            ))),
+        }
+    }
+
+    fn header(&self, file: &Group) -> Result<RunHeader> {
+        let title = Some(self.text(file, "title")?).filter(|title| !title.is_empty());
+        let scene = self.text(file, "scene")?;
+        let radius: Vec<f64> = self.values(file, RADIUS, &[None])?;
+        if radius.is_empty() {
+            return Err(self.damaged("/radius", &"has no values"));
+        }
+        let nodes = [Some(radius.len())];
+        let limit = if file.link_exists(LIMIT_PROFILE.name) {
+            let profile = self.values(file, LIMIT_PROFILE, &nodes)?;
+            Some(LimitCurves { profile, wear_depth: self.values(file, LIMIT_WEAR_DEPTH, &nodes)? })
+        } else {
+            None
+        };
+        Ok(RunHeader { title, scene, radius, limit })
+    }
+
+    fn snapshots(&self, file: &Group, nodes: usize) -> Result<Vec<Snapshot>> {
+        let mut times = None;
+        let mut snapshots = Vec::new();
+        for field in &SERIES {
+            let values: Vec<f64> = self.values(file, field.label, &[times])?;
+            times = Some(values.len());
+            snapshots.resize_with(values.len(), Snapshot::default);
+            for (snapshot, value) in snapshots.iter_mut().zip(values) {
+                *(field.of_mut)(snapshot) = value;
+            }
+        }
+        for field in &CURVES {
+            let values: Vec<f64> = self.values(file, field.label, &[times, Some(nodes)])?;
+            for (snapshot, row) in snapshots.iter_mut().zip(values.chunks_exact(nodes)) {
+                *(field.of_mut)(snapshot) = row.to_vec();
+            }
+        }
+        Ok(snapshots)
+    }
+
+    fn checkpoint(&self, file: &Group) -> Result<Checkpoint> {
+        let group = file.group(CHECKPOINT).map_err(|error| self.damaged("/checkpoint", &error))?;
+        let mut checkpoint =
+            Checkpoint { compression: self.values(&group, COMPRESSION, &[None])?, ..Checkpoint::default() };
+        for field in &CHECKPOINT_REALS {
+            *(field.of_mut)(&mut checkpoint) = self.scalar(&group, field.label)?;
+        }
+        for field in &CHECKPOINT_COUNTS {
+            *(field.of_mut)(&mut checkpoint) = self.scalar(&group, field.label)?;
+        }
+        if group.link_exists(ERROR_ESTIMATE.name) {
+            checkpoint.error_estimate = Some(self.scalar(&group, ERROR_ESTIMATE)?);
+        }
+        Ok(checkpoint)
+    }
+
+    fn scalar<T: H5Type + Copy>(&self, group: &Group, label: Label) -> Result<T> {
+        Ok(self.values(group, label, &[])?[0])
+    }
+
+    /// All values of a dataset in row-major order; `None` in the shape stands for any length.
+    fn values<T: H5Type>(&self, group: &Group, label: Label, shape: &[Option<usize>]) -> Result<Vec<T>> {
+        let name = format!("{}/{}", group.name().trim_end_matches('/'), label.name);
+        if !group.link_exists(label.name) {
+            return Err(self.error(format!("dataset {name} is missing; {WRITE_AGAIN}")));
+        }
+        let dataset = group.dataset(label.name).map_err(|error| self.damaged(&name, &error))?;
+        let count = check_shape::<T>(&dataset, shape).map_err(|why| self.damaged(&name, &why))?;
+        let values = dataset.read_raw().map_err(|error| self.damaged(&name, &error))?;
+        if values.len() == count { Ok(values) } else { Err(self.damaged(&name, &"has no values")) }
+    }
+
+    fn text(&self, file: &Group, name: &str) -> Result<String> {
+        let what = format!("attribute {name}");
+        let attribute = file.attr(name).map_err(|error| self.damaged(&what, &error))?;
+        if !attribute.dtype().is_ok_and(|kind| kind.is::<VarLenUnicode>()) {
+            return Err(self.damaged(&what, &"is not UTF-8 text of variable length"));
+        }
+        let text = attribute.read_scalar::<VarLenUnicode>().map_err(|error| self.damaged(&what, &error))?;
+        String::from_utf8(text.as_bytes().to_vec()).map_err(|error| self.damaged(&what, &error))
+    }
+
+    fn integer(&self, file: &Group, name: &str) -> Result<i32> {
+        let what = format!("attribute {name}");
+        let attribute = file.attr(name).map_err(|error| self.damaged(&what, &error))?;
+        attribute.read_scalar().map_err(|error| self.damaged(&what, &error))
+    }
+}
+
+/// The number of values of a dataset, if its type and shape are those expected and its file can hold so many.
+fn check_shape<T: H5Type>(
+    dataset: &Dataset,
+    expected: &[Option<usize>],
+) -> std::result::Result<usize, String> {
+    if !dataset.dtype().is_ok_and(|kind| kind.is::<T>()) {
+        return Err(format!("does not hold values of type {}", std::any::type_name::<T>()));
+    }
+    let shape = dataset.get_shape().map_err(|error| error.to_string())?;
+    let fits = shape.len() == expected.len()
+        && shape.iter().zip(expected).all(|(length, expected)| expected.is_none_or(|it| it == *length));
+    if !fits {
+        let expected: Vec<String> =
+            expected.iter().map(|length| length.map_or("any".into(), |it| it.to_string())).collect();
+        return Err(format!("has the shape {shape:?}, expected [{}]", expected.join(", ")));
+    }
+    let count = shape.iter().try_fold(1usize, |product, length| product.checked_mul(*length));
+    let chunk = dataset
+        .chunk()
+        .unwrap_or_default()
+        .iter()
+        .try_fold(1usize, |product, length| product.checked_mul(*length));
+    let room = dataset.storage_size().saturating_mul(LARGEST_COMPRESSION) / size_of::<T>() as u64;
+    match (count, chunk) {
+        (Some(0), _) => Ok(0),
+        (Some(count), Some(chunk)) if count.max(chunk) as u64 <= room => Ok(count),
+        _ => Err(format!("claims the shape {shape:?}, but only {} bytes are stored", dataset.storage_size())),
+    }
+}

@@ -1,0 +1,107 @@
+//! Writing the file of a run.
+
+use std::path::Path;
+
+use super::atomic::AtomicFile;
+use super::encode::Run;
+use super::{Checkpoint, RunHeader, Snapshot, StopReason};
+use crate::error::{Error, Result};
+
+/// Collects the snapshots of a run and saves them, each time as one whole file.
+///
+/// ```
+/// use fretwear::snapshot::{Checkpoint, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("run.h5");
+/// let header = RunHeader { scene: "[output]".into(), radius: vec![1e-3, 2e-3], ..RunHeader::default() };
+/// let mut writer = RunWriter::create(&path, header, false)?;
+/// let zero = vec![0.0; 2];
+/// writer.push(Snapshot {
+///     profile: vec![1e-6, 4e-6], wear_depth: zero.clone(), pressure: zero.clone(), slip: zero, ..Snapshot::default()
+/// });
+/// writer.save(&Checkpoint::default(), StopReason::End, true)?;
+/// assert_eq!(RunFile::open(&path)?.snapshots[0].profile[1], 4e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct RunWriter {
+    file: AtomicFile,
+    header: RunHeader,
+    snapshots: Vec<Snapshot>,
+}
+
+impl RunWriter {
+    /// A writer of a new file. Checks that the file can be written; creates nothing before the first save.
+    ///
+    /// # Arguments
+    /// * `path` -- the file, in a directory that exists
+    /// * `header` -- what does not change during the run
+    /// * `overwrite` -- whether a file that exists may be replaced (at the first save, not before)
+    ///
+    /// # Errors
+    /// [`Error::File`] if the file exists and may not be replaced, or its directory is missing or cannot be written.
+    ///
+    /// # Panics
+    /// If there are no nodes, or a curve of the limit does not have one value per node.
+    pub fn create(path: &Path, header: RunHeader, overwrite: bool) -> Result<Self> {
+        Self::with_snapshots(path, header, Vec::new(), overwrite)
+    }
+
+    /// A writer that goes on after `snapshots`; see [`RunFile::into_writer`](super::RunFile::into_writer).
+    pub(super) fn with_snapshots(
+        path: &Path,
+        header: RunHeader,
+        snapshots: Vec<Snapshot>,
+        overwrite: bool,
+    ) -> Result<Self> {
+        assert!(!header.radius.is_empty(), "a run has at least one node");
+        for curve in header.limit.iter().flat_map(|limit| [&limit.profile, &limit.wear_depth]) {
+            assert_eq!(curve.len(), header.radius.len(), "values of the limit, nodes");
+        }
+        Ok(Self { file: AtomicFile::new(path, overwrite)?, header, snapshots })
+    }
+
+    /// Adds a snapshot, in memory.
+    ///
+    /// # Panics
+    /// If a curve does not have one value per node.
+    pub fn push(&mut self, snapshot: Snapshot) {
+        for curve in [&snapshot.profile, &snapshot.wear_depth, &snapshot.pressure, &snapshot.slip] {
+            assert_eq!(curve.len(), self.header.radius.len(), "values of a snapshot, nodes");
+        }
+        self.snapshots.push(snapshot);
+    }
+
+    /// What does not change during the run.
+    pub fn header(&self) -> &RunHeader {
+        &self.header
+    }
+
+    /// The snapshots so far, in the order of time.
+    pub fn snapshots(&self) -> &[Snapshot] {
+        &self.snapshots
+    }
+
+    /// The file that is written.
+    pub fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// Replaces the file by one with all snapshots so far, and returns when it is safe on the disk.
+    ///
+    /// # Arguments
+    /// * `checkpoint` -- what a restart needs
+    /// * `stop_reason` -- why the run stops here; [`StopReason::Interrupted`] while it goes on
+    /// * `complete` -- whether the run reached its end
+    ///
+    /// # Errors
+    /// [`Error::File`] names the file and the cure; the previous save is then still there.
+    pub fn save(&mut self, checkpoint: &Checkpoint, stop_reason: StopReason, complete: bool) -> Result<()> {
+        let run = Run { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
+        let bytes = run.encode().map_err(|error| Error::File {
+            path: self.file.path().to_owned(),
+            why: format!("the HDF5 library could not lay out the file: {error}"),
+        })?;
+        self.file.write(&bytes)
+    }
+}
