@@ -1,7 +1,11 @@
 //! Fretting wear of elastically graded media.
 pub mod error;
+pub mod friction;
 pub mod half_space;
 pub mod indenter;
+pub mod loading;
+pub mod scene;
 pub mod snapshot;
+pub mod wear;
 
 pub use error::{Error, Result};

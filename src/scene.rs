@@ -1,0 +1,230 @@
+//! A scene: the TOML text that describes a run, read into data that cannot be invalid.
+//!
+//! ```
+//! use fretwear::loading::Duration;
+//! use fretwear::scene::Scene;
+//!
+//! let text = r#"
+//!     [indenter.paraboloid]
+//!     radius = "10 mm"
+//!     [half_space]
+//!     grading = 0.0
+//!     modulus = "210 GPa"
+//!     poisson_ratio = 0.3
+//!     [friction.coulomb]
+//!     coefficient = 0.6
+//!     [wear.archard]
+//!     coefficient = "1e-14 1/Pa"
+//!     [loading]
+//!     initial_force = "50 N"
+//!     stick_ratio = 0.7
+//!     tau = 30
+//! "#;
+//! let scene = Scene::from_toml(text, "example.toml")?;
+//! assert_eq!(scene.loading().duration, Duration::Tau(30.0));
+//!
+//! let error = Scene::from_toml(&text.replace("10 mm", "10 MPa"), "example.toml").unwrap_err();
+//! assert!(error.to_string().starts_with("example.toml:3:14: indenter.paraboloid.radius: expected a length"));
+//! # Ok::<(), fretwear::Error>(())
+//! ```
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::friction::Coulomb;
+use crate::half_space::HalfSpace;
+use crate::indenter::Indenter;
+use crate::loading::Loading;
+use crate::wear::Archard;
+
+mod document;
+pub mod quantity;
+mod sections;
+mod unit;
+
+/// Most snapshots a scene may ask for.
+pub const MOST_SNAPSHOTS: usize = 100_000;
+
+/// Size of the largest scene read, bytes; one with [`MOST_SNAPSHOTS`] times in it has 2 MB.
+const LARGEST: u64 = 10_000_000;
+
+/// How one cycle after the other is passed through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stepper {
+    /// Every cycle by itself.
+    EveryCycle,
+    /// Explicit steps over many cycles.
+    CycleJump,
+    /// Implicit steps over many cycles.
+    #[default]
+    Implicit,
+}
+
+impl Stepper {
+    /// The word of the scene: `every-cycle`, `cycle-jump` or `implicit`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stepper::EveryCycle => "every-cycle",
+            Stepper::CycleJump => "cycle-jump",
+            Stepper::Implicit => "implicit",
+        }
+    }
+}
+
+/// The table `[numerics]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Numerics {
+    /// Accuracy asked for, in [1e-10, 0.1]; it decides what is not given by hand.
+    pub accuracy: f64,
+    /// Springs over the slip annulus, at least 3, if given by hand.
+    pub springs: Option<usize>,
+    /// Method of time stepping.
+    pub stepper: Stepper,
+    /// Tolerance of the time stepping relative to the limit's largest depth, in (0, 0.1], if given by hand.
+    pub tolerance: Option<f64>,
+    /// Wall time between checkpoints, s, in [0, 1e9].
+    pub checkpoint_interval: f64,
+}
+
+impl Default for Numerics {
+    /// Accuracy 1e-4, implicit, a checkpoint every 30 s.
+    fn default() -> Self {
+        Self {
+            accuracy: 1e-4,
+            springs: None,
+            stepper: Stepper::default(),
+            tolerance: None,
+            checkpoint_interval: 30.0,
+        }
+    }
+}
+
+/// The table `[output]`: when snapshots are taken besides the start and the end.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Output {
+    /// This many after the start, from 1 to [`MOST_SNAPSHOTS`], spread geometrically in cycles; the last is the end.
+    Snapshots(usize),
+    /// At these numbers of cycles, increasing, at least 0.
+    AtCycles(Vec<f64>),
+    /// At these dimensionless times, increasing, at least 0.
+    AtTau(Vec<f64>),
+}
+
+impl Default for Output {
+    /// 50 snapshots.
+    fn default() -> Self {
+        Self::Snapshots(50)
+    }
+}
+
+/// A valid description of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    title: Option<String>,
+    indenter: Indenter,
+    half_space: HalfSpace,
+    friction: Coulomb,
+    wear: Archard,
+    loading: Loading,
+    numerics: Numerics,
+    output: Output,
+    text: String,
+    warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Reads a scene from its TOML text.
+    ///
+    /// # Arguments
+    /// * `text` -- the TOML
+    /// * `name` -- what messages call it, the path of the file as a rule
+    ///
+    /// # Errors
+    /// [`Error::Scene`], whose message shows file, line and column, the line with the bad place marked, the key, and the cure.
+    pub fn from_toml(text: &str, name: &str) -> Result<Self> {
+        let source = document::Source { name, text };
+        if text.len() as u64 > LARGEST {
+            return Err(source.missing(format_args!("is larger than {LARGEST} bytes, which no scene is")));
+        }
+        let document = source.parse()?;
+        sections::scene(&document::Section::root(source, document.get_ref()), text)
+    }
+
+    /// Reads a scene from a file.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it cannot be read as text, else as [`Scene::from_toml`].
+    pub fn read(path: &Path) -> Result<Self> {
+        let failed = |why: String| Error::File { path: path.to_path_buf(), why };
+        let reason = |error: std::io::Error| match error.kind() {
+            std::io::ErrorKind::NotFound => failed("there is no such file".into()),
+            std::io::ErrorKind::IsADirectory => failed("is a directory, not a scene".into()),
+            _ => failed(format!("cannot be read: {error}")),
+        };
+        let file = File::open(path).map_err(reason)?;
+        let mut bytes = Vec::new();
+        // One byte past the limit tells a file that is too large from one that just fits.
+        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(reason)?;
+        if bytes.len() as u64 > LARGEST {
+            return Err(failed(format!("is larger than {LARGEST} bytes, which no scene is")));
+        }
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
+            failed(format!("line {line} is not UTF-8 text; a scene is a TOML file in UTF-8"))
+        })?;
+        Self::from_toml(&text, &path.display().to_string())
+    }
+
+    /// Title, one line.
+    pub fn title(&self) -> Option<&str> {
+        self.title.as_deref()
+    }
+
+    /// Shape of the indenter.
+    pub fn indenter(&self) -> &Indenter {
+        &self.indenter
+    }
+
+    /// Spring stiffnesses; those of two elastic bodies are already in series.
+    pub fn half_space(&self) -> &HalfSpace {
+        &self.half_space
+    }
+
+    /// Friction law.
+    pub fn friction(&self) -> &Coulomb {
+        &self.friction
+    }
+
+    /// Wear law.
+    pub fn wear(&self) -> &Archard {
+        &self.wear
+    }
+
+    /// Load, amplitude and duration.
+    pub fn loading(&self) -> &Loading {
+        &self.loading
+    }
+
+    /// How the run is computed.
+    pub fn numerics(&self) -> &Numerics {
+        &self.numerics
+    }
+
+    /// When snapshots are taken.
+    pub fn output(&self) -> &Output {
+        &self.output
+    }
+
+    /// The TOML text as it was read.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What is allowed but deserves a word, one sentence each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+}

@@ -1,0 +1,369 @@
+//! A TOML document walked by hand: every key and value knows its place, so that every error can show it.
+
+use std::fmt::{Display, Write};
+use std::ops::Range;
+
+use serde_spanned::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::quantity::{self, Dimension};
+use crate::error::{Error, Result};
+
+/// The text of a document and its name in messages.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) name: &'a str,
+    pub(super) text: &'a str,
+}
+
+impl<'a> Source<'a> {
+    /// Parses the text.
+    pub(super) fn parse(self) -> Result<Spanned<DeTable<'a>>> {
+        DeTable::parse(self.text).map_err(|error| {
+            let end = self.text.len();
+            self.error(error.span().unwrap_or(end..end), format_args!("not valid TOML: {}", error.message()))
+        })
+    }
+
+    /// An error that shows its line, with carets under the span.
+    ///
+    /// ```text
+    /// scene.toml:5:11: half_space.grading = 1.5 is outside (-1, 1)
+    ///   |
+    /// 5 | grading = 1.5
+    ///   |           ^^^
+    /// ```
+    pub(super) fn error(&self, span: Range<usize>, message: impl Display) -> Error {
+        // A window of the line around the span: a line may be as long as the file.
+        const BEFORE: usize = 100;
+        const AFTER: usize = 120;
+        let start = floor(self.text, span.start);
+        let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let line_end = self.text[start..].find(['\n', '\r']).map_or(self.text.len(), |at| start + at);
+        let number = self.text[..line_start].bytes().filter(|&b| b == b'\n').count() + 1;
+        let column = self.text[line_start..start].chars().count() + 1;
+
+        let from = floor(self.text, start.saturating_sub(BEFORE)).max(line_start);
+        let to = floor(self.text, start + AFTER).clamp(start, line_end);
+        let end = floor(self.text, span.end).clamp(start, to);
+        let visible = |c: char| if c.is_control() { ' ' } else { c };
+        let cut = |cut: bool| if cut { "..." } else { "" };
+        let window: String = self.text[from..to].chars().map(visible).collect();
+        let shown = format!("{}{}{}", cut(from > line_start), window.trim_end(), cut(to < line_end));
+        let indent = self.text[from..start].chars().count() + cut(from > line_start).len();
+        let carets = self.text[start..end].chars().count().max(1);
+        let gutter = number.to_string().len();
+
+        let mut text = format!("{}:{number}:{column}: {message}\n", self.name);
+        let _ = writeln!(text, "{:gutter$} |", "");
+        let _ = writeln!(text, "{number} | {shown}");
+        let _ = write!(text, "{:gutter$} | {:indent$}{:^<carets$}", "", "", "");
+        Error::Scene(text)
+    }
+
+    /// An error that concerns no line: something is missing.
+    pub(super) fn missing(&self, message: impl Display) -> Error {
+        Error::Scene(format!("{}: {message}", self.name))
+    }
+}
+
+/// The nearest character boundary at or before a byte offset.
+fn floor(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+/// A key or a value fit for a message: short, without control characters.
+fn printable(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let mut shown: String =
+        text.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        shown.push_str("...");
+    }
+    shown
+}
+
+/// A table of the document.
+#[derive(Debug, Clone)]
+pub(super) struct Section<'a> {
+    source: Source<'a>,
+    path: String,
+    /// Where the table is named; None for the document itself.
+    place: Option<Range<usize>>,
+    table: &'a DeTable<'a>,
+}
+
+impl<'a> Section<'a> {
+    /// The document itself.
+    pub(super) fn root(source: Source<'a>, table: &'a DeTable<'a>) -> Self {
+        Self { source, path: String::new(), place: None, table }
+    }
+
+    /// The dotted name of a key in this table.
+    pub(super) fn name(&self, key: &str) -> String {
+        match self.path.is_empty() {
+            true => printable(key),
+            false => format!("{}.{}", self.path, printable(key)),
+        }
+    }
+
+    /// An error about the table as a whole, shown at its name.
+    pub(super) fn error(&self, message: impl Display) -> Error {
+        match &self.place {
+            Some(place) => self.source.error(place.clone(), message),
+            None => self.source.missing(message),
+        }
+    }
+
+    /// Refuses keys other than `known`, and those of `planned` with a word of their own.
+    pub(super) fn only(&self, known: &[&str], planned: &[&str]) -> Result<()> {
+        let stranger = |key: &str| !known.contains(&key);
+        let first =
+            self.table.keys().filter(|key| stranger(key.get_ref())).min_by_key(|key| key.span().start);
+        let Some(key) = first else { return Ok(()) };
+        let (name, place) = (self.name(key.get_ref()), key.span());
+        if planned.contains(&key.get_ref().as_ref()) {
+            return Err(self.source.error(place, format_args!("this version does not offer {name}")));
+        }
+        let cure = suggestion(key.get_ref(), known);
+        Err(self.source.error(place, format_args!("{name} is not a key of a scene; {cure}")))
+    }
+
+    /// The value of a key, if given.
+    pub(super) fn optional(&self, key: &str) -> Option<Entry<'a>> {
+        let (name, value) = self.table.get_key_value(key)?;
+        Some(Entry {
+            source: self.source,
+            path: self.name(key),
+            key_place: name.span(),
+            place: value.span(),
+            value: value.get_ref(),
+        })
+    }
+
+    /// The value of a key that must be there.
+    pub(super) fn required(&self, key: &str, cure: &str) -> Result<Entry<'a>> {
+        self.optional(key).ok_or_else(|| self.error(format_args!("{} is missing; {cure}", self.name(key))))
+    }
+
+    /// The one key given of several that exclude each other, and its value.
+    pub(super) fn one_of(&self, alternatives: &[&'static str]) -> Result<(&'static str, Entry<'a>)> {
+        let (given, choice) = self.at_most_one_of(alternatives)?;
+        given.ok_or_else(|| self.error(format_args!("give exactly one of {choice}; none is there")))
+    }
+
+    /// As [`Section::one_of`] where none may be given; the second value lists the alternatives.
+    pub(super) fn at_most_one_of(
+        &self,
+        alternatives: &[&'static str],
+    ) -> Result<(Option<(&'static str, Entry<'a>)>, String)> {
+        let choice = listed(alternatives.iter().map(|key| self.name(key)));
+        let mut given: Vec<_> =
+            alternatives.iter().filter_map(|&key| self.optional(key).map(|entry| (key, entry))).collect();
+        given.sort_by_key(|(_, entry)| entry.key_place.start);
+        if let [(_, first), (_, second), ..] = &given[..] {
+            let message =
+                format!("{} and {} exclude each other; give one of {choice}", first.path, second.path);
+            return Err(self.source.error(second.key_place.clone(), message));
+        }
+        Ok((given.pop(), choice))
+    }
+
+    /// Shows an error of the library, which names a quantity as `table.key`, at that key of this table.
+    pub(super) fn locate(&self, error: Error) -> Error {
+        match error {
+            Error::OutOfRange { name, value, range } => {
+                let key = name.rsplit('.').next().unwrap_or(name);
+                match self.optional(key) {
+                    Some(entry) => entry.outside(range),
+                    None => self.error(format_args!("{} = {value} is outside {range}", self.name(key))),
+                }
+            }
+            other => self.error(other),
+        }
+    }
+}
+
+/// `a, b or c`.
+fn listed(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<_> = names.collect();
+    match &names[..] {
+        [one] => one.clone(),
+        [most @ .., last] => format!("{} or {last}", most.join(", ")),
+        [] => String::new(),
+    }
+}
+
+/// The nearest of the known words, or all of them.
+fn suggestion(word: &str, known: &[&str]) -> String {
+    let folded = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let target = folded(word);
+    // A long key would cost the square of its length, and is near to nothing.
+    let near = known.iter().filter(|_| target.len() <= 40).map(|candidate| {
+        let candidate_folded = folded(candidate);
+        (strsim::jaro_winkler(&target, &candidate_folded), *candidate)
+    });
+    match near.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((likeness, candidate)) if likeness > 0.8 => format!("did you mean {candidate}?"),
+        _ if known.len() == 1 => format!("this version offers {} only", known[0]),
+        _ => format!("this version offers {}", listed(known.iter().map(|key| key.to_string()))),
+    }
+}
+
+/// A key and its value.
+#[derive(Debug, Clone)]
+pub(super) struct Entry<'a> {
+    source: Source<'a>,
+    path: String,
+    key_place: Range<usize>,
+    place: Range<usize>,
+    value: &'a DeValue<'a>,
+}
+
+impl<'a> Entry<'a> {
+    /// An error shown under the value: `half_space.grading = 1.5 is outside (-1, 1)` for the message `is outside (-1, 1)`.
+    pub(super) fn error(&self, message: impl Display) -> Error {
+        let value = printable(self.source.text.get(self.place.clone()).unwrap_or_default());
+        self.source.error(self.place.clone(), format_args!("{} = {value} {message}", self.path))
+    }
+
+    /// The error that the value lies outside a range.
+    pub(super) fn outside(&self, range: &str) -> Error {
+        self.error(format_args!("is outside {range}"))
+    }
+
+    /// The error that this version does not offer the key.
+    pub(super) fn not_offered(&self, cure: &str) -> Error {
+        self.source
+            .error(self.key_place.clone(), format_args!("this version does not offer {}; {cure}", self.path))
+    }
+
+    /// The error that the key has no place beside another.
+    pub(super) fn misplaced(&self, message: impl Display) -> Error {
+        self.source.error(self.key_place.clone(), format_args!("{} {message}", self.path))
+    }
+
+    /// Dotted name.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    fn wrong_type(&self, wanted: impl Display) -> Error {
+        let found = match self.value {
+            DeValue::String(_) => "a string",
+            DeValue::Integer(_) => "an integer",
+            DeValue::Float(_) => "a number",
+            DeValue::Boolean(_) => "a boolean",
+            DeValue::Datetime(_) => "a date",
+            DeValue::Array(_) => "an array",
+            DeValue::Table(_) => "a table",
+        };
+        // A table has no text of its own to show.
+        let place = if matches!(self.value, DeValue::Table(_)) { &self.key_place } else { &self.place };
+        self.source.error(place.clone(), format_args!("{}: {wanted}, found {found}", self.path))
+    }
+
+    /// The value as a table.
+    pub(super) fn section(&self) -> Result<Section<'a>> {
+        match self.value {
+            DeValue::Table(table) => Ok(Section {
+                source: self.source,
+                path: self.path.clone(),
+                place: Some(self.key_place.clone()),
+                table,
+            }),
+            _ => Err(self.wrong_type(format_args!("expected a table [{}]", self.path))),
+        }
+    }
+
+    /// The value as a string.
+    pub(super) fn string(&self) -> Result<&'a str> {
+        match self.value {
+            DeValue::String(text) => Ok(text),
+            _ => Err(self.wrong_type("expected a string")),
+        }
+    }
+
+    /// The value as one word of a list, by its position there.
+    pub(super) fn word(&self, words: &[&str]) -> Result<usize> {
+        let word = self.string()?;
+        let found = words.iter().position(|known| *known == word);
+        found.ok_or_else(|| {
+            self.error(format_args!("is none of the words it may be; {}", suggestion(word, words)))
+        })
+    }
+
+    /// The value as a whole number in a range.
+    pub(super) fn whole(&self, range: std::ops::RangeInclusive<usize>) -> Result<usize> {
+        let DeValue::Integer(integer) = self.value else {
+            return Err(self.wrong_type("expected a whole number"));
+        };
+        let number = usize::from_str_radix(integer.as_str(), integer.radix()).ok();
+        let shown = || match *range.end() {
+            usize::MAX => format!("{} or more", range.start()),
+            end => format!("{} to {end}", range.start()),
+        };
+        number.filter(|number| range.contains(number)).ok_or_else(|| self.outside(&shown()))
+    }
+
+    /// The value in SI: a number, or a string with its unit. It is finite.
+    pub(super) fn quantity(&self, dimension: Dimension) -> Result<f64> {
+        let number: f64 = match self.value {
+            DeValue::String(text) => {
+                return quantity::parse(text, dimension).map_err(|why| self.explained(why));
+            }
+            DeValue::Integer(integer) if integer.radix() == 10 => {
+                integer.as_str().parse().unwrap_or(f64::NAN)
+            }
+            DeValue::Integer(_) => return Err(self.error("is not written in decimal digits")),
+            DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
+            _ => return Err(self.wrong_type(quantity::wanted(dimension))),
+        };
+        match number.is_finite() {
+            true => Ok(number),
+            false => Err(self.error("is not a finite number")),
+        }
+    }
+
+    /// A quantity that must satisfy a condition; the range says it in words.
+    pub(super) fn quantity_in(
+        &self,
+        dimension: Dimension,
+        range: &str,
+        holds: impl Fn(f64) -> bool,
+    ) -> Result<f64> {
+        let value = self.quantity(dimension)?;
+        if holds(value) { Ok(value) } else { Err(self.outside(range)) }
+    }
+
+    /// A quantity above zero.
+    pub(super) fn positive(&self, dimension: Dimension) -> Result<f64> {
+        self.quantity_in(dimension, "(0, inf)", |value| value > 0.0)
+    }
+
+    /// The entries of an array, named `key[0]`, `key[1]` and so on.
+    pub(super) fn array(&self, longest: usize) -> Result<Vec<Entry<'a>>> {
+        let DeValue::Array(values) = self.value else {
+            return Err(self.wrong_type("expected an array [...]"));
+        };
+        if values.len() > longest {
+            return Err(self.misplaced(format_args!("has {} entries, more than {longest}", values.len())));
+        }
+        let entry = |(index, value): (usize, &'a Spanned<DeValue<'a>>)| Entry {
+            source: self.source,
+            path: format!("{}[{index}]", self.path),
+            key_place: value.span(),
+            place: value.span(),
+            value: value.get_ref(),
+        };
+        Ok(values.iter().enumerate().map(entry).collect())
+    }
+
+    fn explained(&self, why: String) -> Error {
+        self.source.error(self.place.clone(), format_args!("{}: {why}", self.path))
+    }
+}
