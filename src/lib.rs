@@ -3,5 +3,6 @@ pub mod error;
 pub mod half_space;
 pub mod indenter;
 pub mod quadrature;
+pub mod roots;
 
 pub use error::{Error, Result};
