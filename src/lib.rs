@@ -1,4 +1,5 @@
 //! Fretting wear of elastically graded media.
+pub mod closed_form;
 pub mod error;
 pub mod half_space;
 pub mod indenter;
