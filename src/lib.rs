@@ -1,9 +1,12 @@
 //! Fretting wear of elastically graded media.
+pub mod closed_form;
 pub mod error;
 pub mod friction;
 pub mod half_space;
 pub mod indenter;
 pub mod loading;
+pub mod quadrature;
+pub mod roots;
 pub mod scene;
 pub mod snapshot;
 pub mod wear;

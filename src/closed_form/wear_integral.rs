@@ -1,0 +1,183 @@
+//! The wear integrals [S, Eqs. (3), (4)] in logarithmic variables, in which nothing cancels.
+
+use crate::error::{Error, Result};
+use crate::indenter::EquivalentProfile;
+use crate::quadrature::{MAX_NODES, Rule};
+
+/// Factor in front of [S, Eq. (3)], `S = sin(πμ)/(πμ)` with `μ = (1-k)/2`; finite as `k → ±1`.
+pub(super) fn transform_factor(grading: f64) -> f64 {
+    let (mu, nu) = (0.5 * (1.0 - grading), 0.5 * (1.0 + grading));
+    let angle = std::f64::consts::PI * mu.min(nu);
+    angle.sin() / (std::f64::consts::PI * mu)
+}
+
+/// Wear integrals of one first contact: profile `g0`, indentation `d`, contact radius `a0`.
+///
+/// A radius is given by two logarithms, `span` `L = ln(r/c)` and `growth` `b = ln(r/a0)`; with `x = r e^(-Lv)`, `y = 2Lv`,
+/// `φ(y) = (e^y - 1)/y` and the spring compression left `E(v) = 1 - g0(x)/d`, [S, Eqs. (3), (4)] become
+///
+/// ```text
+/// Δf/d = S (2L)^μ G,     G = ∫_0^1 μ v^(μ-1) φ^(-ν) E dv = h(0) + μ/(1+μ) ⟨(h(v) - h(0))/v⟩,     h = φ^(-ν) E
+/// ΔV/(π r² d) = S (2L)^(1+μ)/(1+μ) ⟨e^(-y) φ^μ E⟩
+/// ```
+/// with `⟨·⟩` the mean under the weight `v^μ`, benign for every `k`.
+#[derive(Debug, Clone)]
+pub(super) struct WearIntegral {
+    pub(super) profile: EquivalentProfile,
+    pub(super) indentation: f64,
+    pub(super) contact_radius: f64,
+    rule: Rule,
+    mu: f64,
+    nu: f64,
+}
+
+/// Integrand at one node.
+struct Node {
+    /// `y = 2Lv`.
+    doubled: f64,
+    /// `ln φ(y)`.
+    logarithm: f64,
+    /// `(g0(x) - g0(r))/d`, negative.
+    rise: f64,
+    /// `E(v)`.
+    compression: f64,
+}
+
+impl WearIntegral {
+    /// Integrals up to radii `c e^span` or so, for which the number of nodes is chosen.
+    pub(super) fn new(
+        profile: EquivalentProfile,
+        indentation: f64,
+        contact_radius: f64,
+        largest_span: f64,
+    ) -> Result<Self> {
+        let nodes = node_count(&profile, contact_radius, largest_span).min(MAX_NODES);
+        Self::with_nodes(profile, indentation, contact_radius, nodes)
+    }
+
+    /// Makes sure of the nodes for radii up to `c e^span = a0 e^growth`; tells whether there had been too few.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] if more are needed than a rule can have: next to the equator of a sphere, or for exponents in the thousands.
+    pub(super) fn refine(&mut self, span: f64, growth: f64) -> Result<bool> {
+        let needed = node_count(&self.profile, self.contact_radius * growth.exp(), span);
+        if needed <= self.rule.len() {
+            return Ok(false);
+        }
+        if needed > MAX_NODES {
+            return Err(Error::NotConverged {
+                what: "wear integral",
+                why: format!(
+                    "{needed} nodes are needed for a contact radius of {} m at an indentation of {} m, {MAX_NODES} are the most",
+                    self.contact_radius * growth.exp(),
+                    self.indentation
+                ),
+            });
+        }
+        self.rule = Rule::jacobi(needed, 0.0, self.mu)?;
+        Ok(true)
+    }
+
+    pub(super) fn with_nodes(
+        profile: EquivalentProfile,
+        indentation: f64,
+        contact_radius: f64,
+        nodes: usize,
+    ) -> Result<Self> {
+        let (mu, nu) = (0.5 * (1.0 - profile.grading()), 0.5 * (1.0 + profile.grading()));
+        Ok(Self { rule: Rule::jacobi(nodes, 0.0, mu)?, profile, indentation, contact_radius, mu, nu })
+    }
+
+    /// `Δf/d` at the radius `c e^span = a0 e^growth`.
+    pub(super) fn depth(&self, span: f64, growth: f64) -> f64 {
+        if span <= 0.0 {
+            return 0.0;
+        }
+        transform_factor(self.profile.grading())
+            * (2.0 * span).powf(self.mu)
+            * self.mean_compression(span, growth)
+    }
+
+    /// `G`, the weighted mean of the compression left between the stick radius and `r`: zero at the limiting contact radius.
+    pub(super) fn mean_compression(&self, span: f64, growth: f64) -> f64 {
+        let edge = self.edge_compression(growth);
+        let mean = self.mean(span, growth, |v, node| {
+            ((-self.nu * node.logarithm).exp_m1() * node.compression - node.rise) / v
+        });
+        edge + self.mu / (1.0 + self.mu) * mean
+    }
+
+    /// `L/(S (2L)^μ) · d(Δf/d)/dL` along `r` at fixed stick radius: zero where the wear is deepest.
+    pub(super) fn depth_slope(&self, span: f64, growth: f64) -> f64 {
+        let origin = self.profile.at(self.contact_radius * growth.exp());
+        let edge = -span * origin.logarithmic_slope(0.0) / self.indentation;
+        let mean = self.mean(span, growth, |v, node| {
+            // y φ'/φ = y/(1 - e^(-y)) - 1
+            let weight_change =
+                if node.doubled > 0.0 { -node.doubled / (-node.doubled).exp_m1() - 1.0 } else { 0.0 };
+            let flank = span * (1.0 - v) * origin.logarithmic_slope(-span * v) / self.indentation;
+            let change =
+                (-self.nu * node.logarithm).exp() * (self.nu * weight_change * node.compression + flank);
+            (-change - edge) / v
+        });
+        self.mu * self.mean_compression(span, growth) + edge + self.mu / (1.0 + self.mu) * mean
+    }
+
+    /// `ΔV/(π a0² d)` of the annulus up to `r`.
+    pub(super) fn volume(&self, span: f64, growth: f64) -> f64 {
+        if span <= 0.0 {
+            return 0.0;
+        }
+        let mean = self
+            .mean(span, growth, |_, node| (self.mu * node.logarithm - node.doubled).exp() * node.compression);
+        let alpha = 1.0 + self.mu;
+        transform_factor(self.profile.grading()) * (2.0 * growth).exp() * (2.0 * span).powf(alpha) / alpha
+            * mean
+    }
+
+    /// `E(0) = 1 - g0(r)/d`, to full relative accuracy at `r → a0`.
+    fn edge_compression(&self, growth: f64) -> f64 {
+        -self.profile.at(self.contact_radius).rise(growth) / self.indentation
+    }
+
+    /// Weighted mean over the nodes of `integrand(v, node)`.
+    fn mean(&self, span: f64, growth: f64, integrand: impl Fn(f64, &Node) -> f64) -> f64 {
+        let edge = self.edge_compression(growth);
+        let origin = self.profile.at(self.contact_radius * growth.exp());
+        self.rule.mean(|v| {
+            let doubled = 2.0 * span * v;
+            let rise = origin.rise(-span * v) / self.indentation;
+            integrand(
+                v,
+                &Node { doubled, logarithm: logarithmic_growth(doubled), rise, compression: edge - rise },
+            )
+        })
+    }
+}
+
+/// `ln φ(y) = ln((e^y - 1)/y)`, `y >= 0`, without overflow.
+fn logarithmic_growth(y: f64) -> f64 {
+    if y > 0.0 { y + (-(-y).exp_m1() / y).ln() } else { 0.0 }
+}
+
+/// Nodes for round-off accuracy at radii up to `outermost` and spans up to `span`.
+///
+/// The integrands have the zeros of `φ`, `v = ±iπ/L`, and for the sphere its equator, `v = -ln(R/r)/L`, as nearest singularities; the
+/// error falls as `ρ^(-2n)` with the sum `ρ` of the semi-axes of the ellipse through them. Steep power laws and long spans add a
+/// boundary layer of relative width `1/(nL)`.
+fn node_count(profile: &EquivalentProfile, outermost: f64, span: f64) -> usize {
+    const DIGITS: f64 = 18.5; // half of -ln(1e-16)
+    // Of the ellipse with foci 0 and 1 at these distances, in units of half the distance of the foci.
+    let ellipse = |to_zero: f64, to_one: f64| {
+        let axis = to_zero + to_one;
+        axis + (axis * axis - 1.0).sqrt()
+    };
+    let imaginary = std::f64::consts::PI / span;
+    let steepness = profile.exponent().unwrap_or(2.0).max(2.0) * span;
+    let smooth = DIGITS / ellipse(imaginary, imaginary.hypot(1.0)).ln() + 2.5 * steepness.sqrt();
+    let rim = profile.singular_radius().map_or(0.0, |radius| {
+        let distance = (radius / outermost).ln() / span;
+        DIGITS / ellipse(distance, 1.0 + distance).ln()
+    });
+    smooth.max(rim).ceil() as usize + 8
+}
