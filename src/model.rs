@@ -40,6 +40,10 @@ pub struct State {
     pub compression: Vec<f64>,
     /// Energy dissipated by friction since the start, J.
     pub dissipated_energy: f64,
+    /// Mean rate of the edge in the last step, m² per cycle; zero at the start. A first guess for the next step.
+    pub edge_rate: f64,
+    /// Mean rates of the compressions in the last step, m per cycle, shape `(springs - 1,)`; zero at the start.
+    pub compression_rate: Vec<f64>,
 }
 
 /// What follows from a state, on the springs `ξ_1 ... ξ_n` of which the last is the contact edge.
@@ -211,7 +215,14 @@ impl Model {
         }
         let edge = bracketed(|edge| self.edge_mismatch(edge, |_, values| values.slip), low, high, 0.0)?;
         let compression = self.compression(edge, |_, values| values.slip);
-        Ok(State { cycles: 0.0, edge, compression, dissipated_energy: 0.0 })
+        Ok(State {
+            cycles: 0.0,
+            edge,
+            compression_rate: vec![0.0; compression.len()],
+            compression,
+            dissipated_energy: 0.0,
+            edge_rate: 0.0,
+        })
     }
 
     /// Wear depth at the edge, m, of the compressions that give the inner springs the slip depth `slip(spring, unworn)`; zero at the
@@ -343,8 +354,9 @@ impl Model {
     pub fn close_edge(&self, edge: f64, compression: &[f64]) -> Result<f64> {
         let last = self.springs() - 1;
         let mut edge = edge;
+        let mut fields = Fields::default();
         for _ in 0..20 {
-            let fields = self.fields(&State { cycles: 0.0, edge, compression: compression.to_vec(), dissipated_energy: 0.0 });
+            self.evaluate(edge, compression, &mut fields);
             let slope = fields.unworn[last].limit_slip_derivative
                 - fields.unworn[last].slip * fields.unworn[last].log_slip_derivative
                 - self.elastic_depth_by_edge(&fields)[last];

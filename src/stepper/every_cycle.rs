@@ -37,7 +37,7 @@ impl Stepper for EveryCycle {
             return Err(too_coarse(state, "the wear of this cycle presses springs beyond the limiting shape"));
         }
         let dissipated_energy = state.dissipated_energy + cycles * model.dissipation(fields, &state.compression);
-        let next = State { cycles: state.cycles + cycles, edge, compression, dissipated_energy };
+        let next = State { cycles: state.cycles + cycles, edge, compression, dissipated_energy, ..state.clone() };
         Ok(Trial { state: Some(next), error: 0.0, rate_evaluations: evaluations })
     }
 

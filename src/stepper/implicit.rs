@@ -23,6 +23,8 @@ pub struct Implicit {
     fields: Fields,
 }
 
+/// Times of the stages.
+const TIMES: [f64; STAGES] = [GAMMA, 0.5 * (1.0 + GAMMA), 1.0];
 const GAMMA: f64 = 0.435_866_521_508_458_999_416;
 const STAGES: usize = 3;
 const MATRIX: [[f64; STAGES]; STAGES] = [
@@ -41,13 +43,16 @@ const EMBEDDED: [f64; STAGES] = [GAMMA / (1.0 - GAMMA), (1.0 - 2.0 * GAMMA) / (1
 const ITERATIONS: usize = 8;
 const RENEWALS: usize = 2;
 
+/// Corrections, relative to `q_c` or the edge, that are round-off.
+const ROUND_OFF: f64 = 1e-14;
+
 /// Slowest contraction of Newton's corrections that is waited for.
 const SLOWEST: f64 = 0.5;
 
 impl Implicit {
     /// A stepper whose stages are solved well below the tolerance of the time stepping.
     pub fn new(tolerance: f64) -> Self {
-        Self { newton_tolerance: (1e-4 * tolerance).clamp(1e-12, 1e-9), fields: Fields::default() }
+        Self { newton_tolerance: (1e-3 * tolerance).clamp(1e-12, 1e-8), fields: Fields::default() }
     }
 }
 
@@ -70,10 +75,13 @@ impl Stepper for Implicit {
         let mut evaluations = 1;
         model.evaluate(state.edge, &state.compression, &mut self.fields);
         let start = self.fields.log_slip.clone();
-        let mut at = state.clone();
+        let mut at = self.predict(model, state, TIMES[0] * cycles);
         let mut stages: Vec<Stage> = Vec::with_capacity(STAGES);
         let mut factors = None;
-        for row in MATRIX {
+        for (index, row) in MATRIX.into_iter().enumerate() {
+            if index > 0 {
+                extrapolate(state, &mut at, TIMES[index] / TIMES[index - 1]);
+            }
             let gathered = |from: f64, part: &dyn Fn(&Stage) -> f64| {
                 from + stages.iter().zip(row).map(|(stage, weight)| cycles * weight * part(stage)).sum::<f64>()
             };
@@ -93,6 +101,10 @@ impl Stepper for Implicit {
             });
         }
         let weights = MATRIX[STAGES - 1];
+        at.edge_rate = (at.edge - state.edge) / cycles;
+        for ((rate, now), before) in at.compression_rate.iter_mut().zip(&at.compression).zip(&state.compression) {
+            *rate = (now - before) / cycles;
+        }
         at.cycles = state.cycles + cycles;
         at.dissipated_energy =
             state.dissipated_energy + stages.iter().zip(weights).map(|(s, w)| cycles * w * s.dissipation).sum::<f64>();
@@ -111,6 +123,22 @@ impl Stepper for Implicit {
 }
 
 impl Implicit {
+    /// The state some cycles on, at the rates of the last step, as long as it is one of a contact.
+    fn predict(&mut self, model: &Model, state: &State, cycles: f64) -> State {
+        let mut at = state.clone();
+        at.edge += cycles * at.edge_rate;
+        for (q, rate) in at.compression.iter_mut().zip(&at.compression_rate) {
+            *q += cycles * rate;
+        }
+        if at.edge > 0.0 && at.edge < model.unworn().largest_edge() {
+            model.evaluate(at.edge, &at.compression, &mut self.fields);
+            if self.fields.are_physical() {
+                return at;
+            }
+        }
+        state.clone()
+    }
+
     /// Newton's method for one stage, from and into `at`; leaves the fields there. Whether it converged to a contact.
     fn solve(
         &mut self,
@@ -143,7 +171,8 @@ impl Implicit {
                 }
                 let largest = change[..inner].iter().fold(0.0, |m: f64, dq| m.max(dq.abs())) / scale;
                 let size = largest.max(change[inner].abs() / at.edge);
-                if size <= self.newton_tolerance {
+                let left = at.compression.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
+                if size <= self.newton_tolerance * left + ROUND_OFF {
                     return true;
                 }
                 if size > SLOWEST * before {
@@ -182,6 +211,14 @@ impl Implicit {
         }
         matrix[(inner, inner)] = by_edge[inner];
         matrix
+    }
+}
+
+/// Continues the straight line from a state to a later one, as a first guess of Newton's method.
+fn extrapolate(from: &State, to: &mut State, factor: f64) {
+    to.edge = from.edge + (to.edge - from.edge) * factor;
+    for (q, start) in to.compression.iter_mut().zip(&from.compression) {
+        *q = start + (*q - start) * factor;
     }
 }
 
