@@ -16,7 +16,7 @@ fn main() {
     let loading = Loading { load: Load::Indentation(d), amplitude: Amplitude::StickRatio(c), duration: Duration::Tau(30.0) };
     let contact = InitialContact::new(&indenter, &hs, &Coulomb { coefficient: 1.0 }, &Archard { coefficient: 1.0 }, &loading).unwrap();
     let t0 = std::time::Instant::now();
-    let model = Model::new(&contact, springs).unwrap();
+    let model = Model::new(&contact, springs, if std::env::var("QUAD").is_ok() {fretwear::grid::Clustering::Quadratic} else {fretwear::grid::Clustering::Cubic}).unwrap();
     let t1 = t0.elapsed();
     let mut state = model.initial_state().unwrap();
     let tpc = contact.tau_per_cycle();

@@ -1,23 +1,39 @@
 //! Meshes of the slip annulus.
 
+/// How strongly nodes cluster at the contact edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clustering {
+    /// Spacing `n^-3` at the edge: the more accurate of the two.
+    Cubic,
+    /// Spacing `n^-2` at the edge: less stiff, so that explicit steps may be longer.
+    Quadratic,
+}
+
 /// Nodes of the slip annulus, graded towards the stick edge and towards the contact edge.
 ///
 /// ```text
-/// ξ = expm1(Λ g(x)) / expm1(Λ),    g(x) = x³ (10 - 15 x + 6 x²),    x = 0, 1/n, ... 1
+/// ξ = expm1(Λ g(x)) / expm1(Λ),    x = 0, 1/n, ... 1,    g(x) = x³ (10 - 15 x + 6 x²)  or  x³ (4 - 3 x)
 /// ```
 ///
 /// `ξ = (s - c²)/(a² - c²)` with `s = x²` is the fraction of the annulus' area. Both ends of the annulus carry singularities of the worn
-/// solution, hence the cubic clustering of `g`; `Λ = ln(a²/c²)` spreads the nodes evenly in `ln s` where the stick zone is small.
+/// solution, hence the clustering of `g`; `Λ = ln(a²/c²)` spreads the nodes evenly in `ln s` where the stick zone is small.
 ///
 /// # Arguments
 /// * `cells` -- number of cells `n`, at least 1
 /// * `stretch` -- `Λ >= 0`
+/// * `clustering` -- at the contact edge
 ///
 /// Returns `ξ`, shape `(cells + 1,)`, increasing from 0 to 1.
-pub fn slip_annulus(cells: usize, stretch: f64) -> Vec<f64> {
+pub fn slip_annulus(cells: usize, stretch: f64, clustering: Clustering) -> Vec<f64> {
     let fraction = |i: usize| {
         let x = i as f64 / cells as f64;
-        let clustered = x * x * x * (10.0 + x * (6.0 * x - 15.0));
+        let clustered = x
+            * x
+            * x
+            * match clustering {
+                Clustering::Cubic => 10.0 + x * (6.0 * x - 15.0),
+                Clustering::Quadratic => 4.0 - 3.0 * x,
+            };
         if stretch > 1e-8 { (stretch * clustered).exp_m1() / stretch.exp_m1() } else { clustered }
     };
     let mut nodes: Vec<f64> = (0..=cells).map(fraction).collect();
@@ -67,10 +83,12 @@ mod tests {
 
     #[test]
     fn nodes_rise_from_zero_to_one_for_every_stretch() {
-        for stretch in [0.0, 1e-12, 0.5, 5.0, 30.0] {
-            let nodes = slip_annulus(50, stretch);
-            assert_eq!((nodes[0], nodes[50]), (0.0, 1.0));
-            assert!(nodes.windows(2).all(|pair| pair[1] > pair[0]), "stretch {stretch}: {nodes:?}");
+        for clustering in [Clustering::Cubic, Clustering::Quadratic] {
+            for stretch in [0.0, 1e-12, 0.5, 5.0, 30.0] {
+                let nodes = slip_annulus(50, stretch, clustering);
+                assert_eq!((nodes[0], nodes[50]), (0.0, 1.0));
+                assert!(nodes.windows(2).all(|pair| pair[1] > pair[0]), "stretch {stretch}: {nodes:?}");
+            }
         }
     }
 

@@ -16,6 +16,7 @@ pub mod roots;
 pub mod scene;
 pub mod snapshot;
 pub mod stepper;
+pub mod simulation;
 pub mod slip_depth;
 pub mod stick_slip;
 pub mod wear;

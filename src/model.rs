@@ -17,7 +17,7 @@ use faer::Mat;
 use crate::abel::AbelOperators;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::grid::{lagrange, lagrange_derivative, slip_annulus, stencil_start};
+use crate::grid::{Clustering, lagrange, lagrange_derivative, slip_annulus, stencil_start};
 use crate::linear::{Factors, dot, multiply};
 use crate::roots::bracketed;
 use crate::slip_depth::{UnwornSlip, UnwornValues};
@@ -30,7 +30,7 @@ const POINTS: usize = DEGREE + 1;
 pub const FEWEST_SPRINGS: usize = 8;
 
 /// What a restart needs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     /// Cycles done.
     pub cycles: f64,
@@ -116,7 +116,7 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if the contact does not slip in part; [`Error::OutOfRange`] for too few springs; those of the transforms.
-    pub fn new(contact: &InitialContact, springs: usize) -> Result<Self> {
+    pub fn new(contact: &InitialContact, springs: usize, clustering: Clustering) -> Result<Self> {
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
         let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
             what: "slip annulus",
@@ -130,7 +130,7 @@ impl Model {
         let unworn = UnwornSlip::new(profile, stick_radius, contact.slip_compression(), contact.slip_area_offset())?;
         let stick_radius_squared = stick_radius * stick_radius;
         let stretch = (unworn.limit_edge() / stick_radius_squared).ln_1p();
-        let operators = AbelOperators::new(grading, slip_annulus(springs, stretch), DEGREE)?;
+        let operators = AbelOperators::new(grading, slip_annulus(springs, stretch, clustering), DEGREE)?;
         let inner = springs - 1;
         let profile_factors = Factors::new(operators.profile().submatrix(0, 0, inner, inner).to_owned());
         let mut edge_row: Vec<f64> = (0..inner).map(|j| operators.profile()[(inner, j)]).collect();
