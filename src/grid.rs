@@ -27,12 +27,10 @@ pub enum Clustering {
 pub fn slip_annulus(cells: usize, stretch: f64, clustering: Clustering) -> Vec<f64> {
     let fraction = |i: usize| {
         let x = i as f64 / cells as f64;
-        let clustered = x
-            * x
-            * x
+        let clustered = x.powi(4)
             * match clustering {
-                Clustering::Cubic => 10.0 + x * (6.0 * x - 15.0),
-                Clustering::Quadratic => 4.0 - 3.0 * x,
+                Clustering::Cubic => 15.0 + x * (10.0 * x - 24.0),
+                Clustering::Quadratic => 5.0 - 4.0 * x,
             };
         if stretch > 1e-8 { (stretch * clustered).exp_m1() / stretch.exp_m1() } else { clustered }
     };
