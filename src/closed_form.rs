@@ -10,95 +10,21 @@
 //! | (3) | limiting wear depth `Δf(r)` | [`LimitingShape::wear_depth`] |
 //! | (4) | limiting worn volume `ΔV` | [`LimitingShape::wear_volume`] |
 //! | (5), (6) | power law, its factor `κ` | [`Indenter::power_law`](crate::indenter::Indenter::power_law), [`power_law_factor`](crate::indenter::power_law_factor) |
-//! | (7), (8) | indentation and contact radius | [`EquivalentProfile::value`], [`EquivalentProfile::radius_at`] |
+//! | (7), (8) | indentation and contact radius | [`EquivalentProfile::value`](crate::indenter::EquivalentProfile::value), [`EquivalentProfile::radius_at`](crate::indenter::EquivalentProfile::radius_at) |
 //! | (11) | edge of stick `g0(c) = d - M U/μ_f` | [`slip_compression`], [`stick_radius`] |
 //! | (12) | `M` under elastic similarity | [`similar_stiffness_ratio`] |
 //! | (13)–(15) | small amplitudes | [`relative_slip_width`], [`relative_limit_width`], [`small_amplitude_wear_volume`] |
 //! | (16)–(18) | paraboloid | [`paraboloid_contact_radius`], [`paraboloid_stick_radius`] |
 //! | (19) | equivalent profile `g` | [`Indenter::equivalent_profile`](crate::indenter::Indenter::equivalent_profile) |
-//! | (22) | normal force | [`EquivalentProfile::load_integral`] |
+//! | (22) | normal force | [`EquivalentProfile::load_integral`](crate::indenter::EquivalentProfile::load_integral) |
 
 mod limiting_shape;
 mod wear_integral;
 
 pub use limiting_shape::LimitingShape;
 
-use crate::error::Result;
-use crate::indenter::EquivalentProfile;
-
-/// What tangential oscillation does to the contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Regime {
-    /// No spring slips: the amplitude is zero.
-    Stick,
-    /// The springs beyond the stick radius slip.
-    PartialSlip,
-    /// Every spring slips; there is no limiting shape.
-    FullSliding,
-}
-
-impl Regime {
-    /// Regime of an indentation `d` and a [`slip_compression`] `q_c`, m: full sliding from `q_c = d` on.
-    pub fn new(indentation: f64, slip_compression: f64) -> Self {
-        if slip_compression >= indentation {
-            Self::FullSliding
-        } else if slip_compression > 0.0 {
-            Self::PartialSlip
-        } else {
-            Self::Stick
-        }
-    }
-}
-
-/// Compression `q_c` of the springs at the edge of stick, m [S, Eq. (11)].
-///
-/// ```text
-/// q_c = M U / μ_f = d - g0(c)
-/// ```
-///
-/// # Arguments
-/// * `stiffness_ratio` -- `M`
-/// * `amplitude` -- `U`, m
-/// * `friction_coefficient` -- `μ_f`
-pub fn slip_compression(stiffness_ratio: f64, amplitude: f64, friction_coefficient: f64) -> f64 {
-    stiffness_ratio * amplitude / friction_coefficient
-}
-
-/// Stick radius `c`, m, the root of `g0(c) = d - q_c` [S, Eq. (11)].
-///
-/// # Arguments
-/// * `profile` -- equivalent profile `g0`
-/// * `indentation` -- `d`, m
-/// * `slip_compression` -- `q_c`, m, from 0 to `d`
-///
-/// # Errors
-/// [`Error::Inconsistent`](crate::Error::Inconsistent) if a sphere would sink in to its equator.
-pub fn stick_radius(profile: &EquivalentProfile, indentation: f64, slip_compression: f64) -> Result<f64> {
-    profile.radius_at(indentation - slip_compression)
-}
-
-/// Tangential amplitude, m, from which on the whole contact slides: [S, Eq. (11)] with `g0(c) = 0`.
-///
-/// ```text
-/// u_max = μ_f d / M
-/// ```
-pub fn full_sliding_amplitude(stiffness_ratio: f64, friction_coefficient: f64, indentation: f64) -> f64 {
-    friction_coefficient * indentation / stiffness_ratio
-}
-
-/// Ratio of tangential to normal stiffness of a half-space elastically similar to a rigid indenter [S, Eq. (12)].
-///
-/// ```text
-/// M = 2 / ((1+k)(3+k)),     Poisson's ratio 1/(2+k)
-/// ```
-///
-/// # Examples
-/// ```
-/// assert!((fretwear::closed_form::similar_stiffness_ratio(0.0) - 2.0 / 3.0).abs() < 1e-15);
-/// ```
-pub fn similar_stiffness_ratio(grading: f64) -> f64 {
-    2.0 / ((1.0 + grading) * (3.0 + grading))
-}
+pub use crate::half_space::similar_stiffness_ratio;
+pub use crate::stick_slip::{Regime, full_sliding_amplitude, slip_compression, stick_radius};
 
 /// Width of the first slip annulus relative to the stick radius: the small parameter of [S, Eqs. (13)–(15)].
 ///

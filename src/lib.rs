@@ -1,5 +1,6 @@
 //! Fretting wear of elastically graded media.
 pub mod closed_form;
+pub mod contact;
 pub mod error;
 pub mod friction;
 pub mod half_space;
@@ -9,6 +10,7 @@ pub mod quadrature;
 pub mod roots;
 pub mod scene;
 pub mod snapshot;
+pub mod stick_slip;
 pub mod wear;
 
 pub use error::{Error, Result};

@@ -2,9 +2,11 @@
 
 use super::wear_integral::WearIntegral;
 use super::{Regime, relative_slip_width, small_amplitude_wear_volume};
+use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::indenter::{EquivalentProfile, Indenter};
 use crate::roots;
+use crate::stick_slip;
 use std::f64::consts::PI;
 
 /// Limiting shape of an indenter worn by tangential oscillation at a fixed indentation.
@@ -67,7 +69,8 @@ impl LimitingShape {
                 ),
             });
         }
-        let stick_logarithm = stick_logarithm(&profile, indentation, contact_radius, slip_compression)?;
+        let stick_logarithm =
+            stick_slip::stick_logarithm(&profile, indentation, contact_radius, slip_compression)?;
         Self::assemble(indenter, profile, indentation, contact_radius, slip_compression, stick_logarithm)
     }
 
@@ -92,6 +95,27 @@ impl LimitingShape {
         let stick_logarithm = -stick_ratio.ln();
         let slip_compression = -profile.at(contact_radius).rise(-stick_logarithm);
         Self::assemble(indenter, profile, indentation, contact_radius, slip_compression, stick_logarithm)
+    }
+
+    /// Limiting shape of the contact that a scene describes; none under full sliding.
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] where a worn sphere would touch beyond 0.999 of its radius; [`Error::NotConverged`] next to that, and for
+    /// power-law exponents in the thousands.
+    pub fn from_contact(contact: &InitialContact) -> Result<Option<Self>> {
+        let Some(stick_logarithm) = contact.stick_logarithm() else { return Ok(None) };
+        let profile = contact.equivalent_profile().clone();
+        let (indentation, contact_radius) = (contact.indentation(), contact.contact_radius());
+        let slip_compression = contact.slip_compression();
+        Self::assemble(
+            contact.indenter(),
+            profile,
+            indentation,
+            contact_radius,
+            slip_compression,
+            stick_logarithm,
+        )
+        .map(Some)
     }
 
     fn assemble(
@@ -180,7 +204,8 @@ impl LimitingShape {
 
     /// Stick, if nothing slips, or partial slip.
     pub fn regime(&self) -> Regime {
-        Regime::new(self.indentation(), self.slip_compression)
+        // Not from q_c: next to full sliding it rounds to the indentation while the stick radius keeps its digits.
+        if self.stick_logarithm > 0.0 { Regime::PartialSlip } else { Regime::Stick }
     }
 
     /// Equivalent profile `g0` of the unworn indenter.
@@ -308,20 +333,6 @@ fn first_contact(indenter: &Indenter, grading: f64, indentation: f64) -> Result<
     let profile = indenter.equivalent_profile(grading)?;
     let contact_radius = profile.radius_at(indentation)?;
     Ok((profile, contact_radius))
-}
-
-/// `ln(a0/c)`, from whichever of `c` and `a0² - c²` is known without cancellation.
-fn stick_logarithm(
-    profile: &EquivalentProfile,
-    indentation: f64,
-    contact_radius: f64,
-    slip_compression: f64,
-) -> Result<f64> {
-    if slip_compression > 0.5 * indentation {
-        return Ok((contact_radius / super::stick_radius(profile, indentation, slip_compression)?).ln());
-    }
-    let drop = profile.radius_squared_drop(contact_radius, slip_compression);
-    Ok(-0.5 * (-drop / (contact_radius * contact_radius)).ln_1p())
 }
 
 #[cfg(test)]

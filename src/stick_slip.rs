@@ -1,0 +1,111 @@
+//! Which springs stick and which slip under tangential oscillation.
+
+use crate::error::Result;
+use crate::indenter::EquivalentProfile;
+
+/// What tangential oscillation does to the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Regime {
+    /// No spring slips: the amplitude is zero.
+    Stick,
+    /// The springs beyond the stick radius slip.
+    PartialSlip,
+    /// Every spring slips; there is no limiting shape.
+    FullSliding,
+}
+
+impl Regime {
+    /// Regime of an indentation `d` and a [`slip_compression`] `q_c`, m: full sliding from `q_c = d` on.
+    pub fn new(indentation: f64, slip_compression: f64) -> Self {
+        if slip_compression >= indentation {
+            Self::FullSliding
+        } else if slip_compression > 0.0 {
+            Self::PartialSlip
+        } else {
+            Self::Stick
+        }
+    }
+
+    /// Name in files and JSON: `stick`, `partial-slip` or `full-sliding`.
+    ///
+    /// ```
+    /// assert_eq!(fretwear::stick_slip::Regime::new(1e-6, 2e-6).name(), "full-sliding");
+    /// ```
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stick => "stick",
+            Self::PartialSlip => "partial-slip",
+            Self::FullSliding => "full-sliding",
+        }
+    }
+}
+
+/// Compression `q_c` of the springs at the edge of stick, m [S, Eq. (11)].
+///
+/// ```text
+/// q_c = M U / μ_f = d - g0(c)
+/// ```
+///
+/// # Arguments
+/// * `stiffness_ratio` -- `M`
+/// * `amplitude` -- `U`, m
+/// * `friction_coefficient` -- `μ_f`
+pub fn slip_compression(stiffness_ratio: f64, amplitude: f64, friction_coefficient: f64) -> f64 {
+    stiffness_ratio * amplitude / friction_coefficient
+}
+
+/// Tangential amplitude, m, at which the springs of compression `q_c` are at the edge of stick: the inverse of [`slip_compression`].
+///
+/// ```text
+/// U = μ_f q_c / M
+/// ```
+pub fn slip_amplitude(stiffness_ratio: f64, friction_coefficient: f64, slip_compression: f64) -> f64 {
+    friction_coefficient * slip_compression / stiffness_ratio
+}
+
+/// Tangential amplitude, m, from which on the whole contact slides: [S, Eq. (11)] with `g0(c) = 0`.
+///
+/// ```text
+/// u_max = μ_f d / M
+/// ```
+pub fn full_sliding_amplitude(stiffness_ratio: f64, friction_coefficient: f64, indentation: f64) -> f64 {
+    slip_amplitude(stiffness_ratio, friction_coefficient, indentation)
+}
+
+/// Stick radius `c`, m, the root of `g0(c) = d - q_c` [S, Eq. (11)].
+///
+/// # Arguments
+/// * `profile` -- equivalent profile `g0`
+/// * `indentation` -- `d`, m
+/// * `slip_compression` -- `q_c`, m, from 0 to `d`
+///
+/// # Errors
+/// [`Error::Inconsistent`](crate::Error::Inconsistent) if a sphere would sink in to its equator.
+pub fn stick_radius(profile: &EquivalentProfile, indentation: f64, slip_compression: f64) -> Result<f64> {
+    profile.radius_at(indentation - slip_compression)
+}
+
+/// `η = ln(a0/c)`, from whichever of `c` and `a0² - c²` is known without cancellation.
+///
+/// From it follow `c = a0 e^(-η)` and `a0² - c² = -a0² (e^(-2η) - 1)`, both to full relative accuracy.
+///
+/// # Arguments
+/// * `profile` -- equivalent profile `g0`
+/// * `indentation` -- `d = g0(a0)`, m
+/// * `contact_radius` -- `a0`, m
+/// * `slip_compression` -- `q_c`, m, from 0 to `d`
+///
+/// # Errors
+/// As [`stick_radius`].
+pub fn stick_logarithm(
+    profile: &EquivalentProfile,
+    indentation: f64,
+    contact_radius: f64,
+    slip_compression: f64,
+) -> Result<f64> {
+    if slip_compression > 0.5 * indentation {
+        return Ok((contact_radius / stick_radius(profile, indentation, slip_compression)?).ln());
+    }
+    let drop = profile.radius_squared_drop(contact_radius, slip_compression);
+    Ok(-0.5 * (-drop / (contact_radius * contact_radius)).ln_1p())
+}
