@@ -7,6 +7,7 @@ pub mod half_space;
 pub mod indenter;
 pub mod loading;
 pub mod quadrature;
+pub mod report;
 pub mod roots;
 pub mod scene;
 pub mod snapshot;
