@@ -17,6 +17,9 @@ pub(crate) use atomic::AtomicFile;
 pub use reader::RunFile;
 pub use writer::RunWriter;
 
+use crate::model::State;
+use crate::simulation::Progress;
+
 /// What does not change during a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RunHeader {
@@ -71,29 +74,13 @@ pub struct Snapshot {
 /// What a restart needs besides the header and the snapshots; every value survives the file bit for bit.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Checkpoint {
-    /// Compression of the springs, m, shape `(spring,)`.
-    pub compression: Vec<f64>,
-    /// Number of cycles done.
-    pub cycles: f64,
-    /// Energy dissipated by friction since the start, J.
-    pub dissipated_energy: f64,
-    /// Step to be tried next, cycles.
-    pub next_step: f64,
-    /// Error of the last accepted step over its tolerance, memory of the step-size controller.
-    pub previous_error: f64,
-    /// Worn volume per cycle at the start, m³.
-    pub first_rate: f64,
-    /// Steps accepted.
-    pub steps: u64,
-    /// Steps rejected.
-    pub rejected_steps: u64,
-    /// Evaluations of the wear rate.
-    pub rate_evaluations: u64,
-    /// Index of the next entry of the output plan.
-    pub next_output: u64,
+    /// State of the contact.
+    pub state: State,
+    /// Step size and counts.
+    pub progress: Progress,
     /// Wall time used, s.
     pub wall_seconds: f64,
-    /// Estimate of the error of time stepping, relative to the largest depth of the limit.
+    /// Estimate of the error, relative to the limit's worn volume.
     pub error_estimate: Option<f64>,
 }
 

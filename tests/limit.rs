@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use fretwear::closed_form::LimitingShape;
+use fretwear::model::State;
 use fretwear::report::{CheckReport, LimitReport, contact};
 use fretwear::scene::Scene;
+use fretwear::simulation::Progress;
 use fretwear::snapshot::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -355,13 +357,21 @@ fn info_tells_what_a_result_file_holds_and_whether_it_is_complete() {
         normal_force: f64::NAN,
         ..Snapshot::default()
     };
+    let checkpoint = Checkpoint {
+        state: State {
+            cycles: 2500.0,
+            compression: vec![1e-7],
+            compression_rate: vec![0.0],
+            ..State::default()
+        },
+        progress: Progress { steps: 7, ..Progress::default() },
+        ..Checkpoint::default()
+    };
     for (name, complete) in [("part.h5", false), ("whole.h5", true)] {
         let mut writer = RunWriter::create(&folder.path().join(name), header.clone(), false).unwrap();
         writer.push(snapshot.clone());
         let reason = if complete { StopReason::End } else { StopReason::Interrupted };
-        writer
-            .save(&Checkpoint { cycles: 2500.0, steps: 7, ..Checkpoint::default() }, reason, complete)
-            .unwrap();
+        writer.save(&checkpoint, reason, complete).unwrap();
         let json = object(folder.path(), &["info", name, "--json"]);
         assert_eq!(json["complete"], complete);
         assert_eq!(json["stop_reason"], reason.name());

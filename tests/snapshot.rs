@@ -8,6 +8,8 @@ use std::str::FromStr;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
+use fretwear::model::State;
+use fretwear::simulation::Progress;
 use fretwear::snapshot::{Checkpoint, LimitCurves, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
 use hdf5::types::VarLenUnicode;
 
@@ -56,16 +58,22 @@ fn snapshot(nodes: usize, seed: usize) -> Snapshot {
 
 fn checkpoint() -> Checkpoint {
     Checkpoint {
-        compression: curve(57, 4),
-        cycles: 1e5 / 3.0,
-        dissipated_energy: -0.0,
-        next_step: 5e-324,
-        previous_error: f64::from_bits(OTHER_NAN),
-        first_rate: 1e-15,
-        steps: u64::MAX,
-        rejected_steps: 1 << 53 | 1,
-        rate_evaluations: 3,
-        next_output: 0,
+        state: State {
+            compression: curve(57, 4),
+            compression_rate: curve(57, 5),
+            cycles: 1e5 / 3.0,
+            edge: f64::from_bits(OTHER_NAN),
+            edge_rate: -1e-300,
+            dissipated_energy: -0.0,
+        },
+        progress: Progress {
+            next_step: 5e-324,
+            first_rate: 1e-15,
+            steps: u64::MAX,
+            rejected_steps: 1 << 53 | 1,
+            rate_evaluations: 3,
+            next_output: 0,
+        },
         wall_seconds: 0.1,
         error_estimate: Some(f64::NAN),
     }
@@ -153,8 +161,9 @@ fn every_value_comes_back_bit_for_bit() {
         assert_eq!(bits(found), bits(&snapshot(31, time)), "snapshot {time}");
     }
     let (found, expected) = (run.checkpoint.expect("a checkpoint"), checkpoint());
-    assert_eq!(to_bits(&found.compression), to_bits(&expected.compression));
-    assert_eq!(found.previous_error.to_bits(), OTHER_NAN);
+    assert_eq!(to_bits(&found.state.compression), to_bits(&expected.state.compression));
+    assert_eq!(to_bits(&found.state.compression_rate), to_bits(&expected.state.compression_rate));
+    assert_eq!(found.state.edge.to_bits(), OTHER_NAN);
     assert_eq!(found.error_estimate.map(f64::to_bits), expected.error_estimate.map(f64::to_bits));
     // `Debug` prints the shortest decimal that gives the same number, and the sign of zero.
     assert_eq!(format!("{found:?}"), format!("{expected:?}"));
@@ -491,7 +500,8 @@ fn save_for_ever_when_asked_to() {
     loop {
         let count = writer.snapshots().len();
         writer.push(snapshot(50, count));
-        let checkpoint = Checkpoint { steps: count as u64 + 1, ..checkpoint() };
+        let mut checkpoint = checkpoint();
+        checkpoint.progress.steps = count as u64 + 1;
         writer.save(&checkpoint, StopReason::Interrupted, false).expect("a save");
         println!("\nsafe: {}", count + 1);
     }
@@ -522,7 +532,7 @@ fn a_run_killed_at_any_moment_loses_nothing_that_was_saved() {
         let run = RunFile::open(&path).unwrap_or_else(|error| panic!("round {round}: {error}"));
         let found = run.snapshots.len();
         assert!(found == safe || found == safe + 1, "round {round}: {safe} were safe, {found} are there");
-        assert_eq!(run.checkpoint.expect("a checkpoint").steps, found as u64, "of one and the same save");
+        assert_eq!(run.checkpoint.expect("a checkpoint").progress.steps, found as u64, "of one and the same save");
         for (time, it) in run.snapshots.iter().enumerate() {
             assert_eq!(bits(it), bits(&snapshot(50, time)), "round {round}, snapshot {time}");
         }

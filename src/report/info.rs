@@ -59,7 +59,7 @@ pub struct InfoReport {
     pub rate_evaluations: Option<u64>,
     /// Wall time used, s.
     pub wall_seconds: Option<f64>,
-    /// Estimate of the error of time stepping, relative to the largest depth of the limit.
+    /// Estimate of the error, relative to the limit's worn volume.
     pub error_estimate: Option<f64>,
     /// The scene as TOML text.
     pub scene: String,
@@ -133,10 +133,10 @@ impl InfoReport {
             wear_depth_max: of_last(|it| largest(&it.wear_depth)),
             dissipated_energy: of_last(|it| it.dissipated_energy),
             limit: run.header.limit.as_ref().zip(last).map(|(limit, last)| LimitDistance::new(limit, last)),
-            checkpoint_cycles: checkpoint.map(|it| it.cycles),
-            steps: count(|it| it.steps),
-            rejected_steps: count(|it| it.rejected_steps),
-            rate_evaluations: count(|it| it.rate_evaluations),
+            checkpoint_cycles: checkpoint.map(|it| it.state.cycles),
+            steps: count(|it| it.progress.steps),
+            rejected_steps: count(|it| it.progress.rejected_steps),
+            rate_evaluations: count(|it| it.progress.rate_evaluations),
             wall_seconds: checkpoint.map(|it| it.wall_seconds),
             error_estimate: checkpoint.and_then(|it| it.error_estimate),
             scene: run.header.scene.clone(),
@@ -192,7 +192,7 @@ impl InfoReport {
                 ("rejected steps", self.rejected_steps.map(|it| it.to_string())),
                 ("evaluations of the wear rate", self.rate_evaluations.map(|it| it.to_string())),
                 ("wall time", self.wall_seconds.map(|it| Scale::TIME.show(it))),
-                ("estimated error of time stepping", self.error_estimate.map(number)),
+                ("estimated error of the volume", self.error_estimate.map(number)),
             ],
         );
         rows.finish()

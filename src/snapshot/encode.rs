@@ -76,8 +76,10 @@ impl Run<'_> {
 
     fn put_checkpoint(&self, file: &Group) -> Result<()> {
         let group = create_group(file, CHECKPOINT)?;
-        let spring = Dimension::create(&group, SPRING, self.checkpoint.compression.len(), false)?;
-        put_array(&group, COMPRESSION, &[&spring], &self.checkpoint.compression)?;
+        let state = &self.checkpoint.state;
+        let spring = Dimension::create(&group, SPRING, state.compression.len(), false)?;
+        put_array(&group, COMPRESSION, &[&spring], &state.compression)?;
+        put_array(&group, COMPRESSION_RATE, &[&spring], &state.compression_rate)?;
         for field in &CHECKPOINT_REALS {
             put_array(&group, field.label, &[], &[*(field.of)(self.checkpoint)])?;
         }

@@ -38,6 +38,9 @@ pub const LIMIT_PROFILE: Label = label("limit_profile", "m", "profile in the lim
 pub const LIMIT_WEAR_DEPTH: Label = label("limit_wear_depth", "m", "wear depth in the limit of many cycles");
 /// Compression of the springs, shape `(spring,)`, in the group of the checkpoint.
 pub const COMPRESSION: Label = label("compression", "m", "compression of the springs");
+/// Mean rate of the compressions in the last step, shape `(spring,)`, in the group of the checkpoint.
+pub const COMPRESSION_RATE: Label =
+    label("compression_rate", "m", "compression of the springs gained per cycle in the last step");
 /// Error estimate, scalar, in the group of the checkpoint; absent where there is none.
 pub const ERROR_ESTIMATE: Label = label(
     "error_estimate",
@@ -93,47 +96,52 @@ pub(super) const CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
 ];
 
 /// Scalars of the checkpoint, real.
-pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 6] = [
-    field(label("cycles", "1", "number of fretting cycles done"), |it| &it.cycles, |it| &mut it.cycles),
+pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 7] = [
+    field(label("cycles", "1", "number of fretting cycles done"), |it| &it.state.cycles, |it| &mut it.state.cycles),
     field(
         label("dissipated_energy", "J", "energy dissipated by friction since the start"),
-        |it| &it.dissipated_energy,
-        |it| &mut it.dissipated_energy,
+        |it| &it.state.dissipated_energy,
+        |it| &mut it.state.dissipated_energy,
     ),
     field(
         label("next_step", "1", "number of cycles to be tried in the next step"),
-        |it| &it.next_step,
-        |it| &mut it.next_step,
+        |it| &it.progress.next_step,
+        |it| &mut it.progress.next_step,
     ),
     field(
-        label("previous_error", "1", "error of the last accepted step over its tolerance"),
-        |it| &it.previous_error,
-        |it| &mut it.previous_error,
+        label("edge", "m2", "square of the contact radius less that of the stick radius"),
+        |it| &it.state.edge,
+        |it| &mut it.state.edge,
+    ),
+    field(
+        label("edge_rate", "m2", "gain of edge per cycle in the last step"),
+        |it| &it.state.edge_rate,
+        |it| &mut it.state.edge_rate,
     ),
     field(
         label("first_rate", "m3", "worn volume per cycle at the start"),
-        |it| &it.first_rate,
-        |it| &mut it.first_rate,
+        |it| &it.progress.first_rate,
+        |it| &mut it.progress.first_rate,
     ),
     field(label("wall_seconds", "s", "wall time used"), |it| &it.wall_seconds, |it| &mut it.wall_seconds),
 ];
 
 /// Scalars of the checkpoint, whole numbers.
 pub(super) const CHECKPOINT_COUNTS: [Field<Checkpoint, u64>; 4] = [
-    field(label("steps", "1", "steps accepted"), |it| &it.steps, |it| &mut it.steps),
+    field(label("steps", "1", "steps accepted"), |it| &it.progress.steps, |it| &mut it.progress.steps),
     field(
         label("rejected_steps", "1", "steps rejected"),
-        |it| &it.rejected_steps,
-        |it| &mut it.rejected_steps,
+        |it| &it.progress.rejected_steps,
+        |it| &mut it.progress.rejected_steps,
     ),
     field(
         label("rate_evaluations", "1", "evaluations of the wear rate"),
-        |it| &it.rate_evaluations,
-        |it| &mut it.rate_evaluations,
+        |it| &it.progress.rate_evaluations,
+        |it| &mut it.progress.rate_evaluations,
     ),
     field(
         label("next_output", "1", "index of the next entry of the output plan"),
-        |it| &it.next_output,
-        |it| &mut it.next_output,
+        |it| &it.progress.next_output,
+        |it| &mut it.progress.next_output,
     ),
 ];

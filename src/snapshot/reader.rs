@@ -152,8 +152,10 @@ impl Source {
 
     fn checkpoint(&self, file: &Group) -> Result<Checkpoint> {
         let group = file.group(CHECKPOINT).map_err(|error| self.damaged("/checkpoint", &error))?;
-        let mut checkpoint =
-            Checkpoint { compression: self.values(&group, COMPRESSION, &[None])?, ..Checkpoint::default() };
+        let mut checkpoint = Checkpoint::default();
+        checkpoint.state.compression = self.values(&group, COMPRESSION, &[None])?;
+        let springs = Some(checkpoint.state.compression.len());
+        checkpoint.state.compression_rate = self.values(&group, COMPRESSION_RATE, &[springs])?;
         for field in &CHECKPOINT_REALS {
             *(field.of_mut)(&mut checkpoint) = self.scalar(&group, field.label)?;
         }

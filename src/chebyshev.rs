@@ -1,0 +1,72 @@
+//! Chebyshev series of a smooth function on an interval.
+
+use std::f64::consts::PI;
+
+/// Largest number of terms tried.
+const MOST_TERMS: usize = 256;
+
+/// Coefficients below this fraction of the largest are round-off of the function; what is left out sums to a few times it.
+const ROUND_OFF: f64 = 2e-15;
+
+/// A function on `[0, end]` as a Chebyshev series that resolves it to round-off.
+#[derive(Debug, Clone)]
+pub struct Chebyshev {
+    end: f64,
+    coefficients: Vec<f64>,
+}
+
+impl Chebyshev {
+    /// Interpolates `function` on `[0, end]`, doubling the number of terms until the last ones are round-off; it is never called at 0.
+    pub fn fit(function: impl Fn(f64) -> f64, end: f64) -> Self {
+        let mut terms = 16;
+        loop {
+            let coefficients = Self::coefficients(&function, end, terms);
+            let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+            let tail = coefficients[terms - 3..].iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+            if tail <= ROUND_OFF * largest || terms >= MOST_TERMS {
+                let keep = coefficients.iter().rposition(|c| c.abs() > 0.1 * ROUND_OFF * largest).map_or(1, |i| i + 1);
+                return Self { end, coefficients: coefficients[..keep].to_vec() };
+            }
+            terms *= 2;
+        }
+    }
+
+    fn coefficients(function: &impl Fn(f64) -> f64, end: f64, terms: usize) -> Vec<f64> {
+        let angle = |i: usize| PI * (i as f64 + 0.5) / terms as f64;
+        let values: Vec<f64> = (0..terms).map(|i| function(end * (0.5 * angle(i)).cos().powi(2))).collect();
+        let projected = |j: usize| {
+            let sum: f64 = values.iter().enumerate().map(|(i, v)| v * (j as f64 * angle(i)).cos()).sum();
+            sum * if j == 0 { 1.0 } else { 2.0 } / terms as f64
+        };
+        (0..terms).map(projected).collect()
+    }
+
+    /// Value and derivative at `x`, by Clenshaw's recurrence.
+    pub fn value_and_derivative(&self, x: f64) -> (f64, f64) {
+        let y = 2.0 * x / self.end - 1.0;
+        let (mut b1, mut b2, mut d1, mut d2) = (0.0, 0.0, 0.0, 0.0);
+        for &c in self.coefficients[1..].iter().rev() {
+            let d = 2.0 * (b1 + y * d1) - d2;
+            (d2, d1) = (d1, d);
+            let b = c + 2.0 * y * b1 - b2;
+            (b2, b1) = (b1, b);
+        }
+        (self.coefficients[0] + y * b1 - b2, (b1 + y * d1 - d2) * 2.0 / self.end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn series_of_an_exponential_gives_value_and_derivative_to_round_off() {
+        let series = Chebyshev::fit(|x| (0.7 * x).exp(), 6.0);
+        for x in [0.0, 0.1, 2.0, 5.9, 6.0f64] {
+            let (value, derivative) = series.value_and_derivative(x);
+            let exact = (0.7 * x).exp();
+            assert!((value / exact - 1.0).abs() < 3e-14, "{x}: {value} {exact}");
+            assert!((derivative / (0.7 * exact) - 1.0).abs() < 3e-12, "{x}: {derivative}");
+        }
+    }
+}

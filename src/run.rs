@@ -1,0 +1,343 @@
+//! The main job: a scene from the first cycle to its end, with snapshots, checkpoints and a summary.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+
+use crate::closed_form::LimitingShape;
+use crate::contact::InitialContact;
+use crate::error::{Error, Result};
+use crate::loading;
+use crate::model::Model;
+use crate::scene::{Output, Scene, Stepper as StepperChoice};
+use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
+use crate::snapshot::{Checkpoint, LimitCurves, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
+use crate::stepper::{CycleJump, EveryCycle, Implicit, Stepper};
+
+/// Part of the run at which the first of geometrically spread snapshots is taken.
+const FIRST_SNAPSHOT: f64 = 1e-4;
+
+/// Dimensionless times between which snapshots are spread where the end is not known beforehand.
+const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
+
+/// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
+const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
+
+/// What a finished or interrupted run comes to; SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunResult {
+    /// The result file.
+    pub output: PathBuf,
+    /// Why the run stopped.
+    pub stop_reason: StopReason,
+    /// The last snapshot, or the state of the interruption.
+    pub last: Snapshot,
+    /// What a restart would need.
+    pub checkpoint: Checkpoint,
+    /// The limiting shape.
+    pub limit: LimitingShape,
+    /// Limiting wear depth at the nodes, m.
+    pub limit_wear_depth: Vec<f64>,
+}
+
+impl RunResult {
+    /// Largest distance of the profile from the limit over all nodes, m: `sup |f - f∞|`.
+    pub fn limit_distance(&self) -> f64 {
+        let pairs = self.last.wear_depth.iter().zip(&self.limit_wear_depth);
+        pairs.map(|(worn, limit)| (worn - limit).abs()).fold(0.0, f64::max)
+    }
+}
+
+/// A run that is ready to go.
+pub struct Run {
+    simulation: Simulation,
+    recorder: Recorder,
+    limit: LimitingShape,
+}
+
+/// What `--resume` finds.
+pub enum Resumed {
+    /// A run that goes on.
+    Run(Box<Run>),
+    /// The file of a run that reached its end.
+    Complete(Box<RunResult>),
+}
+
+impl Run {
+    /// Prepares the run of a scene; computes and writes nothing yet.
+    ///
+    /// # Errors
+    /// [`Error::File`] if `output` exists and `overwrite` is not given, or cannot be written; those of the physics where the scene has
+    /// no partial slip or needs more memory than there is.
+    pub fn new(scene: &Scene, output: &Path, overwrite: bool) -> Result<Self> {
+        let parts = Parts::new(scene)?;
+        let simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
+        let header = RunHeader {
+            title: scene.title().map(str::to_owned),
+            scene: scene.text().to_owned(),
+            radius: simulation.model().radii(),
+            limit: Some(limit_curves(simulation.model(), &parts.limit)),
+        };
+        let writer = RunWriter::create(output, header, overwrite)?;
+        Ok(Self { simulation, recorder: Recorder::new(scene, writer, 0.0)?, limit: parts.limit })
+    }
+
+    /// Prepares a run that goes on from the last checkpoint in its file.
+    ///
+    /// # Errors
+    /// [`Error::File`] if the file is none of a run, or holds no checkpoint that fits its scene.
+    pub fn resume(path: &Path) -> Result<Resumed> {
+        let file = RunFile::open(path)?;
+        let unusable = |why: &str| Error::File { path: path.to_owned(), why: why.to_owned() };
+        let checkpoint = file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
+        let scene = Scene::from_toml(&file.header.scene, &format!("{} (its scene)", path.display()))?;
+        let parts = Parts::new(&scene)?;
+        if file.header.radius != parts.model.radii()
+            || checkpoint.state.compression.len() + 1 != parts.model.springs()
+            || !checkpoint.state.compression.iter().chain([&checkpoint.state.edge]).all(|value| value.is_finite())
+        {
+            return Err(unusable("its checkpoint does not fit its scene; run the scene again with this version"));
+        }
+        if file.complete {
+            let last = file.snapshots.last().cloned().ok_or_else(|| unusable("holds no snapshot; run its scene again"))?;
+            let limit_wear_depth = limit_curves(&parts.model, &parts.limit).wear_depth;
+            return Ok(Resumed::Complete(Box::new(RunResult {
+                output: path.to_owned(),
+                stop_reason: file.stop_reason,
+                last,
+                checkpoint,
+                limit: parts.limit,
+                limit_wear_depth,
+            })));
+        }
+        let Checkpoint { state, progress, wall_seconds, .. } = checkpoint;
+        let simulation =
+            Simulation::resume(parts.model, parts.stepper, parts.tolerance, parts.plan, state, progress);
+        let recorder = Recorder::new(&scene, file.into_writer(path)?, wall_seconds)?;
+        Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit: parts.limit })))
+    }
+
+    /// The simulation, at its start or where it goes on.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// Runs to the end, or to a checkpoint when SIGTERM, SIGINT or SIGUSR1 arrives, and writes the result file.
+    ///
+    /// # Errors
+    /// Those of the simulation, after what was reached is written; [`Error::File`] if it cannot be.
+    pub fn execute(self, progress: Option<&mut dyn Observer>) -> Result<RunResult> {
+        let Self { mut simulation, mut recorder, limit } = self;
+        let mut observers: Vec<&mut dyn Observer> = vec![&mut recorder];
+        observers.extend(progress);
+        let outcome = simulation.run(&mut observers);
+        let stop_reason = match outcome {
+            Ok(Outcome::End) => StopReason::End,
+            Ok(Outcome::Rate) => StopReason::Rate,
+            Ok(Outcome::WornOut) => StopReason::WornOut,
+            Ok(Outcome::Interrupted) | Err(_) => StopReason::Interrupted,
+        };
+        let complete = stop_reason != StopReason::Interrupted;
+        let checkpoint = recorder.checkpoint(&simulation);
+        recorder.writer.save(&checkpoint, stop_reason, complete)?;
+        outcome?;
+        let limit_wear_depth = limit_curves(simulation.model(), &limit).wear_depth;
+        let last = snapshot(&simulation);
+        Ok(RunResult { output: recorder.writer.path().to_owned(), stop_reason, last, checkpoint, limit, limit_wear_depth })
+    }
+}
+
+/// Everything that follows from a scene alone.
+struct Parts {
+    model: Model,
+    stepper: Box<dyn Stepper + Send>,
+    tolerance: f64,
+    plan: Plan,
+    limit: LimitingShape,
+}
+
+impl Parts {
+    fn new(scene: &Scene) -> Result<Self> {
+        let contact =
+            InitialContact::new(scene.indenter(), scene.half_space(), scene.friction(), scene.wear(), scene.loading())?;
+        let numerics = scene.numerics();
+        let springs = numerics.springs.unwrap_or_else(|| springs_for(numerics.accuracy));
+        check_memory(springs)?;
+        let model = Model::new(&contact, springs)?;
+        let limit = contact.limiting_shape()?;
+        let tolerance = numerics.tolerance.unwrap_or_else(|| tolerance_for(numerics.accuracy));
+        let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
+            StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
+            StepperChoice::CycleJump => Box::<CycleJump>::default(),
+            StepperChoice::Implicit => Box::new(Implicit::new(tolerance)),
+        };
+        let whole = numerics.stepper == StepperChoice::EveryCycle;
+        let plan = plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole);
+        Ok(Self { model, stepper, tolerance, plan, limit })
+    }
+}
+
+/// Springs that keep the error of the worn volume below `accuracy` in the scenes measured (docs/numerics.md).
+fn springs_for(accuracy: f64) -> usize {
+    (90.0 * (1e-4 / accuracy).powf(0.36)).ceil().max(16.0) as usize
+}
+
+/// Tolerance of one step that keeps the accumulated error of the time stepping below `accuracy`.
+fn tolerance_for(accuracy: f64) -> f64 {
+    0.3 * accuracy
+}
+
+/// Refuses springs for which the dense operators do not fit into the memory that is free.
+fn check_memory(springs: usize) -> Result<()> {
+    let needed = BYTES_PER_PAIR * (springs as f64).powi(2);
+    let Some(free) = free_memory() else { return Ok(()) };
+    if needed < free {
+        return Ok(());
+    }
+    Err(Error::Inconsistent {
+        what: "numerics.springs",
+        why: format!(
+            "{springs} springs need {:.1} GB for their operators and {:.1} GB are free; ask for at most {}",
+            needed * 1e-9,
+            free * 1e-9,
+            (free / BYTES_PER_PAIR).sqrt().floor()
+        ),
+    })
+}
+
+/// Free memory, bytes, where the system tells.
+fn free_memory() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok().map(|kilobytes| 1024.0 * kilobytes)
+}
+
+/// The plan of a scene; whole cycles where the stepper knows no others.
+fn plan(duration: loading::Duration, output: &Output, tau_per_cycle: f64, whole: bool) -> Plan {
+    let round = |cycles: f64| if whole { cycles.round().max(1.0) } else { cycles };
+    let end = match duration {
+        loading::Duration::Cycles(cycles) => End::Cycles(round(cycles)),
+        loading::Duration::Tau(tau) => End::Cycles(round(tau / tau_per_cycle)),
+        loading::Duration::UntilRate(fraction) => End::Rate(fraction),
+    };
+    let mut outputs: Vec<f64> = match (output, end) {
+        (Output::Snapshots(count), End::Cycles(last)) => geometric(FIRST_SNAPSHOT * last, last, *count),
+        (Output::Snapshots(count), End::Rate(_)) => {
+            let [first, last] = UNKNOWN_END.map(|tau| tau / tau_per_cycle);
+            geometric(first, last, *count)
+        }
+        (Output::AtCycles(cycles), _) => cycles.clone(),
+        (Output::AtTau(taus), _) => taus.iter().map(|tau| tau / tau_per_cycle).collect(),
+    };
+    if let End::Cycles(last) = end {
+        outputs.retain(|cycles| *cycles < last);
+        outputs.push(last);
+    }
+    let mut outputs: Vec<f64> = outputs.into_iter().filter(|cycles| *cycles > 0.0).map(round).collect();
+    outputs.dedup();
+    Plan { outputs, end }
+}
+
+/// `count` numbers of cycles in constant ratio, the last of them `last`.
+fn geometric(first: f64, last: f64, count: usize) -> Vec<f64> {
+    let ratio = (last / first).ln() / (count.max(2) - 1) as f64;
+    (0..count).map(|i| last * (-ratio * (count - 1 - i) as f64).exp()).collect()
+}
+
+fn limit_curves(model: &Model, limit: &LimitingShape) -> LimitCurves {
+    let wear_depth: Vec<f64> = model.offsets().into_iter().map(|offset| limit.wear_depth_at_offset(offset)).collect();
+    let indenter = model.contact().indenter();
+    let profile = model.radii().iter().zip(&wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect();
+    LimitCurves { profile, wear_depth }
+}
+
+/// The contact as it is now.
+fn snapshot(simulation: &Simulation) -> Snapshot {
+    let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
+    let contact = model.contact();
+    let radial = model.radial_fields(fields);
+    let unworn = state.cycles == 0.0;
+    let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
+    let profile = model.radii().iter().zip(&wear_depth).map(|(r, w)| contact.indenter().profile(*r) + w).collect();
+    Snapshot {
+        cycles: state.cycles,
+        tau: state.cycles * contact.tau_per_cycle(),
+        wear_volume: if unworn { 0.0 } else { model.wear_volume(fields) },
+        contact_radius: model.contact_radius(state),
+        stick_radius: contact.stick_radius().unwrap_or(0.0),
+        indentation: contact.indentation(),
+        normal_force: model.normal_force(fields),
+        dissipated_energy: state.dissipated_energy,
+        profile,
+        wear_depth,
+        pressure: radial.pressure,
+        slip: radial.slip,
+    }
+}
+
+/// Takes snapshots and checkpoints, and listens to signals.
+struct Recorder {
+    writer: RunWriter,
+    interval: Duration,
+    started: Instant,
+    saved: Instant,
+    wall_seconds_before: f64,
+    stop: Arc<AtomicBool>,
+}
+
+impl Recorder {
+    fn new(scene: &Scene, writer: RunWriter, wall_seconds_before: f64) -> Result<Self> {
+        let stop = Arc::new(AtomicBool::new(false));
+        for signal in [SIGTERM, SIGINT, SIGUSR1] {
+            signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(|error| Error::Inconsistent {
+                what: "signal handler",
+                why: format!("signal {signal}: {error}"),
+            })?;
+        }
+        let interval = Duration::from_secs_f64(scene.numerics().checkpoint_interval);
+        let now = Instant::now();
+        Ok(Self { writer, interval, started: now, saved: now, wall_seconds_before, stop })
+    }
+
+    fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
+        Checkpoint {
+            state: simulation.state().clone(),
+            progress: *simulation.progress(),
+            wall_seconds: self.wall_seconds_before + self.started.elapsed().as_secs_f64(),
+            error_estimate: error_estimate(simulation),
+        }
+    }
+}
+
+impl Observer for Recorder {
+    fn output(&mut self, simulation: &Simulation) -> Result<()> {
+        self.writer.push(snapshot(simulation));
+        Ok(())
+    }
+
+    fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Ok(Flow::Stop);
+        }
+        if self.saved.elapsed() >= self.interval {
+            self.writer.save(&self.checkpoint(simulation), StopReason::Interrupted, false)?;
+            self.saved = Instant::now();
+        }
+        Ok(Flow::Continue)
+    }
+}
+
+/// Estimate of the error in the worn volume, relative to the limit's, from a balance that holds for the continuous contact: under
+/// Archard's law and Coulomb's friction the energy dissipated on the springs is `μ_f/k_w` times the volume worn off the surface.
+fn error_estimate(simulation: &Simulation) -> Option<f64> {
+    let (model, state) = (simulation.model(), simulation.state());
+    let contact = model.contact();
+    let by_energy = state.dissipated_energy * contact.wear().coefficient / contact.friction().coefficient;
+    let limit = std::f64::consts::PI
+        * model.unworn().limit_edge()
+        * crate::linear::dot(model.operators().depth_sum(), &model.limit_depth());
+    Some((by_energy - model.wear_volume(simulation.fields())).abs() / limit)
+}

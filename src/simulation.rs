@@ -1,0 +1,306 @@
+//! The loop over time: which step to try, where to land, when to stop.
+
+use crate::error::{Error, Result};
+use crate::model::{Fields, Model, State};
+use crate::stepper::Stepper;
+
+/// Safety factor and bounds of the choice of steps.
+const SAFETY: f64 = 0.9;
+const SMALLEST_FACTOR: f64 = 0.2;
+const LARGEST_FACTOR: f64 = 2.5;
+
+/// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
+const SMALLEST_GROWTH: f64 = 1e-13;
+
+/// Growth of the slip in the first step tried.
+const FIRST_GROWTH: f64 = 1e-3;
+
+/// Compression, relative to `q_c`, below which no pressure is left but round-off.
+const WORN_OUT: f64 = 1e-13;
+
+/// Loss of wear depth, relative to the limit's largest, that is round-off and not a step in the wrong direction.
+const REGAIN: f64 = 1e-7;
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum End {
+    /// After this many cycles.
+    Cycles(f64),
+    /// When the worn volume per cycle has fallen to this fraction of its first value.
+    Rate(f64),
+}
+
+/// When to take snapshots and when to stop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Cycles at which steps land, increasing, positive, none beyond the end.
+    pub outputs: Vec<f64>,
+    /// When to stop.
+    pub end: End,
+}
+
+/// How a simulation ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The last cycle was reached.
+    End,
+    /// The rate fell to the fraction asked for.
+    Rate,
+    /// No pressure is left, so that the rate asked for is below round-off.
+    WornOut,
+    /// An observer asked to stop.
+    Interrupted,
+}
+
+/// What an observer wants after a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flow {
+    /// Go on.
+    Continue,
+    /// Stop here; the simulation can be resumed.
+    Stop,
+}
+
+/// Whoever looks on: snapshots, checkpoints, a progress bar.
+pub trait Observer {
+    /// Called where the plan asks for output, the start and the end included.
+    ///
+    /// # Errors
+    /// Ends the simulation.
+    fn output(&mut self, simulation: &Simulation) -> Result<()> {
+        let _ = simulation;
+        Ok(())
+    }
+
+    /// Called after every accepted step.
+    ///
+    /// # Errors
+    /// Ends the simulation.
+    fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
+        let _ = simulation;
+        Ok(Flow::Continue)
+    }
+}
+
+/// What besides the state a restart needs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Progress {
+    /// Step to be tried next, cycles.
+    pub next_step: f64,
+    /// Worn volume per cycle at the start, m³.
+    pub first_rate: f64,
+    /// Index of the next entry of the plan's outputs.
+    pub next_output: u64,
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps rejected.
+    pub rejected_steps: u64,
+    /// Evaluations of pressure, slip and wear.
+    pub rate_evaluations: u64,
+}
+
+/// A model on its way through time.
+pub struct Simulation {
+    model: Model,
+    stepper: Box<dyn Stepper + Send>,
+    tolerance: f64,
+    plan: Plan,
+    state: State,
+    fields: Fields,
+    wear_depth: Vec<f64>,
+    progress: Progress,
+}
+
+impl Simulation {
+    /// Starts from the unworn contact.
+    ///
+    /// # Arguments
+    /// * `tolerance` -- largest error of one step in the wear depth, relative to the largest depth of the limit
+    ///
+    /// # Errors
+    /// Those of [`Model::initial_state`].
+    pub fn new(model: Model, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Result<Self> {
+        let state = model.initial_state()?;
+        let fields = model.fields(&state);
+        let first_rate = model.wear_rate(&fields, &state.compression);
+        let largest = fields.pressure.iter().fold(0.0, |m: f64, p| m.max(*p));
+        let next_step = FIRST_GROWTH / (model.wear_factor() * largest);
+        let progress = Progress { next_step, first_rate, rate_evaluations: 1, ..Progress::default() };
+        Ok(Self::resume(model, stepper, tolerance, plan, state, progress))
+    }
+
+    /// Goes on from a state, as if there had been no interruption.
+    pub fn resume(
+        model: Model,
+        stepper: Box<dyn Stepper + Send>,
+        tolerance: f64,
+        plan: Plan,
+        state: State,
+        progress: Progress,
+    ) -> Self {
+        let fields = model.fields(&state);
+        let wear_depth = model.radial_fields(&fields).wear_depth;
+        Self { model, stepper, tolerance, plan, state, fields, wear_depth, progress }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The state reached.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The fields of the state reached.
+    pub fn fields(&self) -> &Fields {
+        &self.fields
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What besides the state a restart needs.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    /// Worn volume per cycle, m³.
+    pub fn wear_rate(&self) -> f64 {
+        self.model.wear_rate(&self.fields, &self.state.compression)
+    }
+
+    /// Steps to the end of the plan or until an observer stops it. The start is an output too, unless steps were made before.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] if the step would have to become smaller than round-off allows; those of stepper and observers.
+    pub fn run(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Outcome> {
+        if self.progress.steps == 0 {
+            self.tell(observers)?;
+        }
+        loop {
+            if let Some(outcome) = self.finished() {
+                return Ok(outcome);
+            }
+            let landed = self.advance()?;
+            let ended = self.finished().is_some();
+            if landed || ended {
+                self.tell(observers)?;
+            }
+            let mut flow = Flow::Continue;
+            for observer in observers.iter_mut() {
+                if observer.step(self)? == Flow::Stop {
+                    flow = Flow::Stop;
+                }
+            }
+            if flow == Flow::Stop && !ended {
+                return Ok(Outcome::Interrupted);
+            }
+        }
+    }
+
+    fn tell(&self, observers: &mut [&mut dyn Observer]) -> Result<()> {
+        observers.iter_mut().try_for_each(|observer| observer.output(self))
+    }
+
+    fn finished(&self) -> Option<Outcome> {
+        match self.plan.end {
+            End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
+            End::Rate(fraction) => {
+                let spent = self.wear_rate() <= fraction * self.progress.first_rate;
+                let limit = WORN_OUT * self.model.contact().slip_compression();
+                let worn_out = self.state.compression.iter().all(|q| *q <= limit);
+                if worn_out {
+                    Some(Outcome::WornOut)
+                } else {
+                    spent.then_some(Outcome::Rate)
+                }
+            }
+        }
+    }
+
+    /// Makes one step, of which the length may have to be found; whether it landed on an output.
+    fn advance(&mut self) -> Result<bool> {
+        loop {
+            let (step, target) = self.choose_step()?;
+            let trial = self.stepper.step(&self.model, &self.state, step)?;
+            self.progress.rate_evaluations += trial.rate_evaluations;
+            let error = trial.error / self.tolerance;
+            let accepted = match trial.state {
+                Some(state) if error <= 1.0 => self.accept(state, target),
+                _ => false,
+            };
+            if self.stepper.prescribed_step().is_some() {
+                if !accepted {
+                    return Err(self.stuck("the prescribed step makes wear depth decrease or leaves no contact", step));
+                }
+            } else {
+                self.adapt(step, error, accepted);
+            }
+            if accepted {
+                let landed = target.is_some();
+                self.progress.steps += 1;
+                self.progress.next_output += u64::from(landed);
+                return Ok(landed);
+            }
+            self.progress.rejected_steps += 1;
+        }
+    }
+
+    /// The step to try, and the output on which it lands if it does.
+    fn choose_step(&self) -> Result<(f64, Option<f64>)> {
+        let target = self.plan.outputs.get(self.progress.next_output as usize).copied();
+        if let Some(step) = self.stepper.prescribed_step() {
+            return Ok((step, target.filter(|t| self.state.cycles + 1.5 * step > *t)));
+        }
+        let step = self.progress.next_step;
+        let largest = self.fields.pressure.iter().fold(0.0, |m: f64, p| m.max(*p));
+        if !(step * self.model.wear_factor() * largest > SMALLEST_GROWTH || step > 1e-6 * self.state.cycles) {
+            return Err(self.stuck("the step had to become too small", step));
+        }
+        let Some(target) = target else { return Ok((step, None)) };
+        let remaining = target - self.state.cycles;
+        if step >= remaining * (1.0 - 1e-9) {
+            Ok((remaining, Some(target)))
+        } else {
+            Ok((if 2.0 * step > remaining { 0.5 * remaining } else { step }, None))
+        }
+    }
+
+    /// Takes a state over if it is one that wear can lead to.
+    fn accept(&mut self, mut state: State, target: Option<f64>) -> bool {
+        let fields = self.model.fields(&state);
+        let wear_depth = self.model.radial_fields(&fields).wear_depth;
+        let allowed = REGAIN * self.model.depth_scale();
+        let grew = wear_depth.iter().zip(&self.wear_depth).all(|(now, before)| *now >= before - allowed);
+        if !(grew && fields.are_physical()) {
+            return false;
+        }
+        if let Some(target) = target {
+            state.cycles = target;
+        }
+        (self.state, self.fields, self.wear_depth) = (state, fields, wear_depth);
+        true
+    }
+
+    /// Chooses the next step from the error of this one over the tolerance.
+    fn adapt(&mut self, step: f64, error: f64, accepted: bool) {
+        let order = self.stepper.estimate_order();
+        let best = if error.is_finite() { step * SAFETY * error.max(1e-12).powf(-1.0 / order) } else { 0.25 * step };
+        self.progress.next_step = if accepted {
+            best.clamp(SMALLEST_FACTOR * step, LARGEST_FACTOR * step.max(self.progress.next_step))
+        } else {
+            best.clamp(SMALLEST_FACTOR * step, 0.5 * step)
+        };
+    }
+
+    fn stuck(&self, why: &str, step: f64) -> Error {
+        Error::NotConverged {
+            what: "time stepping",
+            why: format!("{why} ({step:e} cycles at cycle {}, {} steps)", self.state.cycles, self.progress.steps),
+        }
+    }
+}

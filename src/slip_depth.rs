@@ -1,0 +1,161 @@
+//! Slip of the unworn contact outside the zone that sticks.
+//!
+//! Spring `x` slips by the amplitude `(μ_f/M) (q_c - q)` where its compression `q` is below `q_c = M U/μ_f` [S, Eq. (11)], and Eq. (20)
+//! carries that to the surface: `s(r) = (μ_f/M) S(r)` with the slip depth `S = F(q_c - q)`, where
+//!
+//! ```text
+//! (F q)(r) = (2/π) cos(kπ/2) ∫_c^r x^k q(x) (r² - x²)^(-(1+k)/2) dx
+//! ```
+//!
+//! As wear changes nothing inside `c`, the depth worn away is the growth of the slip depth, `w = S - S_0`.
+
+use crate::chebyshev::Chebyshev;
+use crate::error::{Error, Result};
+use crate::indenter::EquivalentProfile;
+use crate::quadrature::Rule;
+use crate::roots::bracketed;
+
+/// Nodes of the Gauss-Jacobi rule for `F`; in the variable used, the integrand is entire for a power law but for the kernel's
+/// own singularity at `ℓ v = 2πi`.
+const NODES: usize = 40;
+
+/// How far beyond the limiting contact edge the slip is tabulated, as a factor of `Z`.
+const MARGIN: f64 = 1.1;
+
+/// Slip depth of the unworn contact over the annulus outside the stick zone, as a function of `z = r² - c²`.
+#[derive(Debug, Clone)]
+pub struct UnwornSlip {
+    stick_radius_squared: f64,
+    slip_compression: f64,
+    mu: f64,
+    /// `(F 1)/ℓ^μ` over `ℓ = ln(r²/c²)`, with `μ = (1-k)/2`.
+    uniform: Chebyshev,
+    /// `(F(q_c - q_0))/ℓ^(1+μ)`.
+    slip: Chebyshev,
+    limit_edge: f64,
+}
+
+/// Slip depth and what belongs to it at one radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnwornValues {
+    /// `ln(r²/c²)`.
+    pub logarithm: f64,
+    /// `F q_c`, m: the slip depth where no pressure is left; that of the limit.
+    pub limit_slip: f64,
+    /// Derivative of `F q_c` by `z`, 1/m.
+    pub limit_slip_derivative: f64,
+    /// `S_0 = F(q_c - q_0)`, m: the slip depth of the unworn contact.
+    pub slip: f64,
+    /// Derivative of `ln S_0` by `z`, 1/m².
+    pub log_slip_derivative: f64,
+}
+
+impl UnwornSlip {
+    /// Tabulates the slip depth by the quadrature of `F`.
+    ///
+    /// # Arguments
+    /// * `profile` -- the unworn equivalent profile
+    /// * `stick_radius` -- `c`, m
+    /// * `slip_compression` -- `q_c`, m
+    /// * `initial_edge` -- `a0² - c²`, m²
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] if no contact edge is found at which wear ends; [`Error::Inconsistent`] if a sphere would have to wear
+    /// beyond its equator.
+    pub fn new(profile: &EquivalentProfile, stick_radius: f64, slip_compression: f64, initial_edge: f64) -> Result<Self> {
+        let mu = 0.5 * (1.0 - profile.grading());
+        let transform = Transform::new(profile, stick_radius)?;
+        let squared = stick_radius * stick_radius;
+        let depth_left = |l: f64| slip_compression * transform.uniform(l) / l - transform.slip(l);
+        let low = (initial_edge / squared).ln_1p();
+        let mut high = low;
+        while depth_left(high) > 0.0 {
+            high *= 1.5;
+            if !(high < 700.0 && squared * high.exp() < profile.largest_radius().powi(2)) {
+                return Err(Error::Inconsistent {
+                    what: "limiting contact radius",
+                    why: format!("none below {} m; reduce the indentation or the amplitude", stick_radius * (0.5 * high).exp()),
+                });
+            }
+        }
+        let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
+        let limit_edge = squared * logarithm.exp_m1();
+        let end = (MARGIN * limit_edge / squared).ln_1p();
+        Ok(Self {
+            stick_radius_squared: squared,
+            slip_compression,
+            mu,
+            uniform: Chebyshev::fit(|l| transform.uniform(l), end),
+            slip: Chebyshev::fit(|l| transform.slip(l), end),
+            limit_edge,
+        })
+    }
+
+    /// `a∞² - c²`, m²: the edge at which the depth that can be worn away, `F q_0`, is zero.
+    pub fn limit_edge(&self) -> f64 {
+        self.limit_edge
+    }
+
+    /// Largest `z`, m², for which [`UnwornSlip::at`] holds.
+    pub fn largest_edge(&self) -> f64 {
+        MARGIN * self.limit_edge
+    }
+
+    /// Slip depths at `z = r² - c²`, m², in (0, [`UnwornSlip::largest_edge`]].
+    pub fn at(&self, z: f64) -> UnwornValues {
+        let logarithm = (z / self.stick_radius_squared).ln_1p();
+        let slope = 1.0 / (self.stick_radius_squared + z);
+        let power = logarithm.powf(self.mu);
+        let (uniform, uniform_slope) = self.uniform.value_and_derivative(logarithm);
+        let (slip, slip_slope) = self.slip.value_and_derivative(logarithm);
+        UnwornValues {
+            logarithm,
+            limit_slip: self.slip_compression * power * uniform,
+            limit_slip_derivative: self.slip_compression
+                * power
+                * slope
+                * (uniform_slope + self.mu / logarithm * uniform),
+            slip: logarithm * power * slip,
+            log_slip_derivative: slope * (slip_slope / slip + (1.0 + self.mu) / logarithm),
+        }
+    }
+}
+
+/// Quadrature of `F` in the variable `v` of `x² = r² e^(-ℓ v)`, `ℓ = ln(r²/c²)`.
+struct Transform<'a> {
+    profile: &'a EquivalentProfile,
+    stick_radius: f64,
+    nu: f64,
+    factor: f64,
+    rule: Rule,
+}
+
+impl<'a> Transform<'a> {
+    fn new(profile: &'a EquivalentProfile, stick_radius: f64) -> Result<Self> {
+        let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
+        let argument = std::f64::consts::PI * mu;
+        let rule = Rule::jacobi(NODES, 0.0, -nu)?;
+        Ok(Self { profile, stick_radius, nu, factor: argument.sin() / argument, rule })
+    }
+
+    /// `(F 1)/ℓ^μ`.
+    fn uniform(&self, logarithm: f64) -> f64 {
+        self.factor * self.rule.mean(|v| self.kernel(logarithm * v))
+    }
+
+    /// `(F (g_0 - g_0(c)))/ℓ^(1+μ)`.
+    fn slip(&self, logarithm: f64) -> f64 {
+        let squared = self.stick_radius * self.stick_radius;
+        let weighted = |(node, complement): (&f64, &f64)| {
+            let rise = self.profile.rise(self.stick_radius, squared * (logarithm * complement).exp_m1());
+            self.kernel(logarithm * node) * rise / logarithm
+        };
+        let terms = self.rule.nodes.iter().zip(&self.rule.complements).map(weighted);
+        self.factor * terms.zip(&self.rule.weights).map(|(term, weight)| term * weight).sum::<f64>()
+    }
+
+    /// `(expm1(y)/y)^(-ν)`.
+    fn kernel(&self, y: f64) -> f64 {
+        if y > 1e-300 { (y.exp_m1() / y).powf(-self.nu) } else { 1.0 }
+    }
+}

@@ -1,0 +1,53 @@
+//! Methods that carry a state over cycles; each in its own file behind one trait.
+
+mod cycle_jump;
+mod every_cycle;
+mod implicit;
+
+pub use cycle_jump::CycleJump;
+pub use every_cycle::EveryCycle;
+pub use implicit::Implicit;
+
+use crate::error::Result;
+use crate::model::{Model, State};
+
+/// A step that was tried; accepting it is an assignment, so a failed one changes nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trial {
+    /// The state after the step, `None` if none was found or it is none of a contact.
+    pub state: Option<State>,
+    /// Estimated error of the step in the wear depth, relative to the largest depth of the limit.
+    pub error: f64,
+    /// Evaluations of pressure, slip and wear that the trial took.
+    pub rate_evaluations: u64,
+}
+
+impl Trial {
+    /// A trial that found no state.
+    pub fn failed(rate_evaluations: u64) -> Self {
+        Self { state: None, error: f64::INFINITY, rate_evaluations }
+    }
+}
+
+/// A method of time stepping.
+pub trait Stepper {
+    /// Tries a step of `cycles` cycles from a state.
+    ///
+    /// # Errors
+    /// Only what no smaller step can cure.
+    fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial>;
+
+    /// Order of the error estimate in the step, for the choice of the next one.
+    fn estimate_order(&self) -> f64;
+
+    /// The step that is prescribed, if the method does not choose it by its error.
+    fn prescribed_step(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// Largest estimated error over the springs, of a change `log_slip` of `λ`, in wear depth over the largest depth of the limit.
+fn relative_depth_error(model: &Model, slip_depth: &[f64], log_slip: &[f64]) -> f64 {
+    let largest = slip_depth.iter().zip(log_slip).map(|(s, e)| (s * e).abs()).fold(0.0, f64::max);
+    largest / model.depth_scale()
+}

@@ -1,0 +1,236 @@
+//! Implicit steps over many cycles: L-stable, adaptive, with the analytic Jacobian.
+
+use faer::Mat;
+
+use super::{Stepper, Trial, relative_depth_error};
+use crate::error::Result;
+use crate::linear::Factors;
+use crate::model::{Fields, Model, State};
+
+/// Singly diagonally implicit Runge-Kutta method of order 3, L-stable and stiffly accurate (Alexander, SIAM J. Numer. Anal. 14:1006, 1977),
+/// with an embedded method of order 2 on its first two stages.
+///
+/// Each stage solves for the compressions and the edge at once,
+///
+/// ```text
+/// λ - λ̂ - (1 - Ẑ/Z) ξ ∂λ/∂ξ - h γ κ p = 0 on the inner springs,    w = 0 at the edge,
+/// ```
+///
+/// where `λ̂` and `Ẑ` gather the stages before; Newton's matrix is factorised once a step and serves all stages while it converges.
+#[derive(Debug)]
+pub struct Implicit {
+    newton_tolerance: f64,
+    fields: Fields,
+}
+
+/// Times of the stages.
+const TIMES: [f64; STAGES] = [GAMMA, 0.5 * (1.0 + GAMMA), 1.0];
+const GAMMA: f64 = 0.435_866_521_508_458_999_416;
+const STAGES: usize = 3;
+const MATRIX: [[f64; STAGES]; STAGES] = [
+    [GAMMA, 0.0, 0.0],
+    [0.5 * (1.0 - GAMMA), GAMMA, 0.0],
+    [
+        -0.25 * (6.0 * GAMMA * GAMMA - 16.0 * GAMMA + 1.0),
+        0.25 * (6.0 * GAMMA * GAMMA - 20.0 * GAMMA + 5.0),
+        GAMMA,
+    ],
+];
+/// Weights of order 2 on the stages at `γ` and `(1+γ)/2`: `b̂_1 = γ/(1-γ)`, `b̂_2 = (1-2γ)/(1-γ)`.
+const EMBEDDED: [f64; STAGES] = [GAMMA / (1.0 - GAMMA), (1.0 - 2.0 * GAMMA) / (1.0 - GAMMA), 0.0];
+
+/// Newton iterations before the matrix is renewed, and renewals before the step is given up.
+const ITERATIONS: usize = 8;
+const RENEWALS: usize = 2;
+
+/// Corrections, relative to `q_c` or the edge, that are round-off.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Slowest contraction of Newton's corrections that is waited for.
+const SLOWEST: f64 = 0.5;
+
+impl Implicit {
+    /// A stepper whose stages are solved well below the tolerance of the time stepping.
+    pub fn new(tolerance: f64) -> Self {
+        Self { newton_tolerance: (1e-3 * tolerance).clamp(1e-12, 1e-8), fields: Fields::default() }
+    }
+}
+
+/// Slopes of one stage.
+struct Stage {
+    log_slip: Vec<f64>,
+    edge: f64,
+    dissipation: f64,
+}
+
+/// What a stage is solved for: the values gathered so far, and the step times `γ`.
+struct Target {
+    log_slip: Vec<f64>,
+    edge: f64,
+    step: f64,
+}
+
+impl Stepper for Implicit {
+    fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
+        let mut evaluations = 1;
+        model.evaluate(state.edge, &state.compression, &mut self.fields);
+        let start = self.fields.log_slip.clone();
+        let mut at = self.predict(model, state, TIMES[0] * cycles);
+        let mut stages: Vec<Stage> = Vec::with_capacity(STAGES);
+        let mut factors = None;
+        for (index, row) in MATRIX.into_iter().enumerate() {
+            if index > 0 {
+                extrapolate(state, &mut at, TIMES[index] / TIMES[index - 1]);
+            }
+            let gathered = |from: f64, part: &dyn Fn(&Stage) -> f64| {
+                from + stages.iter().zip(row).map(|(stage, weight)| cycles * weight * part(stage)).sum::<f64>()
+            };
+            let target = Target {
+                log_slip: (0..start.len()).map(|i| gathered(start[i], &|s| s.log_slip[i])).collect(),
+                edge: gathered(state.edge, &|s| s.edge),
+                step: GAMMA * cycles,
+            };
+            if !self.solve(model, &target, &mut at, &mut factors, &mut evaluations) {
+                return Ok(Trial::failed(evaluations));
+            }
+            let slope = |(now, before): (&f64, &f64)| (now - before) / target.step;
+            stages.push(Stage {
+                log_slip: self.fields.log_slip.iter().zip(&target.log_slip).map(slope).collect(),
+                edge: (at.edge - target.edge) / target.step,
+                dissipation: model.dissipation(&self.fields, &at.compression),
+            });
+        }
+        let weights = MATRIX[STAGES - 1];
+        at.edge_rate = (at.edge - state.edge) / cycles;
+        for ((rate, now), before) in at.compression_rate.iter_mut().zip(&at.compression).zip(&state.compression) {
+            *rate = (now - before) / cycles;
+        }
+        at.cycles = state.cycles + cycles;
+        at.dissipated_energy =
+            state.dissipated_energy + stages.iter().zip(weights).map(|(s, w)| cycles * w * s.dissipation).sum::<f64>();
+        let difference = |i: usize| {
+            let parts = stages.iter().zip(weights.iter().zip(EMBEDDED));
+            parts.map(|(stage, (weight, embedded))| cycles * (weight - embedded) * stage.log_slip[i]).sum()
+        };
+        let difference: Vec<f64> = (0..start.len() - 1).map(difference).collect();
+        let error = relative_depth_error(model, &self.fields.slip_depth, &difference);
+        Ok(Trial { state: Some(at), error, rate_evaluations: evaluations })
+    }
+
+    fn estimate_order(&self) -> f64 {
+        3.0
+    }
+}
+
+impl Implicit {
+    /// The state some cycles on, at the rates of the last step, as long as it is one of a contact.
+    fn predict(&mut self, model: &Model, state: &State, cycles: f64) -> State {
+        let mut at = state.clone();
+        at.edge += cycles * at.edge_rate;
+        for (q, rate) in at.compression.iter_mut().zip(&at.compression_rate) {
+            *q += cycles * rate;
+        }
+        if at.edge > 0.0 && at.edge < model.unworn().largest_edge() {
+            model.evaluate(at.edge, &at.compression, &mut self.fields);
+            if self.fields.are_physical() {
+                return at;
+            }
+        }
+        state.clone()
+    }
+
+    /// Newton's method for one stage, from and into `at`; leaves the fields there. Whether it converged to a contact.
+    fn solve(
+        &mut self,
+        model: &Model,
+        target: &Target,
+        at: &mut State,
+        factors: &mut Option<Factors>,
+        evaluations: &mut u64,
+    ) -> bool {
+        let inner = at.compression.len();
+        let scale = model.contact().slip_compression();
+        model.evaluate(at.edge, &at.compression, &mut self.fields);
+        for _ in 0..=RENEWALS {
+            let lu = factors.get_or_insert_with(|| Factors::new(self.matrix(model, target)));
+            let mut before = f64::INFINITY;
+            for _ in 0..ITERATIONS {
+                let mut change = residual(model, target, &self.fields);
+                lu.solve(&mut change);
+                for (q, dq) in at.compression.iter_mut().zip(&change) {
+                    *q -= dq;
+                }
+                at.edge -= change[inner];
+                if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
+                    return false;
+                }
+                model.evaluate(at.edge, &at.compression, &mut self.fields);
+                *evaluations += 1;
+                if !self.fields.are_physical() {
+                    return false;
+                }
+                let largest = change[..inner].iter().fold(0.0, |m: f64, dq| m.max(dq.abs())) / scale;
+                let size = largest.max(change[inner].abs() / at.edge);
+                let left = at.compression.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
+                if size <= self.newton_tolerance * left + ROUND_OFF {
+                    return true;
+                }
+                if size > SLOWEST * before {
+                    break;
+                }
+                before = size;
+            }
+            *factors = None;
+        }
+        false
+    }
+
+    /// Newton's matrix at the current fields, columns the compressions and then the edge.
+    fn matrix(&self, model: &Model, target: &Target) -> Mat<f64> {
+        let fields = &self.fields;
+        let n = model.springs();
+        let inner = n - 1;
+        let theta = 1.0 - target.edge / fields.edge;
+        let mu = 0.5 * (1.0 - model.contact().half_space().grading());
+        let growth = target.step * model.wear_factor();
+        let per_compression =
+            growth * model.contact().half_space().normal_stiffness() / std::f64::consts::PI * fields.edge.powf(-mu);
+        let pressure = model.operators().pressure();
+        let mut matrix = Mat::from_fn(n, n, |i, j| if j < inner { -per_compression * pressure[(i, j)] } else { 0.0 });
+        model.add_log_slip_by_compression(fields, theta, &mut matrix);
+        let by_edge = model.log_slip_by_edge(fields);
+        let carried = model.along_annulus(&by_edge);
+        let along = model.along_annulus(&fields.log_slip);
+        for i in 0..inner {
+            matrix[(i, inner)] = by_edge[i] - theta * carried[i] - along[i] * target.edge / (fields.edge * fields.edge)
+                + growth * mu / fields.edge * fields.pressure[i];
+        }
+        let scale = fields.edge.powf(mu) / fields.slip_depth[inner];
+        for j in 0..inner {
+            matrix[(inner, j)] = -scale * model.elastic_depth_by_compression(fields, inner, j);
+        }
+        matrix[(inner, inner)] = by_edge[inner];
+        matrix
+    }
+}
+
+/// Continues the straight line from a state to a later one, as a first guess of Newton's method.
+fn extrapolate(from: &State, to: &mut State, factor: f64) {
+    to.edge = from.edge + (to.edge - from.edge) * factor;
+    for (q, start) in to.compression.iter_mut().zip(&from.compression) {
+        *q = start + (*q - start) * factor;
+    }
+}
+
+/// What is left of the stage's equations, shape `(springs,)`; the last is `λ` at the edge.
+fn residual(model: &Model, target: &Target, fields: &Fields) -> Vec<f64> {
+    let inner = model.springs() - 1;
+    let theta = 1.0 - target.edge / fields.edge;
+    let growth = target.step * model.wear_factor();
+    let mut left = model.along_annulus(&fields.log_slip);
+    for (i, value) in left.iter_mut().enumerate().take(inner) {
+        *value = fields.log_slip[i] - target.log_slip[i] - theta * *value - growth * fields.pressure[i];
+    }
+    left[inner] = fields.log_slip[inner];
+    left
+}
