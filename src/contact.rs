@@ -7,9 +7,7 @@ use crate::friction::Coulomb;
 use crate::half_space::HalfSpace;
 use crate::indenter::{EquivalentProfile, Indenter};
 use crate::loading::{Amplitude, Load, Loading};
-use crate::stick_slip::{
-    Regime, full_sliding_amplitude, slip_amplitude, slip_compression, stick_logarithm,
-};
+use crate::stick_slip::{Regime, full_sliding_amplitude, slip_amplitude, slip_compression, stick_logarithm};
 use crate::wear::Archard;
 
 /// The contact before any wear; every quantity is finite.
@@ -75,11 +73,12 @@ impl InitialContact {
         let profile = indenter.equivalent_profile(half_space.grading())?;
         let Press { indentation, contact_radius, normal_force } =
             Press::new(&profile, half_space.normal_stiffness(), loading.load)?;
-        representable("mean pressure, Pa", normal_force / (PI * contact_radius * contact_radius))?;
+        let mean_pressure = normal_force / (PI * contact_radius * contact_radius);
+        representable("mean pressure, Pa", mean_pressure, "loading, indenter and half_space")?;
 
         let stiffness_ratio = half_space.stiffness_ratio();
         let sliding = full_sliding_amplitude(stiffness_ratio, friction.coefficient, indentation);
-        representable("amplitude of full sliding μ_f d/M, m", sliding)?;
+        representable("amplitude of full sliding μ_f d/M, m", sliding, "friction.coulomb.coefficient")?;
         let slip = Slip::new(
             &profile,
             indentation,
@@ -90,9 +89,9 @@ impl InitialContact {
         )?;
 
         let radial = contact_radius.powf(half_space.grading() - 1.0);
-        let tau_per_cycle =
-            4.0 * (wear.coefficient * half_space.normal_stiffness()) * (radial * sliding);
-        representable("dimensionless time per cycle 4 k_w c_N a0^(k-1) μ_f d/M", tau_per_cycle)?;
+        let tau_per_cycle = 4.0 * (wear.coefficient * half_space.normal_stiffness()) * (radial * sliding);
+        let what = "dimensionless time per cycle 4 k_w c_N a0^(k-1) μ_f d/M";
+        representable(what, tau_per_cycle, "wear.archard.coefficient, half_space and loading")?;
         Ok(Self {
             indenter: *indenter,
             half_space: *half_space,
@@ -161,11 +160,7 @@ impl InitialContact {
 
     /// Tangential amplitude `μ_f d/M`, m, from which on the whole contact slides.
     pub fn amplitude_full_sliding(&self) -> f64 {
-        full_sliding_amplitude(
-            self.half_space.stiffness_ratio(),
-            self.friction.coefficient,
-            self.indentation,
-        )
+        full_sliding_amplitude(self.half_space.stiffness_ratio(), self.friction.coefficient, self.indentation)
     }
 
     /// Spring compression at the edge of stick, `q_c = M U/μ_f`, m; from `d` on every spring slips.
@@ -217,10 +212,8 @@ struct Press {
 
 impl Press {
     fn new(profile: &EquivalentProfile, normal_stiffness: f64, load: Load) -> Result<Self> {
-        let (key, value) = match load {
-            Load::Indentation(indentation) => ("loading.indentation", indentation),
-            Load::InitialForce(force) => ("loading.initial_force", force),
-        };
+        let key = load.key();
+        let (Load::Indentation(value) | Load::InitialForce(value)) = load;
         positive(key, value)?;
         let too_large = |error: Error| match error {
             Error::Inconsistent { why, .. } => Error::Inconsistent {
@@ -233,19 +226,25 @@ impl Press {
             Load::Indentation(indentation) => indentation,
             Load::InitialForce(force) => {
                 let per_stiffness = force / normal_stiffness;
-                representable("normal force per stiffness F_N/c_N, m^(2+k)", per_stiffness)?;
+                representable(
+                    "normal force per stiffness F_N/c_N, m^(2+k)",
+                    per_stiffness,
+                    "loading.initial_force and half_space",
+                )?;
                 profile.depth_for_load(per_stiffness).map_err(too_large)?
             }
         };
-        representable("indentation, m", indentation)?;
+        representable("indentation, m", indentation, key)?;
         let contact_radius = profile.radius_at(indentation).map_err(too_large)?;
-        representable("contact radius, m", contact_radius)?;
-        representable("contact area a0², m²", contact_radius * contact_radius)?;
+        representable("contact radius, m", contact_radius, "indenter and loading")?;
+        // Worn volumes are fractions of it.
+        let volume = PI * contact_radius * contact_radius * indentation;
+        representable("volume π a0² d, m³", volume, "indenter and loading")?;
         let normal_force = match load {
             Load::Indentation(_) => normal_stiffness * profile.load_integral(contact_radius),
             Load::InitialForce(force) => force,
         };
-        representable("normal force, N", normal_force)?;
+        representable("normal force, N", normal_force, "loading.indentation and half_space")?;
         Ok(Self { indentation, contact_radius, normal_force })
     }
 }
@@ -266,14 +265,15 @@ impl Slip {
         friction_coefficient: f64,
         amplitude: Amplitude,
     ) -> Result<Self> {
-        let from_displacement = |key: &'static str, value: f64, amplitude: f64| {
+        let from_displacement = |value: f64, displacement: f64| {
+            let key = amplitude.key();
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(Error::OutOfRange { name: key, value, range: "[0, inf)" });
             }
-            let compression = slip_compression(stiffness_ratio, amplitude, friction_coefficient);
+            let compression = slip_compression(stiffness_ratio, displacement, friction_coefficient);
             if value > 0.0 {
-                representable("amplitude, m", amplitude)?;
-                representable("compression at the edge of stick M U/μ_f, m", compression)?;
+                representable("amplitude, m", displacement, key)?;
+                representable("compression at the edge of stick M U/μ_f, m", compression, key)?;
             }
             let stick_logarithm = match Regime::new(indentation, compression) {
                 Regime::Stick => Some(0.0),
@@ -282,24 +282,16 @@ impl Slip {
                     Some(stick_logarithm(profile, indentation, contact_radius, compression)?)
                 }
             };
-            Ok(Self { amplitude, compression, stick_logarithm })
+            Ok(Self { amplitude: displacement, compression, stick_logarithm })
         };
         let slip = match amplitude {
-            Amplitude::Displacement(amplitude) => {
-                from_displacement("loading.amplitude", amplitude, amplitude)?
+            Amplitude::Displacement(displacement) => from_displacement(displacement, displacement)?,
+            Amplitude::Ratio(ratio) => {
+                from_displacement(ratio, ratio * (friction_coefficient * indentation))?
             }
-            Amplitude::Ratio(ratio) => from_displacement(
-                "loading.amplitude_ratio",
-                ratio,
-                ratio * (friction_coefficient * indentation),
-            )?,
             Amplitude::StickRatio(ratio) => {
                 if !(ratio > 0.0 && ratio <= 1.0) {
-                    return Err(Error::OutOfRange {
-                        name: "loading.stick_ratio",
-                        value: ratio,
-                        range: "(0, 1]",
-                    });
+                    return Err(Error::OutOfRange { name: amplitude.key(), value: ratio, range: "(0, 1]" });
                 }
                 // Zero minus: a ratio of 1 gives +0 throughout.
                 let logarithm = 0.0 - ratio.ln();
@@ -311,10 +303,13 @@ impl Slip {
         if let Some(logarithm) = slip.stick_logarithm
             && slip.compression > 0.0
         {
-            representable("stick radius, m", contact_radius * (-logarithm).exp())?;
-            representable("amplitude, m", slip.amplitude)?;
-            let offset = contact_radius * contact_radius * -(-2.0 * logarithm).exp_m1();
-            representable("slip annulus a0² - c², m²", offset)?;
+            let key = amplitude.key();
+            let share = -(-2.0 * logarithm).exp_m1();
+            representable("stick radius, m", contact_radius * (-logarithm).exp(), key)?;
+            representable("amplitude, m", slip.amplitude, key)?;
+            // The worn volume falls with the power (5-k)/2 of the annulus.
+            let least = contact_radius * contact_radius * indentation * share.powi(3);
+            representable("worn volume, m³, in order of size", least, key)?;
         }
         Ok(slip)
     }
@@ -328,13 +323,194 @@ fn positive(name: &'static str, value: f64) -> Result<()> {
 }
 
 /// Passes what a double holds with all its digits.
-fn representable(what: &'static str, value: f64) -> Result<()> {
+///
+/// `keys` are those of the scene that decide.
+fn representable(what: &'static str, value: f64, keys: &str) -> Result<()> {
     if value > 0.0 && value.is_normal() {
         return Ok(());
     }
-    let size = if value > 1.0 { "large" } else { "small" };
+    let why = match value {
+        value if value.is_nan() => "comes from numbers too large and too small",
+        value if value > 1.0 => "is too large",
+        _ => "is too small",
+    };
     Err(Error::Inconsistent {
         what,
-        why: format!("{value:e} is too {size} to compute with; check the units in the scene"),
+        why: format!("{value:e} {why} to compute with; check the value and the unit of {keys}"),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::Duration;
+
+    const FRICTION: f64 = 0.6;
+    const WEAR: f64 = 1e-14;
+
+    fn contact(
+        indenter: &Indenter,
+        grading: f64,
+        load: Load,
+        amplitude: Amplitude,
+    ) -> Result<InitialContact> {
+        InitialContact::new(
+            indenter,
+            &HalfSpace::from_stiffness(grading, 1e10, 0.7)?,
+            &Coulomb { coefficient: FRICTION },
+            &Archard { coefficient: WEAR },
+            &Loading { load, amplitude, duration: Duration::Tau(1.0) },
+        )
+    }
+
+    fn indenters() -> [Indenter; 4] {
+        [
+            Indenter::Paraboloid { radius: 0.01 },
+            Indenter::Cone { slope: 0.05 },
+            Indenter::PowerLaw { coefficient: 1e3, exponent: 4.0 },
+            Indenter::Sphere { radius: 1e-4 },
+        ]
+    }
+
+    fn close(found: f64, expected: f64, tolerance: f64, place: &str) {
+        let error = (found / expected - 1.0).abs();
+        assert!(error <= tolerance, "{place}: {found:e} instead of {expected:e}, relative error {error:e}");
+    }
+
+    #[test]
+    fn the_three_forms_of_the_amplitude_agree() {
+        let depth = Load::Indentation(1e-6);
+        for indenter in indenters() {
+            for grading in [-0.9, -0.3, 0.0, 0.5, 0.95] {
+                for gap in [0.9, 0.3, 1e-3, 1e-9] {
+                    let place = format!("{indenter:?}, k = {grading}, c/a0 = 1 - {gap}");
+                    let stick_ratio = 1.0 - gap;
+                    let given =
+                        contact(&indenter, grading, depth, Amplitude::StickRatio(stick_ratio)).unwrap();
+                    let ratio = given.amplitude() / (FRICTION * given.indentation());
+                    for other in [Amplitude::Displacement(given.amplitude()), Amplitude::Ratio(ratio)] {
+                        let other = contact(&indenter, grading, depth, other).unwrap();
+                        close(other.slip_compression(), given.slip_compression(), 1e-15, &place);
+                        let stick = [&other, &given].map(|it| it.stick_radius().unwrap());
+                        // The rounding of q_c next to d is that of g0(c) = d - q_c.
+                        let tolerance =
+                            1e-15 * given.indentation() / given.equivalent_profile().value(stick[1]);
+                        let share = stick_ratio * stick_ratio;
+                        let area_tolerance = 1e-14 + tolerance * share;
+                        close(other.slip_area_offset(), given.slip_area_offset(), area_tolerance, &place);
+                        close(stick[0], stick[1], tolerance, &place);
+                        assert_eq!(other.regime(), Regime::PartialSlip, "{place}");
+                    }
+                    let (a, c) = (given.contact_radius(), given.stick_radius().unwrap());
+                    close(given.slip_area_offset(), (a - c) * (a + c), 1e-15 / gap, &place);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn indentation_and_force_are_inverse_to_each_other() {
+        for indenter in indenters() {
+            for grading in [-0.9, -0.3, 0.0, 0.5, 0.95] {
+                for depth in [1e-9, 1e-6, 2e-5] {
+                    let amplitude = Amplitude::StickRatio(0.7);
+                    let pressed = contact(&indenter, grading, Load::Indentation(depth), amplitude).unwrap();
+                    let loaded =
+                        contact(&indenter, grading, Load::InitialForce(pressed.normal_force()), amplitude)
+                            .unwrap();
+                    let place = format!("{indenter:?}, k = {grading}, d = {depth}");
+                    close(loaded.indentation(), depth, 2e-14, &place);
+                    close(loaded.contact_radius(), pressed.contact_radius(), 2e-14, &place);
+                    assert_eq!(loaded.normal_force(), pressed.normal_force());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn time_per_cycle_of_a_homogeneous_paraboloid_is_that_by_hand() {
+        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
+        let found =
+            contact(&paraboloid, 0.0, Load::Indentation(1e-6), Amplitude::Displacement(1e-7)).unwrap();
+        // a0 = √(1e-2 · 1e-6) = 1e-4;  4 · 1e-14 · 1e10 / 1e-4 · 0.6 · 1e-6 / 0.7
+        close(found.tau_per_cycle(), 2.4e-6 / 0.7, 1e-15, "tau per cycle");
+        // 0.7 · 1e-7 / 0.6
+        close(found.slip_compression(), 7e-7 / 6.0, 1e-15, "slip compression");
+        // c² = R (d - q_c)
+        close(found.slip_area_offset(), 7e-9 / 6.0, 1e-15, "slip area");
+        // (4/3) c_N √R d^(3/2)
+        close(found.normal_force(), 4.0 / 3.0, 1e-14, "force");
+    }
+
+    #[test]
+    fn the_regimes_are_told_apart() {
+        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
+        let regime = |amplitude| contact(&paraboloid, 0.0, Load::Indentation(1e-6), amplitude).unwrap();
+        for none in [Amplitude::Displacement(0.0), Amplitude::Ratio(0.0), Amplitude::StickRatio(1.0)] {
+            let stick = regime(none);
+            assert_eq!(stick.regime(), Regime::Stick, "{none:?}");
+            assert_eq!(stick.stick_radius(), Some(stick.contact_radius()), "{none:?}");
+            for zero in [stick.amplitude(), stick.slip_compression(), stick.slip_area_offset()] {
+                assert_eq!(zero.to_bits(), 0, "{none:?}");
+            }
+        }
+        for large in [Amplitude::Displacement(1e-6), Amplitude::Ratio(1.43)] {
+            let sliding = regime(large);
+            assert_eq!(sliding.regime(), Regime::FullSliding, "{large:?}");
+            assert_eq!(sliding.stick_radius(), None, "{large:?}");
+            close(sliding.slip_area_offset(), sliding.contact_radius().powi(2), 0.0, "slip area");
+        }
+        // Next to full sliding q_c rounds to d; the stick radius is there all the same.
+        let small = regime(Amplitude::StickRatio(1e-12));
+        assert_eq!(small.slip_compression(), small.indentation());
+        assert_eq!(small.regime(), Regime::PartialSlip);
+        close(small.stick_radius().unwrap(), 1e-12 * small.contact_radius(), 1e-14, "stick radius");
+    }
+
+    #[test]
+    fn absurd_values_are_refused_by_name_and_never_give_numbers_that_are_none() {
+        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
+        let sphere = Indenter::Sphere { radius: 1e-4 };
+        let ratio = Amplitude::StickRatio(0.7);
+        let cases = [
+            (paraboloid, Load::Indentation(0.0), ratio, "loading.indentation = 0 is outside"),
+            (paraboloid, Load::Indentation(f64::NAN), ratio, "loading.indentation = NaN is outside"),
+            (paraboloid, Load::InitialForce(-1.0), ratio, "loading.initial_force = -1 is outside"),
+            (paraboloid, Load::Indentation(1e308), ratio, "volume π a0² d, m³: inf is too large"),
+            (paraboloid, Load::Indentation(1e-308), ratio, "indentation, m: 1e-308 is too small"),
+            (paraboloid, Load::InitialForce(1e-310), ratio, "unit of loading.initial_force and half_space"),
+            (sphere, Load::Indentation(1e-3), ratio, "loading.indentation: 0.001 is too large: a sphere"),
+            (sphere, Load::InitialForce(1e6), ratio, "loading.initial_force: 1000000 is too large: F_N"),
+            (paraboloid, Load::Indentation(1e-6), Amplitude::StickRatio(0.0), "loading.stick_ratio = 0 is"),
+            (
+                paraboloid,
+                Load::Indentation(1e-6),
+                Amplitude::StickRatio(1e-320),
+                "unit of loading.stick_ratio",
+            ),
+            (
+                paraboloid,
+                Load::Indentation(1e-6),
+                Amplitude::Ratio(-0.1),
+                "loading.amplitude_ratio = -0.1 is",
+            ),
+            (paraboloid, Load::Indentation(1e9), Amplitude::Ratio(1e308), "amplitude, m: inf is too large"),
+            (
+                paraboloid,
+                Load::Indentation(1e-6),
+                Amplitude::Displacement(1e-300),
+                "unit of loading.amplitude",
+            ),
+            (
+                paraboloid,
+                Load::Indentation(1e-6),
+                Amplitude::Displacement(f64::INFINITY),
+                "loading.amplitude =",
+            ),
+        ];
+        for (indenter, load, amplitude, words) in cases {
+            let found = contact(&indenter, 0.0, load, amplitude).map(drop).unwrap_err().to_string();
+            assert!(found.contains(words), "{load:?}, {amplitude:?}: {found}");
+        }
+    }
 }

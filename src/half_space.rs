@@ -161,8 +161,12 @@ impl HalfSpace {
 
 /// Stiffness ratio under elastic similarity, `M = 2/((1+k)(3+k))` [S, Eq. (12), where `ν = 1/(2+k)` is implied].
 ///
-/// # Panics
-/// Never; outside (-1, 1) the number has no meaning.
+/// Outside (-1, 1) the number has no meaning.
+///
+/// # Examples
+/// ```
+/// assert!((fretwear::half_space::similar_stiffness_ratio(0.0) - 2.0 / 3.0).abs() < 1e-15);
+/// ```
 pub fn similar_stiffness_ratio(grading: f64) -> f64 {
     2.0 / ((1.0 + grading) * (3.0 + grading))
 }

@@ -12,12 +12,13 @@ pub mod linear;
 pub mod loading;
 pub mod model;
 pub mod quadrature;
+pub mod report;
 pub mod roots;
 pub mod scene;
 pub mod snapshot;
-pub mod stepper;
 pub mod simulation;
 pub mod slip_depth;
+pub mod stepper;
 pub mod stick_slip;
 pub mod wear;
 

@@ -9,6 +9,16 @@ pub enum Load {
     InitialForce(f64),
 }
 
+impl Load {
+    /// Key of the scene that gives it.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Indentation(_) => "loading.indentation",
+            Self::InitialForce(_) => "loading.initial_force",
+        }
+    }
+}
+
 /// The amplitude of the tangential oscillation `-U..U..-U`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplitude {
@@ -18,6 +28,17 @@ pub enum Amplitude {
     Ratio(f64),
     /// Stick radius over contact radius `c/a0` before any wear, in (0, 1]; 1 is no slip.
     StickRatio(f64),
+}
+
+impl Amplitude {
+    /// Key of the scene that gives it.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Displacement(_) => "loading.amplitude",
+            Self::Ratio(_) => "loading.amplitude_ratio",
+            Self::StickRatio(_) => "loading.stick_ratio",
+        }
+    }
 }
 
 /// When a run ends.

@@ -1,1 +1,166 @@
-fn main() {}
+//! The command line: parses, calls the library, prints and exits.
+
+use std::io::{ErrorKind, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+use fretwear::report::{self, CheckReport, InfoReport, LimitReport, TableFile};
+use fretwear::scene::Scene;
+use fretwear::{Error, Result};
+
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
+75 stopped by a signal with a checkpoint written.\nResults go to stdout, everything else to stderr.";
+
+/// Fretting wear of elastically graded media, from the first cycle to the limiting shape
+#[derive(Parser)]
+#[command(version, after_help = EXIT_CODES, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Simulate the wear of a scene cycle by cycle and write snapshots to an HDF5 file
+    Run(Run),
+    /// Evaluate the limiting shape of a scene in closed form, without stepping in time
+    Limit(Limit),
+    /// Validate a scene and show what follows from it, without running anything
+    Check(Check),
+    /// Show what is in a result file and whether it is complete
+    Info(Info),
+}
+
+#[derive(Args)]
+struct Run {
+    /// The scene, a TOML file
+    #[arg(value_name = "SCENE.toml", required_unless_present = "resume", conflicts_with = "resume")]
+    scene: Option<PathBuf>,
+    /// Go on from the last checkpoint in this result file, which holds everything needed
+    #[arg(long, value_name = "FILE.h5", conflicts_with_all = ["output", "force"])]
+    resume: Option<PathBuf>,
+    /// The result file; by default the scene's name with .h5, in the current directory
+    #[arg(short, long, value_name = "FILE.h5")]
+    output: Option<PathBuf>,
+    /// Print the summary as one JSON object in SI units
+    #[arg(long)]
+    json: bool,
+    /// Show no progress and no summary
+    #[arg(long)]
+    quiet: bool,
+    /// Overwrite the result file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Args)]
+struct Limit {
+    /// The scene, a TOML file
+    #[arg(value_name = "SCENE.toml")]
+    scene: PathBuf,
+    /// Print one JSON object in SI units
+    #[arg(long)]
+    json: bool,
+    /// Write radius, initial and limiting profile and wear depth, all in m, to this file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Radii of the profile, separated by commas, in m or with a unit: 0,1e-5,"20 um"
+    #[arg(long, value_name = "R1,R2,...", allow_hyphen_values = true)]
+    at: Option<String>,
+    /// Overwrite the CSV file if it exists
+    #[arg(long, requires = "csv")]
+    force: bool,
+}
+
+#[derive(Args)]
+struct Check {
+    /// The scene, a TOML file
+    #[arg(value_name = "SCENE.toml")]
+    scene: PathBuf,
+    /// Print one JSON object in SI units
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Args)]
+struct Info {
+    /// A result file that `fretwear run` wrote
+    #[arg(value_name = "FILE.h5")]
+    file: PathBuf,
+    /// Print one JSON object in SI units
+    #[arg(long)]
+    json: bool,
+}
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Run(arguments) => run(&arguments),
+        Command::Limit(arguments) => limit(&arguments),
+        Command::Check(arguments) => check(&arguments),
+        Command::Info(arguments) => info(&arguments),
+    };
+    match outcome {
+        Ok(text) => print(&text),
+        Err(error) => {
+            complain("error", &error.to_string());
+            ExitCode::from(if matches!(error, Error::NotConverged { .. }) { 1 } else { 2 })
+        }
+    }
+}
+
+fn run(arguments: &Run) -> Result<String> {
+    let Run { scene, resume, output: _, json: _, quiet: _, force: _ } = arguments;
+    let path = scene.as_ref().or(resume.as_ref()).expect("one of the two is required").clone();
+    Err(Error::File { path, why: "time stepping is not offered by this version; use limit or check".into() })
+}
+
+fn limit(arguments: &Limit) -> Result<String> {
+    let scene = read(&arguments.scene)?;
+    let radii = arguments.at.as_deref().map(report::parse_radii).transpose()?;
+    let table = arguments.csv.as_deref().map(|path| TableFile::new(path, arguments.force)).transpose()?;
+    let report = LimitReport::new(&scene, radii.as_deref())?;
+    if let Some(table) = table {
+        table.write(&report.csv())?;
+    }
+    Ok(match (arguments.json, radii) {
+        (true, _) => report::json(&report),
+        (false, Some(_)) => report.text() + "\n" + &report.profile_text(),
+        (false, None) => report.text(),
+    })
+}
+
+fn check(arguments: &Check) -> Result<String> {
+    let report = CheckReport::new(&Scene::read(&arguments.scene)?)?;
+    report.warnings.iter().for_each(|warning| complain("warning", warning));
+    Ok(if arguments.json { report::json(&report) } else { report.text() })
+}
+
+fn info(arguments: &Info) -> Result<String> {
+    let report = InfoReport::read(&arguments.file)?;
+    Ok(if arguments.json { report::json(&report) } else { report.text() })
+}
+
+/// Reads a scene and passes its warnings on.
+fn read(path: &std::path::Path) -> Result<Scene> {
+    let scene = Scene::read(path)?;
+    scene.warnings().iter().for_each(|warning| complain("warning", warning));
+    Ok(scene)
+}
+
+fn complain(kind: &str, message: &str) {
+    // Nowhere is left to say that stderr is closed.
+    let _ = writeln!(std::io::stderr(), "{kind}: {message}");
+}
+
+/// Prints the result; a reader that has seen enough, such as `head`, is no failure.
+fn print(text: &str) -> ExitCode {
+    let mut output = std::io::stdout().lock();
+    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            complain("error", &format!("stdout: {error}"));
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::SUCCESS,
+    }
+}

@@ -13,6 +13,7 @@ pub mod layout;
 mod reader;
 mod writer;
 
+pub(crate) use atomic::AtomicFile;
 pub use reader::RunFile;
 pub use writer::RunWriter;
 

@@ -445,3 +445,14 @@ fn random_shapes_have_positive_widths_and_bounded_depths() {
     });
     outcome.unwrap();
 }
+
+#[test]
+fn a_stick_radius_however_small_is_partial_slip() {
+    // q_c = d (1 - 1e-18) rounds to d.
+    let paraboloid = Indenter::paraboloid(1.0).unwrap();
+    let shape = LimitingShape::from_stick_ratio(&paraboloid, 0.0, 1.0, 1e-9).unwrap();
+    assert_eq!(shape.slip_compression(), shape.indentation());
+    assert_eq!(shape.regime(), Regime::PartialSlip);
+    let shape = LimitingShape::from_stick_ratio(&paraboloid, 0.0, 1.0, 1.0).unwrap();
+    assert_eq!(shape.regime(), Regime::Stick);
+}

@@ -2,8 +2,8 @@
 
 use super::wear_integral::WearIntegral;
 use super::{Regime, relative_slip_width, small_amplitude_wear_volume};
-use crate::error::{Error, Result};
 use crate::contact::InitialContact;
+use crate::error::{Error, Result};
 use crate::indenter::{EquivalentProfile, Indenter};
 use crate::roots;
 use crate::stick_slip;
@@ -69,7 +69,8 @@ impl LimitingShape {
                 ),
             });
         }
-        let stick_logarithm = stick_slip::stick_logarithm(&profile, indentation, contact_radius, slip_compression)?;
+        let stick_logarithm =
+            stick_slip::stick_logarithm(&profile, indentation, contact_radius, slip_compression)?;
         Self::assemble(indenter, profile, indentation, contact_radius, slip_compression, stick_logarithm)
     }
 

@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 
-const CHOOSE: &str = "choose another output with -o";
+const CHOOSE: &str = "choose another output";
 
 /// One output file and the temporary beside it, `.NAME.PID.tmp`.
 #[derive(Debug)]
-pub(super) struct AtomicFile {
+pub(crate) struct AtomicFile {
     path: PathBuf,
     folder: PathBuf,
     prefix: OsString,
@@ -25,11 +25,11 @@ impl AtomicFile {
     ///
     /// # Errors
     /// [`Error::File`] names the path and the cure.
-    pub(super) fn new(path: &Path, overwrite: bool) -> Result<Self> {
+    pub(crate) fn new(path: &Path, overwrite: bool) -> Result<Self> {
         let refuse = |why: &str| Err(Error::File { path: path.to_owned(), why: why.to_owned() });
         let mut target = path.to_owned();
         match fs::metadata(path) {
-            Ok(found) if found.is_dir() => return refuse("is a directory; name a file in it with -o"),
+            Ok(found) if found.is_dir() => return refuse("is a directory; name a file in it"),
             Ok(found) if !found.is_file() => return refuse(&format!("is not a regular file; {CHOOSE}")),
             Ok(_) if !overwrite => {
                 return refuse(&format!("exists already; give --force to overwrite it, or {CHOOSE}"));
@@ -39,7 +39,7 @@ impl AtomicFile {
             Err(error) => return Err(failure(path, &error)),
         }
         let Some(name) = target.file_name() else {
-            return refuse("is not the name of a file; name one with -o");
+            return refuse("is not the name of a file; name one");
         };
         if target.to_str().is_none() {
             return refuse("is not valid UTF-8, which the HDF5 library needs; rename it");
@@ -58,7 +58,7 @@ impl AtomicFile {
     }
 
     /// The file.
-    pub(super) fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
@@ -66,7 +66,7 @@ impl AtomicFile {
     ///
     /// # Errors
     /// [`Error::File`] names the path and the cure; the previous content is then still there.
-    pub(super) fn write(&mut self, bytes: &[u8]) -> Result<()> {
+    pub(crate) fn write(&mut self, bytes: &[u8]) -> Result<()> {
         self.try_write(bytes).map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => Error::File {
                 path: self.path.clone(),
@@ -162,7 +162,7 @@ impl Drop for Temporary {
 }
 
 /// The error of a file operation, with what to do about it.
-pub(super) fn failure(path: &Path, error: &io::Error) -> Error {
+pub(crate) fn failure(path: &Path, error: &io::Error) -> Error {
     let cure = match error.kind() {
         ErrorKind::NotFound => "; create its directory first, or check the spelling",
         ErrorKind::NotADirectory => "; a part of the path is a file, check the spelling",

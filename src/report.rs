@@ -1,0 +1,65 @@
+//! What the commands say: tables for people, JSON and CSV for programs.
+//!
+//! Each report is data in SI with a `text`, and is turned to JSON by [`json`]. Nothing here prints.
+
+mod check;
+mod info;
+mod limit;
+mod text;
+
+pub use check::CheckReport;
+pub use info::{InfoReport, LimitDistance};
+pub use limit::{LimitReport, ProfileTable, parse_radii};
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::contact::InitialContact;
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::snapshot::AtomicFile;
+
+/// One JSON object, keys in the order of declaration; a number that is not finite is null.
+pub fn json(report: &impl Serialize) -> String {
+    serde_json::to_string_pretty(report).expect("reports have string keys and plain values only") + "\n"
+}
+
+/// The unworn contact of a scene.
+///
+/// # Errors
+/// As [`InitialContact::new`].
+pub fn contact(scene: &Scene) -> Result<InitialContact> {
+    InitialContact::new(scene.indenter(), scene.half_space(), scene.friction(), scene.wear(), scene.loading())
+}
+
+/// A table of text that is written as a whole or not at all.
+#[derive(Debug)]
+pub struct TableFile(AtomicFile);
+
+impl TableFile {
+    /// Checks that the file can be written; creates nothing.
+    ///
+    /// # Errors
+    /// [`Error::File`] if the file exists and `overwrite` is not given, or its directory is missing or cannot be written.
+    pub fn new(path: &Path, overwrite: bool) -> Result<Self> {
+        AtomicFile::new(path, overwrite).map(Self)
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// [`Error::File`] names the file and the cure.
+    pub fn write(mut self, text: &str) -> Result<()> {
+        self.0.write(text.as_bytes())
+    }
+}
+
+/// Zero without its sign.
+fn unsigned_zero(value: f64) -> f64 {
+    value + 0.0
+}
+
+fn bad_option(what: &'static str, why: String) -> Error {
+    Error::Inconsistent { what, why }
+}

@@ -1,0 +1,231 @@
+//! `fretwear check`: everything that follows from a scene without stepping in time.
+
+use serde::Serialize;
+
+use super::text::{Rows, Scale, indenter, number};
+use super::{contact, unsigned_zero};
+use crate::closed_form::LimitingShape;
+use crate::contact::InitialContact;
+use crate::error::{Error, Result};
+use crate::loading::Duration;
+use crate::scene::Scene;
+use crate::stick_slip::Regime;
+
+/// Steepest flank at the edge of contact that is not worth a word.
+const STEEP: f64 = 0.3;
+
+/// Dimensionless time of one cycle up to which the shape hardly changes within it.
+const LONG_CYCLE: f64 = 0.01;
+
+/// The quantities derived from a scene, in SI; the fields are the keys of the JSON.
+///
+/// # Examples
+/// ```
+/// # use std::path::Path;
+/// use fretwear::report::{CheckReport, json};
+/// use fretwear::scene::Scene;
+///
+/// let scene = Scene::read(Path::new("data/scenes/paraboloid.toml"))?;
+/// let report = CheckReport::new(&scene)?;
+/// assert!((report.contact_radius_initial - 8.7e-5).abs() < 1e-6);
+/// assert!(report.text().contains("regime                             partial-slip"));
+/// assert!(json(&report).contains("\"regime\": \"partial-slip\""));
+/// # Ok::<(), fretwear::Error>(())
+/// ```
+#[derive(Debug, Clone, Serialize)]
+pub struct CheckReport {
+    /// Title of the scene.
+    pub title: Option<String>,
+    /// The indenter in words.
+    pub indenter: String,
+    /// Grading `k`.
+    pub grading: f64,
+    /// `c_N`, N/m^(2+k).
+    pub normal_stiffness: f64,
+    /// `c_T`, N/m^(2+k).
+    pub tangential_stiffness: f64,
+    /// `M`.
+    pub stiffness_ratio: f64,
+    /// `μ_f`.
+    pub friction_coefficient: f64,
+    /// `k_w`, 1/Pa.
+    pub wear_coefficient: f64,
+    /// `d`, m.
+    pub indentation: f64,
+    /// `F_N` before any wear, N.
+    pub normal_force: f64,
+    /// Mean pressure before any wear, Pa.
+    pub mean_pressure: f64,
+    /// `U`, m.
+    pub amplitude: f64,
+    /// `μ_f d/M`, m.
+    pub amplitude_full_sliding: f64,
+    /// `stick`, `partial-slip` or `full-sliding`.
+    pub regime: &'static str,
+    /// `a0`, m.
+    pub contact_radius_initial: f64,
+    /// `c`, m; none under full sliding, as all that follows of the limit.
+    pub stick_radius: Option<f64>,
+    /// `c/a0`.
+    pub stick_ratio: Option<f64>,
+    /// `a∞`, m.
+    pub contact_radius_limit: Option<f64>,
+    /// `ΔV∞`, m³.
+    pub wear_volume_limit: Option<f64>,
+    /// Largest depth of the limit, m.
+    pub wear_depth_max: Option<f64>,
+    /// `F∞`, N.
+    pub normal_force_limit: Option<f64>,
+    /// Dimensionless time of one cycle.
+    pub tau_per_cycle: f64,
+    /// Cycles planned; none if the rate of wear decides.
+    pub cycles: Option<f64>,
+    /// Dimensionless time planned; none if the rate of wear decides.
+    pub tau: Option<f64>,
+    /// Fraction of the first rate of wear at which the run ends.
+    pub until_rate: Option<f64>,
+    /// What is allowed but deserves a word.
+    pub warnings: Vec<String>,
+}
+
+impl CheckReport {
+    /// Derives the quantities.
+    ///
+    /// # Errors
+    /// As [`InitialContact::new`] and [`LimitingShape::from_contact`]; [`Error::Inconsistent`] if the number of cycles overflows.
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let contact = contact(scene)?;
+        let limit = LimitingShape::from_contact(&contact)?;
+        let of_limit =
+            |value: fn(&LimitingShape) -> f64| limit.as_ref().map(|shape| unsigned_zero(value(shape)));
+        let half_space = contact.half_space();
+        let (cycles, tau, until_rate) = plan(scene.loading().duration, contact.tau_per_cycle())?;
+        let mut warnings = scene.warnings().to_vec();
+        warnings.extend(doubts(&contact, limit.as_ref()));
+        Ok(Self {
+            title: scene.title().map(str::to_owned),
+            indenter: indenter(contact.indenter()),
+            grading: half_space.grading(),
+            normal_stiffness: half_space.normal_stiffness(),
+            tangential_stiffness: half_space.stiffness_ratio() * half_space.normal_stiffness(),
+            stiffness_ratio: half_space.stiffness_ratio(),
+            friction_coefficient: contact.friction().coefficient,
+            wear_coefficient: contact.wear().coefficient,
+            indentation: contact.indentation(),
+            normal_force: contact.normal_force(),
+            mean_pressure: contact.mean_pressure(),
+            amplitude: contact.amplitude(),
+            amplitude_full_sliding: contact.amplitude_full_sliding(),
+            regime: contact.regime().name(),
+            contact_radius_initial: contact.contact_radius(),
+            stick_radius: contact.stick_radius(),
+            stick_ratio: contact.stick_logarithm().map(|logarithm| (-logarithm).exp()),
+            contact_radius_limit: of_limit(LimitingShape::contact_radius_limit),
+            wear_volume_limit: of_limit(LimitingShape::wear_volume),
+            wear_depth_max: of_limit(LimitingShape::wear_depth_max),
+            normal_force_limit: limit.as_ref().map(|shape| contact.normal_force() * shape.load_fraction()),
+            tau_per_cycle: contact.tau_per_cycle(),
+            cycles,
+            tau,
+            until_rate,
+            warnings,
+        })
+    }
+
+    /// A table for people.
+    pub fn text(&self) -> String {
+        let lengths = |value: Option<f64>| value.map(|value| Scale::LENGTH.show(value));
+        let stiffness = |value: f64| format!("{} N/m^{}", number(value), number(2.0 + self.grading));
+        let mut rows = Rows::titled(self.title.as_deref());
+        rows.row("indenter", &self.indenter);
+        rows.row("grading k", number(self.grading));
+        rows.row("normal stiffness c_N", stiffness(self.normal_stiffness));
+        rows.row("tangential stiffness c_T", stiffness(self.tangential_stiffness));
+        rows.row("stiffness ratio M", number(self.stiffness_ratio));
+        rows.row("friction coefficient", number(self.friction_coefficient));
+        rows.row("wear coefficient", format!("{} 1/Pa", number(self.wear_coefficient)));
+        rows.gap();
+        rows.row("indentation d", Scale::LENGTH.show(self.indentation));
+        rows.row("normal force F_N, unworn", Scale::FORCE.show(self.normal_force));
+        rows.row("mean pressure, unworn", Scale::PRESSURE.show(self.mean_pressure));
+        rows.row("amplitude U", Scale::LENGTH.show(self.amplitude));
+        rows.row("amplitude of full sliding", Scale::LENGTH.show(self.amplitude_full_sliding));
+        rows.row("regime", self.regime);
+        rows.row("contact radius a0, unworn", Scale::LENGTH.show(self.contact_radius_initial));
+        let stick = self.stick_radius.zip(self.stick_ratio);
+        rows.optional(
+            "stick radius c",
+            stick.map(|(radius, ratio)| format!("{} = {} a0", Scale::LENGTH.show(radius), number(ratio))),
+        );
+        rows.gap();
+        rows.optional("contact radius a∞, limit", lengths(self.contact_radius_limit));
+        rows.optional("worn volume ΔV∞, limit", self.wear_volume_limit.map(|it| Scale::VOLUME.show(it)));
+        rows.optional("largest wear depth, limit", lengths(self.wear_depth_max));
+        rows.optional("normal force, limit", self.normal_force_limit.map(|it| Scale::FORCE.show(it)));
+        rows.gap();
+        rows.row("dimensionless time per cycle", number(self.tau_per_cycle));
+        if let Some((cycles, tau)) = self.cycles.zip(self.tau) {
+            rows.row("cycles planned", number(cycles));
+            rows.row("dimensionless time planned", number(tau));
+        }
+        if let Some(rate) = self.until_rate {
+            rows.row("planned until", format!("the rate of wear is {} of its first value", number(rate)));
+        }
+        rows.finish()
+    }
+}
+
+/// Cycles, dimensionless time and rate planned.
+fn plan(duration: Duration, tau_per_cycle: f64) -> Result<(Option<f64>, Option<f64>, Option<f64>)> {
+    let finite = |key: &'static str, value: f64, other: f64, name: &str| {
+        if other.is_finite() {
+            return Ok(other);
+        }
+        let why = format!(
+            "{value:e} is too large at a dimensionless time of {tau_per_cycle:e} per cycle: {name} overflows"
+        );
+        Err(Error::Inconsistent { what: key, why })
+    };
+    Ok(match duration {
+        Duration::Cycles(cycles) => {
+            let tau = finite("loading.cycles", cycles, cycles * tau_per_cycle, "the time")?;
+            (Some(cycles), Some(tau), None)
+        }
+        Duration::Tau(tau) => {
+            let cycles = finite("loading.tau", tau, tau / tau_per_cycle, "the number of cycles")?;
+            (Some(cycles), Some(tau), None)
+        }
+        Duration::UntilRate(rate) => (None, None, Some(rate)),
+    })
+}
+
+/// Where the model leaves its ground.
+fn doubts(contact: &InitialContact, limit: Option<&LimitingShape>) -> Vec<String> {
+    let mut doubts = Vec::new();
+    match contact.regime() {
+        Regime::FullSliding => doubts.push(format!(
+            "full sliding: the amplitude {} is not below {}, so there is no stick zone and no limiting shape",
+            Scale::LENGTH.show(contact.amplitude()),
+            Scale::LENGTH.show(contact.amplitude_full_sliding()),
+        )),
+        Regime::Stick => doubts.push("no slip at this amplitude: nothing wears".into()),
+        Regime::PartialSlip => {}
+    }
+    let outermost = limit
+        .map_or(contact.contact_radius(), |shape| shape.contact_radius_limit().max(contact.contact_radius()));
+    let slope = contact.indenter().profile_derivative(outermost);
+    // Beyond the equator of a sphere the slope is not a number.
+    if slope > STEEP || slope.is_nan() {
+        doubts.push(format!(
+            "the flank rises by {} per metre at the edge of contact; the model takes slopes as small against 1",
+            number(slope)
+        ));
+    }
+    if contact.tau_per_cycle() > LONG_CYCLE {
+        doubts.push(format!(
+            "one cycle takes a dimensionless time of {}; the model takes the wear of one cycle as small",
+            number(contact.tau_per_cycle())
+        ));
+    }
+    doubts
+}
