@@ -202,11 +202,19 @@ impl<'a> Assembly<'a> {
         }
         if cell > 0 {
             let end = self.map(cell, &self.lower_end, stencil);
-            add(&mut into.pressure, cell - 1, stencil.0, -width.powf(self.nu) / self.nu, end.slopes.iter(), self.points);
+            add(
+                &mut into.pressure,
+                cell - 1,
+                stencil.0,
+                -width.powf(self.nu) / self.nu,
+                end.slopes.iter(),
+                self.points,
+            );
             for row in 1..cell {
                 let gap = (left - self.nodes[row]) / width;
                 let count = Self::legendre_nodes(gap);
-                let rule = cache[count].get_or_insert_with(|| self.map(cell, &self.legendre[count - 1], stencil));
+                let rule =
+                    cache[count].get_or_insert_with(|| self.map(cell, &self.legendre[count - 1], stencil));
                 let to_left = left - self.nodes[row];
                 let mut sum = [0.0; MOST_POINTS];
                 for (point, slope) in rule.points.iter().zip(&rule.slopes) {
@@ -235,7 +243,8 @@ impl<'a> Assembly<'a> {
             self.map(cell, &self.legendre[11], wide)
         };
         for (point, value) in depth.points.iter().zip(&depth.values) {
-            let power = if cell == 0 { width.powf(self.mu) / (1.0 + self.mu) } else { (left + point).powf(self.mu) };
+            let power =
+                if cell == 0 { width.powf(self.mu) / (1.0 + self.mu) } else { (left + point).powf(self.mu) };
             for (index, part) in (wide.0..wide.1).zip(value) {
                 into.depth_sum[index - 1] += width * power * part * self.nodes[index].powf(-self.mu);
             }

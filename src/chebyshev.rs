@@ -24,7 +24,10 @@ impl Chebyshev {
             let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
             let tail = coefficients[terms - 3..].iter().fold(0.0, |m: f64, c| m.max(c.abs()));
             if tail <= ROUND_OFF * largest || terms >= MOST_TERMS {
-                let keep = coefficients.iter().rposition(|c| c.abs() > 0.1 * ROUND_OFF * largest).map_or(1, |i| i + 1);
+                let keep = coefficients
+                    .iter()
+                    .rposition(|c| c.abs() > 0.1 * ROUND_OFF * largest)
+                    .map_or(1, |i| i + 1);
                 return Self { end, coefficients: coefficients[..keep].to_vec() };
             }
             terms *= 2;

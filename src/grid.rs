@@ -64,7 +64,8 @@ pub fn lagrange_derivative(nodes: &[f64], x: f64, values: &mut [f64]) {
             .filter(|&c| c != a)
             .map(|c| {
                 let others = (0..m).filter(|&b| b != a && b != c);
-                others.map(|b| (x - nodes[b]) / (nodes[a] - nodes[b])).product::<f64>() / (nodes[a] - nodes[c])
+                others.map(|b| (x - nodes[b]) / (nodes[a] - nodes[b])).product::<f64>()
+                    / (nodes[a] - nodes[c])
             })
             .sum();
     }

@@ -56,7 +56,14 @@ impl Factors {
         let permutation = PermRef::new_checked(&self.forward, &self.inverse, n);
         let scratch = solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq);
         let stack = &mut MemBuffer::new(scratch);
-        solve::solve_in_place(self.lu.as_ref(), self.lu.as_ref(), permutation, rhs, Par::Seq, MemStack::new(stack));
+        solve::solve_in_place(
+            self.lu.as_ref(),
+            self.lu.as_ref(),
+            permutation,
+            rhs,
+            Par::Seq,
+            MemStack::new(stack),
+        );
     }
 
     /// Replaces the right-hand side by the solution with the transposed matrix.
@@ -89,7 +96,11 @@ mod tests {
         for (transposed, system) in [(false, matrix.clone()), (true, matrix.transpose().to_owned())] {
             let mut y = [0.0; 3];
             multiply(system.as_ref(), &x, &mut y);
-            if transposed { factors.solve_transposed(&mut y) } else { factors.solve(&mut y) }
+            if transposed {
+                factors.solve_transposed(&mut y)
+            } else {
+                factors.solve(&mut y)
+            }
             assert!(y.iter().zip(x).all(|(a, b)| (a - b).abs() < 1e-14), "{transposed}: {y:?}");
         }
     }

@@ -1,16 +1,23 @@
 //! The command line: parses, calls the library, prints and exits.
 
 use std::io::{ErrorKind, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-use fretwear::report::{self, CheckReport, InfoReport, LimitReport, TableFile};
+use fretwear::progress::Progress;
+use fretwear::report::{self, CheckReport, InfoReport, LimitReport, RunReport, TableFile};
+use fretwear::run::{Resumed, RunResult};
 use fretwear::scene::Scene;
+use fretwear::simulation::Observer;
+use fretwear::snapshot::StopReason;
 use fretwear::{Error, Result};
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
 75 stopped by a signal with a checkpoint written.\nResults go to stdout, everything else to stderr.";
+
+/// Exit code of a run that a signal stopped with a checkpoint written.
+const INTERRUPTED: u8 = 75;
 
 /// Fretting wear of elastically graded media, from the first cycle to the limiting shape
 #[derive(Parser)]
@@ -96,12 +103,12 @@ struct Info {
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Run(arguments) => run(&arguments),
-        Command::Limit(arguments) => limit(&arguments),
-        Command::Check(arguments) => check(&arguments),
-        Command::Info(arguments) => info(&arguments),
+        Command::Limit(arguments) => limit(&arguments).map(done),
+        Command::Check(arguments) => check(&arguments).map(done),
+        Command::Info(arguments) => info(&arguments).map(done),
     };
     match outcome {
-        Ok(text) => print(&text),
+        Ok((text, code)) => print(&text, code),
         Err(error) => {
             complain("error", &error.to_string());
             ExitCode::from(if matches!(error, Error::NotConverged { .. }) { 1 } else { 2 })
@@ -109,10 +116,41 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Run) -> Result<String> {
-    let Run { scene, resume, output: _, json: _, quiet: _, force: _ } = arguments;
-    let path = scene.as_ref().or(resume.as_ref()).expect("one of the two is required").clone();
-    Err(Error::File { path, why: "time stepping is not offered by this version; use limit or check".into() })
+fn run(arguments: &Run) -> Result<(String, ExitCode)> {
+    let report = |result: &RunResult| {
+        let report = RunReport::new(result);
+        match (arguments.json, arguments.quiet) {
+            (true, _) => report::json(&report),
+            (false, true) => String::new(),
+            (false, false) => report.text(),
+        }
+    };
+    let run = match (&arguments.scene, &arguments.resume) {
+        (_, Some(file)) => match fretwear::run::Run::resume(file)? {
+            Resumed::Run(run) => *run,
+            Resumed::Complete(result) => {
+                complain("note", &format!("{} is complete, nothing is left to do", file.display()));
+                return Ok((report(&result), ExitCode::SUCCESS));
+            }
+        },
+        (Some(path), None) => {
+            let scene = read(path)?;
+            let output = arguments.output.clone().unwrap_or_else(|| default_output(path));
+            fretwear::run::Run::new(&scene, &output, arguments.force)?
+        }
+        (None, None) => unreachable!("clap requires one of the two"),
+    };
+    let mut progress = (!arguments.quiet && !arguments.json).then(Progress::default);
+    let result = run.execute(progress.as_mut().map(|it| it as &mut dyn Observer));
+    drop(progress);
+    let result = result?;
+    let interrupted = result.stop_reason == StopReason::Interrupted;
+    Ok((report(&result), if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS }))
+}
+
+/// The scene's name with `.h5`, in the current directory.
+fn default_output(scene: &Path) -> PathBuf {
+    Path::new(scene.file_stem().unwrap_or_default()).with_extension("h5")
 }
 
 fn limit(arguments: &Limit) -> Result<String> {
@@ -142,7 +180,7 @@ fn info(arguments: &Info) -> Result<String> {
 }
 
 /// Reads a scene and passes its warnings on.
-fn read(path: &std::path::Path) -> Result<Scene> {
+fn read(path: &Path) -> Result<Scene> {
     let scene = Scene::read(path)?;
     scene.warnings().iter().for_each(|warning| complain("warning", warning));
     Ok(scene)
@@ -154,13 +192,17 @@ fn complain(kind: &str, message: &str) {
 }
 
 /// Prints the result; a reader that has seen enough, such as `head`, is no failure.
-fn print(text: &str) -> ExitCode {
+fn print(text: &str, code: ExitCode) -> ExitCode {
     let mut output = std::io::stdout().lock();
     match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             complain("error", &format!("stdout: {error}"));
             ExitCode::FAILURE
         }
-        _ => ExitCode::SUCCESS,
+        _ => code,
     }
+}
+
+fn done(text: String) -> (String, ExitCode) {
+    (text, ExitCode::SUCCESS)
 }

@@ -71,7 +71,8 @@ pub struct Fields {
 impl Fields {
     /// Whether slip is positive at every spring and every number finite: a state may exist that is none of a contact.
     pub fn are_physical(&self) -> bool {
-        self.slip_depth.iter().all(|s| *s > 0.0 && s.is_finite()) && self.pressure.iter().all(|p| p.is_finite())
+        self.slip_depth.iter().all(|s| *s > 0.0 && s.is_finite())
+            && self.pressure.iter().all(|p| p.is_finite())
     }
 }
 
@@ -120,14 +121,22 @@ impl Model {
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
         let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
             what: "slip annulus",
-            why: format!("the contact is in the regime {:?}, and wear is stepped in partial slip only", contact.regime()),
+            why: format!(
+                "the contact is in the regime {:?}, and wear is stepped in partial slip only",
+                contact.regime()
+            ),
         })?;
         if springs < FEWEST_SPRINGS {
-            return Err(Error::OutOfRange { name: "numerics.springs", value: springs as f64, range: "[8, inf)" });
+            return Err(Error::OutOfRange {
+                name: "numerics.springs",
+                value: springs as f64,
+                range: "[8, inf)",
+            });
         }
         let profile = contact.equivalent_profile();
         let grading = profile.grading();
-        let unworn = UnwornSlip::new(profile, stick_radius, contact.slip_compression(), contact.slip_area_offset())?;
+        let unworn =
+            UnwornSlip::new(profile, stick_radius, contact.slip_compression(), contact.slip_area_offset())?;
         let stick_radius_squared = stick_radius * stick_radius;
         let stretch = (unworn.limit_edge() / stick_radius_squared).ln_1p();
         let operators = AbelOperators::new(grading, slip_annulus(springs, stretch, clustering), DEGREE)?;
@@ -135,11 +144,13 @@ impl Model {
         let profile_factors = Factors::new(operators.profile().submatrix(0, 0, inner, inner).to_owned());
         let mut edge_row: Vec<f64> = (0..inner).map(|j| operators.profile()[(inner, j)]).collect();
         profile_factors.solve_transposed(&mut edge_row);
-        let radial_unworn: Vec<_> = operators.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
+        let radial_unworn: Vec<_> =
+            operators.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
         let half_space = contact.half_space();
         let compression = contact.slip_compression();
         let stick_force = half_space.normal_stiffness()
-            * (profile.load_integral(stick_radius) + 2.0 * compression * stick_radius.powf(1.0 + grading) / (1.0 + grading));
+            * (profile.load_integral(stick_radius)
+                + 2.0 * compression * stick_radius.powf(1.0 + grading) / (1.0 + grading));
         let depth_scale = radial_unworn.iter().map(|u| u.limit_slip - u.slip).fold(0.0, f64::max);
         let wear_factor =
             4.0 * contact.wear().coefficient * contact.friction().coefficient / half_space.stiffness_ratio();
@@ -242,8 +253,10 @@ impl Model {
     /// Compressions, m, that give the inner springs the slip depth `slip(spring, unworn)` with the contact edge at `edge`.
     pub fn compression(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> Vec<f64> {
         let inner = self.springs() - 1;
-        let values: Vec<_> = (0..inner).map(|i| self.unworn.at(edge * self.operators.nodes()[i + 1])).collect();
-        let mut solution: Vec<f64> = values.iter().enumerate().map(|(i, v)| v.limit_slip - slip(i, v)).collect();
+        let values: Vec<_> =
+            (0..inner).map(|i| self.unworn.at(edge * self.operators.nodes()[i + 1])).collect();
+        let mut solution: Vec<f64> =
+            values.iter().enumerate().map(|(i, v)| v.limit_slip - slip(i, v)).collect();
         self.profile_factors.solve(&mut solution);
         let scale = edge.powf(-self.mu());
         for (q, v) in solution.iter_mut().zip(&values) {
@@ -311,7 +324,11 @@ impl Model {
         let mut change = vec![0.0; self.springs()];
         multiply(self.operators.profile().as_ref(), &moved, &mut change);
         let scale = fields.edge.powf(mu);
-        change.iter().zip(&fields.elastic_depth).map(|(c, depth)| scale * c + mu / fields.edge * depth).collect()
+        change
+            .iter()
+            .zip(&fields.elastic_depth)
+            .map(|(c, depth)| scale * c + mu / fields.edge * depth)
+            .collect()
     }
 
     /// Derivative of `λ` by the edge at constant compressions, 1/m², shape `(springs,)`.
@@ -338,8 +355,10 @@ impl Model {
         let by_edge = self.log_slip_by_edge(fields);
         let along = self.along_annulus(&fields.log_slip);
         let slip = &fields.slip_depth;
-        let mut worn: Vec<f64> = (0..inner).map(|i| -self.wear_factor * fields.pressure[i] * slip[i]).collect();
-        let mut moved: Vec<f64> = (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
+        let mut worn: Vec<f64> =
+            (0..inner).map(|i| -self.wear_factor * fields.pressure[i] * slip[i]).collect();
+        let mut moved: Vec<f64> =
+            (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
         // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.
         let edge_slope = slip[inner] * by_edge[inner];
         let edge_rate = -dot(&self.edge_row, &worn) / (dot(&self.edge_row, &moved) - edge_slope);
@@ -369,7 +388,10 @@ impl Model {
                 break;
             }
         }
-        Err(Error::NotConverged { what: "contact edge", why: format!("a² - c² = {edge:e} m² after 20 iterations") })
+        Err(Error::NotConverged {
+            what: "contact edge",
+            why: format!("a² - c² = {edge:e} m² after 20 iterations"),
+        })
     }
 
     /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
@@ -400,12 +422,16 @@ impl Model {
             .zip(self.operators.spring_sum())
             .map(|((q, u), weight)| weight * u * (slipping - q))
             .sum();
-        4.0 * friction * friction / half_space.stiffness_ratio() * half_space.normal_stiffness() * fields.edge * sum
+        4.0 * friction * friction / half_space.stiffness_ratio()
+            * half_space.normal_stiffness()
+            * fields.edge
+            * sum
     }
 
     /// Worn volume per cycle, m³: Archard's law on the dissipated energy, `k_w W/μ_f`.
     pub fn wear_rate(&self, fields: &Fields, compression: &[f64]) -> f64 {
-        self.dissipation(fields, compression) * self.contact.wear().coefficient / self.contact.friction().coefficient
+        self.dissipation(fields, compression) * self.contact.wear().coefficient
+            / self.contact.friction().coefficient
     }
 
     /// Contact radius `a`, m.
@@ -418,8 +444,10 @@ impl Model {
         let n = self.springs();
         let nodes = self.operators.nodes();
         let nu = 1.0 - self.mu();
-        let slip_per_depth = self.contact.friction().coefficient / self.contact.half_space().stiffness_ratio();
-        let eased: Vec<f64> = (0..n - 1).map(|i| fields.pressure[i] * (1.0 - nodes[i + 1]).powf(-nu)).collect();
+        let slip_per_depth =
+            self.contact.friction().coefficient / self.contact.half_space().stiffness_ratio();
+        let eased: Vec<f64> =
+            (0..n - 1).map(|i| fields.pressure[i] * (1.0 - nodes[i + 1]).powf(-nu)).collect();
         let mut radial =
             RadialFields { wear_depth: vec![0.0; n], pressure: vec![0.0; n], slip: vec![0.0; n] };
         let mut cell = 1;

@@ -5,32 +5,24 @@
 mod check;
 mod info;
 mod limit;
+mod run;
 mod text;
 
 pub use check::CheckReport;
-pub use info::{InfoReport, LimitDistance};
+pub use info::InfoReport;
 pub use limit::{LimitReport, ProfileTable, parse_radii};
+pub use run::RunReport;
 
 use std::path::Path;
 
 use serde::Serialize;
 
-use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::scene::Scene;
 use crate::snapshot::AtomicFile;
 
 /// One JSON object, keys in the order of declaration; a number that is not finite is null.
 pub fn json(report: &impl Serialize) -> String {
     serde_json::to_string_pretty(report).expect("reports have string keys and plain values only") + "\n"
-}
-
-/// The unworn contact of a scene.
-///
-/// # Errors
-/// As [`InitialContact::new`].
-pub fn contact(scene: &Scene) -> Result<InitialContact> {
-    InitialContact::new(scene.indenter(), scene.half_space(), scene.friction(), scene.wear(), scene.loading())
 }
 
 /// A table of text that is written as a whole or not at all.

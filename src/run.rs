@@ -8,13 +8,15 @@ use std::time::{Duration, Instant};
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 
 use crate::closed_form::LimitingShape;
-use crate::contact::InitialContact;
 use crate::error::{Error, Result};
+use crate::grid::Clustering;
 use crate::loading;
 use crate::model::Model;
 use crate::scene::{Output, Scene, Stepper as StepperChoice};
 use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
-use crate::snapshot::{Checkpoint, LimitCurves, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
+use crate::snapshot::{
+    Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
+};
 use crate::stepper::{CycleJump, EveryCycle, Implicit, Stepper};
 
 /// Part of the run at which the first of geometrically spread snapshots is taken.
@@ -27,7 +29,7 @@ const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
 /// What a finished or interrupted run comes to; SI.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct RunResult {
     /// The result file.
     pub output: PathBuf,
@@ -39,16 +41,8 @@ pub struct RunResult {
     pub checkpoint: Checkpoint,
     /// The limiting shape.
     pub limit: LimitingShape,
-    /// Limiting wear depth at the nodes, m.
-    pub limit_wear_depth: Vec<f64>,
-}
-
-impl RunResult {
-    /// Largest distance of the profile from the limit over all nodes, m: `sup |f - f∞|`.
-    pub fn limit_distance(&self) -> f64 {
-        let pairs = self.last.wear_depth.iter().zip(&self.limit_wear_depth);
-        pairs.map(|(worn, limit)| (worn - limit).abs()).fold(0.0, f64::max)
-    }
+    /// Distance of the last profile from it.
+    pub distance: LimitDistance,
 }
 
 /// A run that is ready to go.
@@ -92,25 +86,36 @@ impl Run {
     pub fn resume(path: &Path) -> Result<Resumed> {
         let file = RunFile::open(path)?;
         let unusable = |why: &str| Error::File { path: path.to_owned(), why: why.to_owned() };
-        let checkpoint = file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
+        let checkpoint =
+            file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
         let scene = Scene::from_toml(&file.header.scene, &format!("{} (its scene)", path.display()))?;
         let parts = Parts::new(&scene)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
-            || !checkpoint.state.compression.iter().chain([&checkpoint.state.edge]).all(|value| value.is_finite())
+            || !checkpoint
+                .state
+                .compression
+                .iter()
+                .chain([&checkpoint.state.edge])
+                .all(|value| value.is_finite())
         {
-            return Err(unusable("its checkpoint does not fit its scene; run the scene again with this version"));
+            return Err(unusable(
+                "its checkpoint does not fit its scene; run the scene again with this version",
+            ));
         }
         if file.complete {
-            let last = file.snapshots.last().cloned().ok_or_else(|| unusable("holds no snapshot; run its scene again"))?;
-            let limit_wear_depth = limit_curves(&parts.model, &parts.limit).wear_depth;
+            let last = file
+                .snapshots
+                .last()
+                .cloned()
+                .ok_or_else(|| unusable("holds no snapshot; run its scene again"))?;
             return Ok(Resumed::Complete(Box::new(RunResult {
                 output: path.to_owned(),
                 stop_reason: file.stop_reason,
+                distance: LimitDistance::new(&limit_curves(&parts.model, &parts.limit), &last),
                 last,
                 checkpoint,
                 limit: parts.limit,
-                limit_wear_depth,
             })));
         }
         let Checkpoint { state, progress, wall_seconds, .. } = checkpoint;
@@ -131,9 +136,10 @@ impl Run {
     /// Those of the simulation, after what was reached is written; [`Error::File`] if it cannot be.
     pub fn execute(self, progress: Option<&mut dyn Observer>) -> Result<RunResult> {
         let Self { mut simulation, mut recorder, limit } = self;
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut recorder];
-        observers.extend(progress);
-        let outcome = simulation.run(&mut observers);
+        let outcome = match progress {
+            Some(progress) => simulation.run(&mut [&mut recorder, progress]),
+            None => simulation.run(&mut [&mut recorder]),
+        };
         let stop_reason = match outcome {
             Ok(Outcome::End) => StopReason::End,
             Ok(Outcome::Rate) => StopReason::Rate,
@@ -144,9 +150,16 @@ impl Run {
         let checkpoint = recorder.checkpoint(&simulation);
         recorder.writer.save(&checkpoint, stop_reason, complete)?;
         outcome?;
-        let limit_wear_depth = limit_curves(simulation.model(), &limit).wear_depth;
         let last = snapshot(&simulation);
-        Ok(RunResult { output: recorder.writer.path().to_owned(), stop_reason, last, checkpoint, limit, limit_wear_depth })
+        let distance = LimitDistance::new(&limit_curves(simulation.model(), &limit), &last);
+        Ok(RunResult {
+            output: recorder.writer.path().to_owned(),
+            stop_reason,
+            last,
+            checkpoint,
+            limit,
+            distance,
+        })
     }
 }
 
@@ -161,13 +174,19 @@ struct Parts {
 
 impl Parts {
     fn new(scene: &Scene) -> Result<Self> {
-        let contact =
-            InitialContact::new(scene.indenter(), scene.half_space(), scene.friction(), scene.wear(), scene.loading())?;
+        let contact = scene.contact()?;
         let numerics = scene.numerics();
         let springs = numerics.springs.unwrap_or_else(|| springs_for(numerics.accuracy));
         check_memory(springs)?;
-        let model = Model::new(&contact, springs)?;
-        let limit = contact.limiting_shape()?;
+        let clustering = match numerics.stepper {
+            StepperChoice::Implicit => Clustering::Cubic,
+            StepperChoice::EveryCycle | StepperChoice::CycleJump => Clustering::Quadratic,
+        };
+        let model = Model::new(&contact, springs, clustering)?;
+        let limit = LimitingShape::from_contact(&contact)?.ok_or_else(|| Error::Inconsistent {
+            what: "limiting shape",
+            why: "there is none under full sliding".into(),
+        })?;
         let tolerance = numerics.tolerance.unwrap_or_else(|| tolerance_for(numerics.accuracy));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
@@ -248,9 +267,11 @@ fn geometric(first: f64, last: f64, count: usize) -> Vec<f64> {
 }
 
 fn limit_curves(model: &Model, limit: &LimitingShape) -> LimitCurves {
-    let wear_depth: Vec<f64> = model.offsets().into_iter().map(|offset| limit.wear_depth_at_offset(offset)).collect();
+    let wear_depth: Vec<f64> =
+        model.offsets().into_iter().map(|offset| limit.wear_depth_at_offset(offset)).collect();
     let indenter = model.contact().indenter();
-    let profile = model.radii().iter().zip(&wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect();
+    let profile =
+        model.radii().iter().zip(&wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect();
     LimitCurves { profile, wear_depth }
 }
 
@@ -261,7 +282,8 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
     let radial = model.radial_fields(fields);
     let unworn = state.cycles == 0.0;
     let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
-    let profile = model.radii().iter().zip(&wear_depth).map(|(r, w)| contact.indenter().profile(*r) + w).collect();
+    let profile =
+        model.radii().iter().zip(&wear_depth).map(|(r, w)| contact.indenter().profile(*r) + w).collect();
     Snapshot {
         cycles: state.cycles,
         tau: state.cycles * contact.tau_per_cycle(),

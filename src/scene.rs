@@ -32,6 +32,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::friction::Coulomb;
 use crate::half_space::HalfSpace;
@@ -216,6 +217,14 @@ impl Scene {
     /// When snapshots are taken.
     pub fn output(&self) -> &Output {
         &self.output
+    }
+
+    /// The unworn contact that the scene describes.
+    ///
+    /// # Errors
+    /// As [`InitialContact::new`].
+    pub fn contact(&self) -> Result<InitialContact> {
+        InitialContact::new(&self.indenter, &self.half_space, &self.friction, &self.wear, &self.loading)
     }
 
     /// The TOML text as it was read.

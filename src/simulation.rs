@@ -158,6 +158,11 @@ impl Simulation {
         &self.fields
     }
 
+    /// Wear depth at the radii of the output, m, shape `(springs,)`.
+    pub fn wear_depth(&self) -> &[f64] {
+        &self.wear_depth
+    }
+
     /// The plan.
     pub fn plan(&self) -> &Plan {
         &self.plan
@@ -213,11 +218,7 @@ impl Simulation {
                 let spent = self.wear_rate() <= fraction * self.progress.first_rate;
                 let limit = WORN_OUT * self.model.contact().slip_compression();
                 let worn_out = self.state.compression.iter().all(|q| *q <= limit);
-                if worn_out {
-                    Some(Outcome::WornOut)
-                } else {
-                    spent.then_some(Outcome::Rate)
-                }
+                if worn_out { Some(Outcome::WornOut) } else { spent.then_some(Outcome::Rate) }
             }
         }
     }
@@ -235,7 +236,8 @@ impl Simulation {
             };
             if self.stepper.prescribed_step().is_some() {
                 if !accepted {
-                    return Err(self.stuck("the prescribed step makes wear depth decrease or leaves no contact", step));
+                    return Err(self
+                        .stuck("the prescribed step makes wear depth decrease or leaves no contact", step));
                 }
             } else {
                 self.adapt(step, error, accepted);
@@ -289,7 +291,8 @@ impl Simulation {
     /// Chooses the next step from the error of this one over the tolerance.
     fn adapt(&mut self, step: f64, error: f64, accepted: bool) {
         let order = self.stepper.estimate_order();
-        let best = if error.is_finite() { step * SAFETY * error.max(1e-12).powf(-1.0 / order) } else { 0.25 * step };
+        let best =
+            if error.is_finite() { step * SAFETY * error.max(1e-12).powf(-1.0 / order) } else { 0.25 * step };
         self.progress.next_step = if accepted {
             best.clamp(SMALLEST_FACTOR * step, LARGEST_FACTOR * step.max(self.progress.next_step))
         } else {
@@ -300,7 +303,10 @@ impl Simulation {
     fn stuck(&self, why: &str, step: f64) -> Error {
         Error::NotConverged {
             what: "time stepping",
-            why: format!("{why} ({step:e} cycles at cycle {}, {} steps)", self.state.cycles, self.progress.steps),
+            why: format!(
+                "{why} ({step:e} cycles at cycle {}, {} steps)",
+                self.state.cycles, self.progress.steps
+            ),
         }
     }
 }

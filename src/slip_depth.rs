@@ -62,7 +62,12 @@ impl UnwornSlip {
     /// # Errors
     /// [`Error::NotConverged`] if no contact edge is found at which wear ends; [`Error::Inconsistent`] if a sphere would have to wear
     /// beyond its equator.
-    pub fn new(profile: &EquivalentProfile, stick_radius: f64, slip_compression: f64, initial_edge: f64) -> Result<Self> {
+    pub fn new(
+        profile: &EquivalentProfile,
+        stick_radius: f64,
+        slip_compression: f64,
+        initial_edge: f64,
+    ) -> Result<Self> {
         let mu = 0.5 * (1.0 - profile.grading());
         let transform = Transform::new(profile, stick_radius)?;
         let squared = stick_radius * stick_radius;
@@ -74,7 +79,10 @@ impl UnwornSlip {
             if !(high < 700.0 && squared * high.exp() < profile.largest_radius().powi(2)) {
                 return Err(Error::Inconsistent {
                     what: "limiting contact radius",
-                    why: format!("none below {} m; reduce the indentation or the amplitude", stick_radius * (0.5 * high).exp()),
+                    why: format!(
+                        "none below {} m; reduce the indentation or the amplitude",
+                        stick_radius * (0.5 * high).exp()
+                    ),
                 });
             }
         }

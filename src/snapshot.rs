@@ -17,6 +17,8 @@ pub(crate) use atomic::AtomicFile;
 pub use reader::RunFile;
 pub use writer::RunWriter;
 
+use serde::Serialize;
+
 use crate::model::State;
 use crate::simulation::Progress;
 
@@ -40,6 +42,40 @@ pub struct LimitCurves {
     pub profile: Vec<f64>,
     /// Depth worn away in the limit, m, shape `(node,)`.
     pub wear_depth: Vec<f64>,
+}
+
+/// How far a worn profile is from the limiting shape, over all nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LimitDistance {
+    /// Largest wear depth of the limit, m.
+    pub wear_depth_max: f64,
+    /// `sup |f - f∞| / d`.
+    pub distance: f64,
+    /// `sup |f - f∞|` over the limit's own largest depth; none if that is zero.
+    pub distance_relative: Option<f64>,
+}
+
+impl LimitDistance {
+    /// Distance of a snapshot from the limit on the same nodes.
+    pub fn new(limit: &LimitCurves, snapshot: &Snapshot) -> Self {
+        let wear_depth_max = largest(&limit.wear_depth);
+        // The depths, not the profiles: their difference is the same and keeps more digits.
+        let gap = limit
+            .wear_depth
+            .iter()
+            .zip(&snapshot.wear_depth)
+            .fold(0.0, |largest: f64, (limit, depth)| largest.max((limit - depth).abs()));
+        Self {
+            wear_depth_max,
+            distance: gap / snapshot.indentation,
+            distance_relative: (wear_depth_max > 0.0).then(|| gap / wear_depth_max),
+        }
+    }
+}
+
+/// Largest of some depths, at least zero.
+pub(crate) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, &value| largest.max(value))
 }
 
 /// The contact after some number of cycles.

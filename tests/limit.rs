@@ -158,7 +158,7 @@ fn the_three_scenes_give_the_closed_form_and_what_their_comments_say() {
         let number =
             |key: &str| json[key].as_f64().unwrap_or_else(|| panic!("{name}: {key} = {}", json[key]));
         let scene = Scene::read(&path).unwrap();
-        let contact = contact(&scene).unwrap();
+        let contact = scene.contact().unwrap();
         let (grading, depth) = (scene.half_space().grading(), contact.indentation());
         let shape = LimitingShape::new(scene.indenter(), grading, depth, contact.slip_compression()).unwrap();
         assert_eq!(number("contact_radius_limit"), shape.contact_radius_limit(), "{name}");

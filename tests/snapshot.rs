@@ -532,7 +532,11 @@ fn a_run_killed_at_any_moment_loses_nothing_that_was_saved() {
         let run = RunFile::open(&path).unwrap_or_else(|error| panic!("round {round}: {error}"));
         let found = run.snapshots.len();
         assert!(found == safe || found == safe + 1, "round {round}: {safe} were safe, {found} are there");
-        assert_eq!(run.checkpoint.expect("a checkpoint").progress.steps, found as u64, "of one and the same save");
+        assert_eq!(
+            run.checkpoint.expect("a checkpoint").progress.steps,
+            found as u64,
+            "of one and the same save"
+        );
         for (time, it) in run.snapshots.iter().enumerate() {
             assert_eq!(bits(it), bits(&snapshot(50, time)), "round {round}, snapshot {time}");
         }

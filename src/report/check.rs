@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::text::{Rows, Scale, indenter, number};
-use super::{contact, unsigned_zero};
+use super::unsigned_zero;
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -94,7 +94,7 @@ impl CheckReport {
     /// # Errors
     /// As [`InitialContact::new`] and [`LimitingShape::from_contact`]; [`Error::Inconsistent`] if the number of cycles overflows.
     pub fn new(scene: &Scene) -> Result<Self> {
-        let contact = contact(scene)?;
+        let contact = scene.contact()?;
         let limit = LimitingShape::from_contact(&contact)?;
         let of_limit =
             |value: fn(&LimitingShape) -> f64| limit.as_ref().map(|shape| unsigned_zero(value(shape)));

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::text::{Rows, Scale, number};
 use crate::error::Result;
-use crate::snapshot::{Checkpoint, LimitCurves, RunFile, Snapshot};
+use crate::snapshot::{Checkpoint, LimitDistance, RunFile, Snapshot, largest};
 
 /// The content of a result file in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -63,39 +63,6 @@ pub struct InfoReport {
     pub error_estimate: Option<f64>,
     /// The scene as TOML text.
     pub scene: String,
-}
-
-/// How far a worn profile is from the limiting shape, over all nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct LimitDistance {
-    /// Largest wear depth of the limit, m.
-    pub wear_depth_max: f64,
-    /// `sup |f - f∞| / d`.
-    pub distance: f64,
-    /// `sup |f - f∞|` over the limit's own largest depth; none if that is zero.
-    pub distance_relative: Option<f64>,
-}
-
-impl LimitDistance {
-    /// Distance of a snapshot from the limit on the same nodes.
-    pub fn new(limit: &LimitCurves, snapshot: &Snapshot) -> Self {
-        let wear_depth_max = largest(&limit.wear_depth);
-        // The depths, not the profiles: their difference is the same and keeps more digits.
-        let gap = limit
-            .wear_depth
-            .iter()
-            .zip(&snapshot.wear_depth)
-            .fold(0.0, |largest: f64, (limit, depth)| largest.max((limit - depth).abs()));
-        Self {
-            wear_depth_max,
-            distance: gap / snapshot.indentation,
-            distance_relative: (wear_depth_max > 0.0).then(|| gap / wear_depth_max),
-        }
-    }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest: f64, &value| largest.max(value))
 }
 
 impl InfoReport {

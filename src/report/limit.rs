@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::text::{Rows, Scale, indenter, number};
-use super::{bad_option, contact, unsigned_zero};
+use super::{bad_option, unsigned_zero};
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::Result;
@@ -101,7 +101,7 @@ impl LimitReport {
     /// As [`InitialContact::new`] and [`LimitingShape::from_contact`]; [`Error::Inconsistent`](crate::Error::Inconsistent) for a
     /// radius that is negative or lies beyond the equator of a sphere.
     pub fn new(scene: &Scene, radii: Option<&[f64]>) -> Result<Self> {
-        let contact = contact(scene)?;
+        let contact = scene.contact()?;
         let limit = LimitingShape::from_contact(&contact)?;
         let profile = match radii {
             Some(radii) => ProfileTable::at(contact.indenter(), limit.as_ref(), radii)?,

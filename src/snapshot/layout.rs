@@ -97,7 +97,11 @@ pub(super) const CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
 
 /// Scalars of the checkpoint, real.
 pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 7] = [
-    field(label("cycles", "1", "number of fretting cycles done"), |it| &it.state.cycles, |it| &mut it.state.cycles),
+    field(
+        label("cycles", "1", "number of fretting cycles done"),
+        |it| &it.state.cycles,
+        |it| &mut it.state.cycles,
+    ),
     field(
         label("dissipated_energy", "J", "energy dissipated by friction since the start"),
         |it| &it.state.dissipated_energy,

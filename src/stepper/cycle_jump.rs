@@ -39,7 +39,12 @@ impl Stepper for CycleJump {
             let dissipation = model.dissipation(&self.fields, &at.compression);
             stages.push(Stage { edge, compression, dissipation });
         }
-        let difference = advance(&State { compression: vec![0.0; at.compression.len()], ..at.clone() }, cycles, &ERROR, &stages);
+        let difference = advance(
+            &State { compression: vec![0.0; at.compression.len()], ..at.clone() },
+            cycles,
+            &ERROR,
+            &stages,
+        );
         let error = self.depth_error(model, &difference.compression);
         let Ok(edge) = model.close_edge(at.edge, &at.compression) else { return Ok(Trial::failed(4)) };
         Ok(Trial { state: Some(State { edge, ..at }), error, rate_evaluations: 5 })
@@ -53,7 +58,8 @@ impl Stepper for CycleJump {
 impl CycleJump {
     /// Wear depth that belongs to a difference of compressions, relative to the largest of the limit.
     fn depth_error(&self, model: &Model, difference: &[f64]) -> f64 {
-        let density: Vec<f64> = difference.iter().zip(&self.fields.density_factor).map(|(q, factor)| q * factor).collect();
+        let density: Vec<f64> =
+            difference.iter().zip(&self.fields.density_factor).map(|(q, factor)| q * factor).collect();
         let mut depth = vec![0.0; model.springs()];
         multiply(model.operators().profile().as_ref(), &density, &mut depth);
         let scale = self.fields.edge.powf(0.5 * (1.0 - model.contact().half_space().grading()));

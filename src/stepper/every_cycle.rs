@@ -34,10 +34,15 @@ impl Stepper for EveryCycle {
         let compression = model.compression(edge, |i, unworn| unworn.slip * shifted(edge, i).exp());
         let slipping = model.contact().slip_compression();
         if !compression.iter().all(|q| *q > -1e-9 * slipping && *q < (1.0 + 1e-9) * slipping) {
-            return Err(too_coarse(state, "the wear of this cycle presses springs beyond the limiting shape"));
+            return Err(too_coarse(
+                state,
+                "the wear of this cycle presses springs beyond the limiting shape",
+            ));
         }
-        let dissipated_energy = state.dissipated_energy + cycles * model.dissipation(fields, &state.compression);
-        let next = State { cycles: state.cycles + cycles, edge, compression, dissipated_energy, ..state.clone() };
+        let dissipated_energy =
+            state.dissipated_energy + cycles * model.dissipation(fields, &state.compression);
+        let next =
+            State { cycles: state.cycles + cycles, edge, compression, dissipated_energy, ..state.clone() };
         Ok(Trial { state: Some(next), error: 0.0, rate_evaluations: evaluations })
     }
 

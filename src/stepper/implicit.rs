@@ -83,7 +83,11 @@ impl Stepper for Implicit {
                 extrapolate(state, &mut at, TIMES[index] / TIMES[index - 1]);
             }
             let gathered = |from: f64, part: &dyn Fn(&Stage) -> f64| {
-                from + stages.iter().zip(row).map(|(stage, weight)| cycles * weight * part(stage)).sum::<f64>()
+                from + stages
+                    .iter()
+                    .zip(row)
+                    .map(|(stage, weight)| cycles * weight * part(stage))
+                    .sum::<f64>()
             };
             let target = Target {
                 log_slip: (0..start.len()).map(|i| gathered(start[i], &|s| s.log_slip[i])).collect(),
@@ -102,12 +106,14 @@ impl Stepper for Implicit {
         }
         let weights = MATRIX[STAGES - 1];
         at.edge_rate = (at.edge - state.edge) / cycles;
-        for ((rate, now), before) in at.compression_rate.iter_mut().zip(&at.compression).zip(&state.compression) {
+        for ((rate, now), before) in
+            at.compression_rate.iter_mut().zip(&at.compression).zip(&state.compression)
+        {
             *rate = (now - before) / cycles;
         }
         at.cycles = state.cycles + cycles;
-        at.dissipated_energy =
-            state.dissipated_energy + stages.iter().zip(weights).map(|(s, w)| cycles * w * s.dissipation).sum::<f64>();
+        at.dissipated_energy = state.dissipated_energy
+            + stages.iter().zip(weights).map(|(s, w)| cycles * w * s.dissipation).sum::<f64>();
         let difference = |i: usize| {
             let parts = stages.iter().zip(weights.iter().zip(EMBEDDED));
             parts.map(|(stage, (weight, embedded))| cycles * (weight - embedded) * stage.log_slip[i]).sum()
@@ -193,17 +199,19 @@ impl Implicit {
         let theta = 1.0 - target.edge / fields.edge;
         let mu = 0.5 * (1.0 - model.contact().half_space().grading());
         let growth = target.step * model.wear_factor();
-        let per_compression =
-            growth * model.contact().half_space().normal_stiffness() / std::f64::consts::PI * fields.edge.powf(-mu);
+        let per_compression = growth * model.contact().half_space().normal_stiffness() / std::f64::consts::PI
+            * fields.edge.powf(-mu);
         let pressure = model.operators().pressure();
-        let mut matrix = Mat::from_fn(n, n, |i, j| if j < inner { -per_compression * pressure[(i, j)] } else { 0.0 });
+        let mut matrix =
+            Mat::from_fn(n, n, |i, j| if j < inner { -per_compression * pressure[(i, j)] } else { 0.0 });
         model.add_log_slip_by_compression(fields, theta, &mut matrix);
         let by_edge = model.log_slip_by_edge(fields);
         let carried = model.along_annulus(&by_edge);
         let along = model.along_annulus(&fields.log_slip);
         for i in 0..inner {
-            matrix[(i, inner)] = by_edge[i] - theta * carried[i] - along[i] * target.edge / (fields.edge * fields.edge)
-                + growth * mu / fields.edge * fields.pressure[i];
+            matrix[(i, inner)] =
+                by_edge[i] - theta * carried[i] - along[i] * target.edge / (fields.edge * fields.edge)
+                    + growth * mu / fields.edge * fields.pressure[i];
         }
         let scale = fields.edge.powf(mu) / fields.slip_depth[inner];
         for j in 0..inner {

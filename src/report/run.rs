@@ -1,0 +1,125 @@
+//! `fretwear run`: what a run came to.
+
+use serde::Serialize;
+
+use super::text::{Rows, Scale, number};
+use crate::run::RunResult;
+
+/// The outcome of a run in SI; the fields are the keys of the JSON.
+#[derive(Debug, Clone, Serialize)]
+pub struct RunReport {
+    /// The result file.
+    pub output: String,
+    /// Why the run stopped: `end`, `rate`, `interrupted` or `worn-out`.
+    pub stop_reason: &'static str,
+    /// Estimated error of the worn volume, relative to that of the limit.
+    pub error_estimate: Option<f64>,
+    /// Cycles done.
+    pub cycles: f64,
+    /// Dimensionless time.
+    pub tau: f64,
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps rejected.
+    pub rejected_steps: u64,
+    /// Evaluations of pressure, slip and wear.
+    pub rate_evaluations: u64,
+    /// Wall time, s.
+    pub wall_seconds: f64,
+    /// Indentation, m.
+    pub indentation: f64,
+    /// Normal force, N.
+    pub normal_force: f64,
+    /// Contact radius, m.
+    pub contact_radius: f64,
+    /// Stick radius, m.
+    pub stick_radius: f64,
+    /// Worn volume, m³.
+    pub wear_volume: f64,
+    /// Worn volume of the limit, m³.
+    pub wear_volume_limit: Option<f64>,
+    /// `sup |f - f∞| / d` over all nodes.
+    pub limit_distance: Option<f64>,
+    /// `sup |f - f∞|` over the limit's own largest depth.
+    pub limit_distance_relative: Option<f64>,
+    /// Energy dissipated by friction, J.
+    pub dissipated_energy: f64,
+    #[serde(skip)]
+    contact_radius_limit: f64,
+}
+
+impl RunReport {
+    /// Describes what a run came to.
+    pub fn new(result: &RunResult) -> Self {
+        let RunResult { last, checkpoint, limit, distance, .. } = result;
+        Self {
+            output: result.output.display().to_string(),
+            stop_reason: result.stop_reason.name(),
+            error_estimate: checkpoint.error_estimate,
+            cycles: last.cycles,
+            tau: last.tau,
+            steps: checkpoint.progress.steps,
+            rejected_steps: checkpoint.progress.rejected_steps,
+            rate_evaluations: checkpoint.progress.rate_evaluations,
+            wall_seconds: checkpoint.wall_seconds,
+            indentation: last.indentation,
+            normal_force: last.normal_force,
+            contact_radius: last.contact_radius,
+            stick_radius: last.stick_radius,
+            wear_volume: last.wear_volume,
+            wear_volume_limit: Some(limit.wear_volume()),
+            limit_distance: Some(distance.distance),
+            limit_distance_relative: distance.distance_relative,
+            dissipated_energy: last.dissipated_energy,
+            contact_radius_limit: limit.contact_radius_limit(),
+        }
+    }
+
+    /// A table for people.
+    pub fn text(&self) -> String {
+        let mut rows = Rows::default();
+        let stopped = match self.stop_reason {
+            "end" => "at its end".to_owned(),
+            "rate" => "when the rate of worn volume had fallen as asked".to_owned(),
+            "worn-out" => "with no pressure left outside the stick zone".to_owned(),
+            _ => format!("by a signal; go on with fretwear run --resume {}", self.output),
+        };
+        rows.row("stopped", stopped);
+        rows.row("cycles", number(self.cycles));
+        rows.row("dimensionless time τ", number(self.tau));
+        let of_limit = |value: String, limit: String| format!("{value} of {limit} in the limit");
+        let volume = |value: f64| Scale::VOLUME.show(value);
+        rows.row(
+            "worn volume",
+            self.wear_volume_limit
+                .map_or(volume(self.wear_volume), |it| of_limit(volume(self.wear_volume), volume(it))),
+        );
+        rows.row(
+            "contact radius",
+            of_limit(Scale::LENGTH.show(self.contact_radius), Scale::LENGTH.show(self.contact_radius_limit)),
+        );
+        rows.row("stick radius", Scale::LENGTH.show(self.stick_radius));
+        rows.row("normal force", Scale::FORCE.show(self.normal_force));
+        rows.row("dissipated energy", Scale::ENERGY.show(self.dissipated_energy));
+        rows.optional(
+            "distance to the limit",
+            self.limit_distance_relative.map(|it| format!("{} of its largest depth", number(it))),
+        );
+        rows.optional(
+            "estimated error of the volume",
+            self.error_estimate.map(|it| format!("{} of the limit's", number(it))),
+        );
+        rows.row(
+            "steps",
+            format!(
+                "{} and {} rejected, {} rate evaluations, {}",
+                self.steps,
+                self.rejected_steps,
+                self.rate_evaluations,
+                Scale::TIME.show(self.wall_seconds)
+            ),
+        );
+        rows.row("written to", &self.output);
+        rows.finish()
+    }
+}
