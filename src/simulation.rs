@@ -21,6 +21,9 @@ const WORN_OUT: f64 = 1e-13;
 /// Loss of wear depth, in tolerances, that is within the error of a step and not a step in the wrong direction.
 const REGAIN: f64 = 0.1;
 
+/// How far the rate may fall below the one asked for in the last step.
+const OVERSHOT: f64 = 0.5;
+
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum End {
@@ -231,7 +234,13 @@ impl Simulation {
             self.progress.rate_evaluations += trial.rate_evaluations;
             let error = trial.error / self.tolerance;
             let accepted = match trial.state {
-                Some(state) if error <= 1.0 => self.accept(state, target),
+                Some(state) if error <= 1.0 => {
+                    if let Some(shorter) = self.overshoot(&state, step) {
+                        self.progress.next_step = shorter;
+                        continue;
+                    }
+                    self.accept(state, target)
+                }
                 _ => false,
             };
             if self.stepper.prescribed_step().is_some() {
@@ -270,6 +279,20 @@ impl Simulation {
         } else {
             Ok((if 2.0 * step > remaining { 0.5 * remaining } else { step }, None))
         }
+    }
+
+    /// The step that ends where the rate is what was asked for, if this one leaves it far behind; the rate falls exponentially.
+    fn overshoot(&self, state: &State, step: f64) -> Option<f64> {
+        let End::Rate(fraction) = self.plan.end else { return None };
+        if self.stepper.prescribed_step().is_some() {
+            return None;
+        }
+        let wanted = fraction * self.progress.first_rate;
+        let reached =
+            self.model.wear_rate(&self.model.fields(state), &state.compression).max(f64::MIN_POSITIVE);
+        let now = self.wear_rate();
+        let part = (now / wanted).ln() / (now / reached).ln();
+        (reached < OVERSHOT * wanted && part < 1.0).then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
     }
 
     /// Takes a state over if it is one that wear can lead to.

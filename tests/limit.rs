@@ -6,7 +6,7 @@ use std::process::{Command, Output, Stdio};
 
 use fretwear::closed_form::LimitingShape;
 use fretwear::model::State;
-use fretwear::report::{CheckReport, LimitReport, contact};
+use fretwear::report::{CheckReport, LimitReport};
 use fretwear::scene::Scene;
 use fretwear::simulation::Progress;
 use fretwear::snapshot::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};

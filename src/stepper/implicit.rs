@@ -25,7 +25,7 @@ pub struct Implicit {
 
 /// Times of the stages.
 const TIMES: [f64; STAGES] = [GAMMA, 0.5 * (1.0 + GAMMA), 1.0];
-const GAMMA: f64 = 0.435_866_521_508_458_999_416;
+const GAMMA: f64 = 0.435_866_521_508_459;
 const STAGES: usize = 3;
 const MATRIX: [[f64; STAGES]; STAGES] = [
     [GAMMA, 0.0, 0.0],
