@@ -44,6 +44,16 @@ impl Chebyshev {
         (0..terms).map(projected).collect()
     }
 
+    /// Value at `x`, by Clenshaw's recurrence.
+    pub fn value(&self, x: f64) -> f64 {
+        let y = 2.0 * x / self.end - 1.0;
+        let (mut b1, mut b2) = (0.0, 0.0);
+        for &c in self.coefficients[1..].iter().rev() {
+            (b1, b2) = (c + 2.0 * y * b1 - b2, b1);
+        }
+        self.coefficients[0] + y * b1 - b2
+    }
+
     /// Value and derivative at `x`, by Clenshaw's recurrence.
     pub fn value_and_derivative(&self, x: f64) -> (f64, f64) {
         let y = 2.0 * x / self.end - 1.0;
@@ -67,6 +77,7 @@ mod tests {
         let series = Chebyshev::fit(|x| (0.7 * x).exp(), 6.0);
         for x in [0.0, 0.1, 2.0, 5.9, 6.0f64] {
             let (value, derivative) = series.value_and_derivative(x);
+            assert_eq!(value, series.value(x));
             let exact = (0.7 * x).exp();
             assert!((value / exact - 1.0).abs() < 3e-13, "{x}: {value} {exact}");
             assert!((derivative / (0.7 * exact) - 1.0).abs() < 1e-10, "{x}: {derivative}");

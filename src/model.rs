@@ -336,9 +336,8 @@ impl Model {
         let elastic = self.elastic_depth_by_edge(fields);
         let nodes = &self.operators.nodes()[1..];
         let rate = |i: usize| {
-            let values = &fields.unworn[i];
-            (nodes[i] * values.limit_slip_derivative - elastic[i]) / fields.slip_depth[i]
-                - nodes[i] * values.log_slip_derivative
+            let slopes = self.unworn.slopes(&fields.unworn[i]);
+            (nodes[i] * slopes.limit_slip - elastic[i]) / fields.slip_depth[i] - nodes[i] * slopes.log_slip
         };
         (0..nodes.len()).map(rate).collect()
     }
@@ -376,8 +375,9 @@ impl Model {
         let mut fields = Fields::default();
         for _ in 0..20 {
             self.evaluate(edge, compression, &mut fields);
-            let slope = fields.unworn[last].limit_slip_derivative
-                - fields.unworn[last].slip * fields.unworn[last].log_slip_derivative
+            let slopes = self.unworn.slopes(&fields.unworn[last]);
+            let slope = slopes.limit_slip
+                - fields.unworn[last].slip * slopes.log_slip
                 - self.elastic_depth_by_edge(&fields)[last];
             let change = -fields.wear_depth[last] / slope;
             edge += change;
@@ -488,18 +488,21 @@ impl Model {
         let n = self.springs();
         let scale = fields.edge.powf(self.mu());
         let per_slip: Vec<f64> = fields.slip_depth.iter().map(|s| -scale / s).collect();
+        let mut changed = vec![0.0; n];
         for j in 0..n - 1 {
+            // Cells inside a radius add nothing to it but through the stencils that reach one node back and two ahead.
+            let first = j.saturating_sub(POINTS);
             let factor = fields.density_factor[j];
-            let column = self.operators.profile().col(j);
-            for (i, stencil) in self.derivative.iter().enumerate().take(n - 1) {
-                let along: f64 = stencil
-                    .weights
-                    .iter()
-                    .enumerate()
-                    .map(|(m, weight)| weight * per_slip[stencil.first + m] * column[stencil.first + m])
-                    .sum();
-                matrix[(i, j)] += factor * (per_slip[i] * column[i] - theta * along);
+            let column = self.operators.profile().col_as_slice(j);
+            for ((change, column), slip) in changed.iter_mut().zip(column).zip(&per_slip).skip(first) {
+                *change = factor * column * slip;
             }
+            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.derivative);
+            for (i, (entry, stencil)) in rows.enumerate().take(n - 1).skip(first) {
+                let along = dot(&stencil.weights, &changed[stencil.first..stencil.first + POINTS]);
+                *entry += changed[i] - theta * along;
+            }
+            changed[first] = 0.0;
         }
     }
 }

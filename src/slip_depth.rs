@@ -35,19 +35,24 @@ pub struct UnwornSlip {
     limit_edge: f64,
 }
 
-/// Slip depth and what belongs to it at one radius.
+/// Slip depths at one radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnwornValues {
     /// `ln(r²/c²)`.
     pub logarithm: f64,
     /// `F q_c`, m: the slip depth where no pressure is left; that of the limit.
     pub limit_slip: f64,
-    /// Derivative of `F q_c` by `z`, 1/m.
-    pub limit_slip_derivative: f64,
     /// `S_0 = F(q_c - q_0)`, m: the slip depth of the unworn contact.
     pub slip: f64,
-    /// Derivative of `ln S_0` by `z`, 1/m².
-    pub log_slip_derivative: f64,
+}
+
+/// Derivatives of the slip depths by `z = r² - c²` at one radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnwornSlopes {
+    /// Of `F q_c`, 1/m.
+    pub limit_slip: f64,
+    /// Of `ln S_0`, 1/m².
+    pub log_slip: f64,
 }
 
 impl UnwornSlip {
@@ -112,19 +117,23 @@ impl UnwornSlip {
     /// Slip depths at `z = r² - c²`, m², in (0, [`UnwornSlip::largest_edge`]].
     pub fn at(&self, z: f64) -> UnwornValues {
         let logarithm = (z / self.stick_radius_squared).ln_1p();
-        let slope = 1.0 / (self.stick_radius_squared + z);
         let power = logarithm.powf(self.mu);
-        let (uniform, uniform_slope) = self.uniform.value_and_derivative(logarithm);
-        let (slip, slip_slope) = self.slip.value_and_derivative(logarithm);
         UnwornValues {
             logarithm,
-            limit_slip: self.slip_compression * power * uniform,
-            limit_slip_derivative: self.slip_compression
-                * power
-                * slope
-                * (uniform_slope + self.mu / logarithm * uniform),
-            slip: logarithm * power * slip,
-            log_slip_derivative: slope * (slip_slope / slip + (1.0 + self.mu) / logarithm),
+            limit_slip: self.slip_compression * power * self.uniform.value(logarithm),
+            slip: logarithm * power * self.slip.value(logarithm),
+        }
+    }
+
+    /// Derivatives of the slip depths where `values` belong to.
+    pub fn slopes(&self, values: &UnwornValues) -> UnwornSlopes {
+        let logarithm = values.logarithm;
+        let by_z = (-logarithm).exp() / self.stick_radius_squared;
+        let (uniform, uniform_slope) = self.uniform.value_and_derivative(logarithm);
+        let (slip, slip_slope) = self.slip.value_and_derivative(logarithm);
+        UnwornSlopes {
+            limit_slip: values.limit_slip * by_z * (uniform_slope / uniform + self.mu / logarithm),
+            log_slip: by_z * (slip_slope / slip + (1.0 + self.mu) / logarithm),
         }
     }
 }
