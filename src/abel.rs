@@ -120,6 +120,7 @@ struct Assembly<'a> {
 }
 
 /// A rule mapped into a cell with the local polynomials on its points.
+#[derive(Clone)]
 struct Mapped {
     points: Vec<f64>,
     /// Weight times polynomial, shape `(points,)` of arrays over the stencil.
@@ -179,51 +180,12 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_cell(&self, cell: usize, into: &mut AbelOperators) {
-        let n = self.nodes.len() - 1;
-        let (left, right) = (self.nodes[cell], self.nodes[cell + 1]);
-        let width = right - left;
-        let stencil = self.stencil(cell);
-        let mut cache: Vec<Option<Mapped>> = (0..=MOST_NODES).map(|_| None).collect();
-
-        let end = self.map(cell, &self.upper_end, stencil);
-        let scale = self.profile_factor * width.powf(self.mu);
-        add(&mut into.profile, cell, stencil.0, scale, end.values.iter(), self.points);
-        for row in cell + 2..=n {
-            let gap = (self.nodes[row] - right) / width;
-            let count = Self::legendre_nodes(gap);
-            let rule = cache[count].get_or_insert_with(|| self.map(cell, &self.legendre[count - 1], stencil));
-            let from_left = self.nodes[row] - left;
-            let scale = self.profile_factor * self.mu * width;
-            let mut sum = [0.0; MOST_POINTS];
-            for (point, value) in rule.points.iter().zip(&rule.values) {
-                accumulate(&mut sum, (from_left - point).powf(-self.nu), value);
-            }
-            add(&mut into.profile, row - 1, stencil.0, scale, [sum].iter(), self.points);
-        }
+        let mut mapped = Cell { assembly: self, index: cell, regular: vec![None; MOST_NODES + 1] };
+        mapped.add_profile(&mut into.profile);
         if cell > 0 {
-            let end = self.map(cell, &self.lower_end, stencil);
-            add(
-                &mut into.pressure,
-                cell - 1,
-                stencil.0,
-                -width.powf(self.nu) / self.nu,
-                end.slopes.iter(),
-                self.points,
-            );
-            for row in 1..cell {
-                let gap = (left - self.nodes[row]) / width;
-                let count = Self::legendre_nodes(gap);
-                let rule =
-                    cache[count].get_or_insert_with(|| self.map(cell, &self.legendre[count - 1], stencil));
-                let to_left = left - self.nodes[row];
-                let mut sum = [0.0; MOST_POINTS];
-                for (point, slope) in rule.points.iter().zip(&rule.slopes) {
-                    accumulate(&mut sum, (to_left + point).powf(-self.mu), slope);
-                }
-                add(&mut into.pressure, row - 1, stencil.0, -width, [sum].iter(), self.points);
-            }
+            mapped.add_pressure(&mut into.pressure);
         }
-        self.add_sums(cell, width, stencil, into);
+        self.add_sums(cell, self.nodes[cell + 1] - self.nodes[cell], self.stencil(cell), into);
     }
 
     /// Adds the cell's part of the weights of the plain integrals.
@@ -252,19 +214,84 @@ impl<'a> Assembly<'a> {
     }
 }
 
-fn accumulate(sum: &mut [f64; MOST_POINTS], factor: f64, values: &[f64; MOST_POINTS]) {
-    for (total, value) in sum.iter_mut().zip(values) {
-        *total += factor * value;
+/// One cell, with the regular rules mapped into it so far.
+struct Cell<'a> {
+    assembly: &'a Assembly<'a>,
+    index: usize,
+    regular: Vec<Option<Mapped>>,
+}
+
+impl Cell<'_> {
+    /// Adds what the densities of the cell contribute to the depths at its outer end and beyond.
+    fn add_profile(&mut self, matrix: &mut Mat<f64>) {
+        let (assembly, cell) = (self.assembly, self.index);
+        let (left, right, width) = self.bounds();
+        let (first, points) = (assembly.stencil(cell).0, assembly.points);
+        let end = assembly.map(cell, &assembly.upper_end, assembly.stencil(cell));
+        let factor = assembly.profile_factor;
+        add(matrix, cell, first, factor * width.powf(assembly.mu), &end.values, points);
+        for row in cell + 2..assembly.nodes.len() {
+            let node = assembly.nodes[row];
+            let mapped = self.regular((node - right) / width);
+            let kernel = |point: f64| (node - left - point).powf(-assembly.nu);
+            let sum = weighted_sum(&mapped.points, &mapped.values, kernel);
+            add(matrix, row - 1, first, factor * assembly.mu * width, &[sum], points);
+        }
+    }
+
+    /// Adds what the compressions of the cell contribute to the pressures at its inner end and further in.
+    fn add_pressure(&mut self, matrix: &mut Mat<f64>) {
+        let (assembly, cell) = (self.assembly, self.index);
+        let (left, _, width) = self.bounds();
+        let (first, points) = (assembly.stencil(cell).0, assembly.points);
+        let end = assembly.map(cell, &assembly.lower_end, assembly.stencil(cell));
+        add(matrix, cell - 1, first, -width.powf(assembly.nu) / assembly.nu, &end.slopes, points);
+        for row in 1..cell {
+            let node = assembly.nodes[row];
+            let mapped = self.regular((left - node) / width);
+            let kernel = |point: f64| (left - node + point).powf(-assembly.mu);
+            let sum = weighted_sum(&mapped.points, &mapped.slopes, kernel);
+            add(matrix, row - 1, first, -width, &[sum], points);
+        }
+    }
+
+    /// The Gauss-Legendre rule for a kernel that is singular `gap` widths from the cell.
+    fn regular(&mut self, gap: f64) -> &Mapped {
+        let count = Assembly::legendre_nodes(gap);
+        let (assembly, cell) = (self.assembly, self.index);
+        self.regular[count]
+            .get_or_insert_with(|| assembly.map(cell, &assembly.legendre[count - 1], assembly.stencil(cell)))
+    }
+
+    /// Left and right end and width.
+    fn bounds(&self) -> (f64, f64, f64) {
+        let (left, right) = (self.assembly.nodes[self.index], self.assembly.nodes[self.index + 1]);
+        (left, right, right - left)
     }
 }
 
+fn weighted_sum(
+    points: &[f64],
+    weights: &[[f64; MOST_POINTS]],
+    kernel: impl Fn(f64) -> f64,
+) -> [f64; MOST_POINTS] {
+    let mut sum = [0.0; MOST_POINTS];
+    for (point, values) in points.iter().zip(weights) {
+        let factor = kernel(*point);
+        for (total, value) in sum.iter_mut().zip(values) {
+            *total += factor * value;
+        }
+    }
+    sum
+}
+
 /// Adds `scale` times the sum of `parts` to a row, from the column of node `first` on.
-fn add<'p>(
+fn add(
     matrix: &mut Mat<f64>,
     row: usize,
     first: usize,
     scale: f64,
-    parts: impl Iterator<Item = &'p [f64; MOST_POINTS]>,
+    parts: &[[f64; MOST_POINTS]],
     points: usize,
 ) {
     for part in parts {

@@ -10,17 +10,20 @@
 //!
 //! Compressions and edge are what is stored ([`State`]); everything else is recomputed from them ([`Fields`]).
 
-use std::f64::consts::PI;
+mod derivatives;
+mod output;
 
-use faer::Mat;
+use std::f64::consts::PI;
 
 use crate::abel::AbelOperators;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::grid::{Clustering, lagrange, lagrange_derivative, slip_annulus, stencil_start};
-use crate::linear::{Factors, dot, multiply};
+use crate::grid::{Clustering, slip_annulus};
+use crate::linear::{Factors, multiply};
 use crate::roots::bracketed;
 use crate::slip_depth::{UnwornSlip, UnwornValues};
+use derivatives::{Stencil, derivative_stencils};
+pub use output::RadialFields;
 
 /// Degree of the local polynomials of the transforms, of the derivative along the annulus and of output between the springs.
 const DEGREE: usize = 3;
@@ -76,17 +79,6 @@ impl Fields {
     }
 }
 
-/// The fields on the fixed radii of the output, shape `(springs,)` each.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RadialFields {
-    /// Wear depth, m.
-    pub wear_depth: Vec<f64>,
-    /// Pressure, Pa, zero outside the contact.
-    pub pressure: Vec<f64>,
-    /// Slip amplitude, m, zero outside the contact.
-    pub slip: Vec<f64>,
-}
-
 /// One wearing contact on its springs; immutable during a run.
 #[derive(Debug, Clone)]
 pub struct Model {
@@ -103,13 +95,6 @@ pub struct Model {
     stick_force: f64,
     wear_factor: f64,
     depth_scale: f64,
-}
-
-/// Weights of a derivative `ξ d/dξ` at one spring.
-#[derive(Debug, Clone, Copy)]
-struct Stencil {
-    first: usize,
-    weights: [f64; POINTS],
 }
 
 impl Model {
@@ -306,166 +291,9 @@ impl Model {
         fields
     }
 
-    /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
-    pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
-        self.derivative.iter().map(|s| dot(&s.weights, &values[s.first..s.first + POINTS])).collect()
-    }
-
-    /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.
-    pub fn elastic_depth_by_edge(&self, fields: &Fields) -> Vec<f64> {
-        let mu = self.mu();
-        let nodes = &self.operators.nodes()[1..];
-        let moved: Vec<f64> = fields
-            .density
-            .iter()
-            .zip(nodes)
-            .map(|(u, x)| -mu * u * x / (self.stick_radius_squared + fields.edge * x))
-            .collect();
-        let mut change = vec![0.0; self.springs()];
-        multiply(self.operators.profile().as_ref(), &moved, &mut change);
-        let scale = fields.edge.powf(mu);
-        change
-            .iter()
-            .zip(&fields.elastic_depth)
-            .map(|(c, depth)| scale * c + mu / fields.edge * depth)
-            .collect()
-    }
-
-    /// Derivative of `λ` by the edge at constant compressions, 1/m², shape `(springs,)`.
-    pub fn log_slip_by_edge(&self, fields: &Fields) -> Vec<f64> {
-        let elastic = self.elastic_depth_by_edge(fields);
-        let nodes = &self.operators.nodes()[1..];
-        let rate = |i: usize| {
-            let slopes = self.unworn.slopes(&fields.unworn[i]);
-            (nodes[i] * slopes.limit_slip - elastic[i]) / fields.slip_depth[i] - nodes[i] * slopes.log_slip
-        };
-        (0..nodes.len()).map(rate).collect()
-    }
-
-    /// Derivative of the elastic depth by the compressions: `Z^(1-ν) F_ij x_j^(k-1)`, shape `(springs, springs - 1)`.
-    pub fn elastic_depth_by_compression(&self, fields: &Fields, i: usize, j: usize) -> f64 {
-        self.operators.profile()[(i, j)] * fields.density_factor[j]
-    }
-
-    /// Rates per cycle of the edge, m², and of the compressions, m, under Archard's law: the closed-form cycle as an explicit
-    /// differential equation.
-    pub fn rates(&self, fields: &Fields) -> (f64, Vec<f64>) {
-        let inner = self.springs() - 1;
-        let by_edge = self.log_slip_by_edge(fields);
-        let along = self.along_annulus(&fields.log_slip);
-        let slip = &fields.slip_depth;
-        let mut worn: Vec<f64> =
-            (0..inner).map(|i| -self.wear_factor * fields.pressure[i] * slip[i]).collect();
-        let mut moved: Vec<f64> =
-            (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
-        // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.
-        let edge_slope = slip[inner] * by_edge[inner];
-        let edge_rate = -dot(&self.edge_row, &worn) / (dot(&self.edge_row, &moved) - edge_slope);
-        self.profile_factors.solve(&mut worn);
-        self.profile_factors.solve(&mut moved);
-        let scale = fields.edge.powf(-self.mu());
-        let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * edge_rate);
-        (edge_rate, (0..inner).map(rate).collect())
-    }
-
-    /// Moves the edge to where the wear depth of the compressions is zero.
-    pub fn close_edge(&self, edge: f64, compression: &[f64]) -> Result<f64> {
-        let last = self.springs() - 1;
-        let mut edge = edge;
-        let mut fields = Fields::default();
-        for _ in 0..20 {
-            self.evaluate(edge, compression, &mut fields);
-            let slopes = self.unworn.slopes(&fields.unworn[last]);
-            let slope = slopes.limit_slip
-                - fields.unworn[last].slip * slopes.log_slip
-                - self.elastic_depth_by_edge(&fields)[last];
-            let change = -fields.wear_depth[last] / slope;
-            edge += change;
-            if change.abs() <= 1e-15 * edge {
-                return Ok(edge);
-            }
-            if !(edge > 0.0 && edge < self.unworn.largest_edge()) {
-                break;
-            }
-        }
-        Err(Error::NotConverged {
-            what: "contact edge",
-            why: format!("a² - c² = {edge:e} m² after 20 iterations"),
-        })
-    }
-
-    /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
-    pub fn wear_volume(&self, fields: &Fields) -> f64 {
-        PI * fields.edge * dot(self.operators.depth_sum(), &fields.wear_depth)
-    }
-
-    /// Normal force, N [S, Eq. (22)].
-    pub fn normal_force(&self, fields: &Fields) -> f64 {
-        self.stick_force
-            + self.contact.half_space().normal_stiffness()
-                * fields.edge
-                * dot(&self.operators.spring_sum()[..fields.density.len()], &fields.density)
-    }
-
-    /// Energy that friction dissipates in one cycle, J.
-    ///
-    /// ```text
-    /// W = 8 μ_f c_N ∫_c^a x^k q (μ_f/M) (q_c - q) dx
-    /// ```
-    pub fn dissipation(&self, fields: &Fields, compression: &[f64]) -> f64 {
-        let friction = self.contact.friction().coefficient;
-        let half_space = self.contact.half_space();
-        let slipping = self.contact.slip_compression();
-        let sum: f64 = compression
-            .iter()
-            .zip(&fields.density)
-            .zip(self.operators.spring_sum())
-            .map(|((q, u), weight)| weight * u * (slipping - q))
-            .sum();
-        4.0 * friction * friction / half_space.stiffness_ratio()
-            * half_space.normal_stiffness()
-            * fields.edge
-            * sum
-    }
-
-    /// Worn volume per cycle, m³: Archard's law on the dissipated energy, `k_w W/μ_f`.
-    pub fn wear_rate(&self, fields: &Fields, compression: &[f64]) -> f64 {
-        self.dissipation(fields, compression) * self.contact.wear().coefficient
-            / self.contact.friction().coefficient
-    }
-
     /// Contact radius `a`, m.
     pub fn contact_radius(&self, state: &State) -> f64 {
         (self.stick_radius_squared + state.edge).sqrt()
-    }
-
-    /// The fields at [`Model::radii`], by local cubic interpolation between the springs.
-    pub fn radial_fields(&self, fields: &Fields) -> RadialFields {
-        let n = self.springs();
-        let nodes = self.operators.nodes();
-        let nu = 1.0 - self.mu();
-        let slip_per_depth =
-            self.contact.friction().coefficient / self.contact.half_space().stiffness_ratio();
-        let eased: Vec<f64> =
-            (0..n - 1).map(|i| fields.pressure[i] * (1.0 - nodes[i + 1]).powf(-nu)).collect();
-        let mut radial =
-            RadialFields { wear_depth: vec![0.0; n], pressure: vec![0.0; n], slip: vec![0.0; n] };
-        let mut cell = 1;
-        for i in 0..n {
-            let x = nodes[i + 1] * (self.unworn.limit_edge() / fields.edge);
-            if x >= 1.0 {
-                break;
-            }
-            while nodes[cell + 1] < x {
-                cell += 1;
-            }
-            let log_slip = interpolate(&nodes[1..], &fields.log_slip, cell, x);
-            let unworn = self.radial_unworn[i].slip;
-            radial.wear_depth[i] = unworn * log_slip.exp_m1();
-            radial.slip[i] = slip_per_depth * unworn * log_slip.exp();
-            radial.pressure[i] = interpolate(&nodes[1..n], &eased, cell, x) * (1.0 - x).powf(nu);
-        }
-        radial
     }
 
     /// Depth that the limit takes away at [`Model::radii`] by the program's own quadrature, m.
@@ -482,47 +310,4 @@ impl Model {
         let mu = self.mu();
         self.stick_radius_squared.powf(-mu) * (-mu * values.logarithm).exp()
     }
-
-    /// Adds the derivatives of `λ` by the compressions, from the left times `I - θ ξ ∂/∂ξ`, to the leading columns of a matrix.
-    pub fn add_log_slip_by_compression(&self, fields: &Fields, theta: f64, matrix: &mut Mat<f64>) {
-        let n = self.springs();
-        let scale = fields.edge.powf(self.mu());
-        let per_slip: Vec<f64> = fields.slip_depth.iter().map(|s| -scale / s).collect();
-        let mut changed = vec![0.0; n];
-        for j in 0..n - 1 {
-            // Cells inside a radius add nothing to it but through the stencils that reach one node back and two ahead.
-            let first = j.saturating_sub(POINTS);
-            let factor = fields.density_factor[j];
-            let column = self.operators.profile().col_as_slice(j);
-            for ((change, column), slip) in changed.iter_mut().zip(column).zip(&per_slip).skip(first) {
-                *change = factor * column * slip;
-            }
-            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.derivative);
-            for (i, (entry, stencil)) in rows.enumerate().take(n - 1).skip(first) {
-                let along = dot(&stencil.weights, &changed[stencil.first..stencil.first + POINTS]);
-                *entry += changed[i] - theta * along;
-            }
-            changed[first] = 0.0;
-        }
-    }
-}
-
-fn derivative_stencils(nodes: &[f64]) -> Vec<Stencil> {
-    let last = nodes.len() - 1;
-    let stencil = |node: usize| {
-        // The material moves inwards past the springs, so the stencil leans outwards.
-        let start = stencil_start(node, POINTS, last);
-        let mut weights = [0.0; POINTS];
-        lagrange_derivative(&nodes[start..start + POINTS], nodes[node], &mut weights);
-        Stencil { first: start - 1, weights: weights.map(|w| w * nodes[node]) }
-    };
-    (1..=last).map(stencil).collect()
-}
-
-/// Local cubic interpolation at `x` in cell `cell` between nodes given from the first spring on.
-fn interpolate(nodes: &[f64], values: &[f64], cell: usize, x: f64) -> f64 {
-    let start = stencil_start(cell, POINTS, values.len()).min(values.len() + 1 - POINTS) - 1;
-    let mut weights = [0.0; POINTS];
-    lagrange(&nodes[start..start + POINTS], x, &mut weights);
-    dot(&weights, &values[start..start + POINTS])
 }

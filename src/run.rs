@@ -201,7 +201,7 @@ impl Parts {
 
 /// Springs that keep the error of the worn volume below `accuracy` in the scenes measured (docs/numerics.md).
 fn springs_for(accuracy: f64) -> usize {
-    (90.0 * (1e-4 / accuracy).powf(0.36)).ceil().max(16.0) as usize
+    (120.0 * (1e-4 / accuracy).powf(0.42)).ceil().max(20.0) as usize
 }
 
 /// Tolerance of one step that keeps the accumulated error of the time stepping below `accuracy`.

@@ -1,0 +1,141 @@
+//! How the fields change with the state, and the rates of the state that follow.
+
+use faer::Mat;
+
+use super::{Fields, Model, POINTS};
+use crate::error::{Error, Result};
+use crate::grid::{lagrange_derivative, stencil_start};
+use crate::linear::{dot, multiply};
+
+/// Weights of a derivative `ξ d/dξ` at one spring.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stencil {
+    first: usize,
+    weights: [f64; POINTS],
+}
+
+/// Weights of `ξ d/dξ` at every spring.
+pub(super) fn derivative_stencils(nodes: &[f64]) -> Vec<Stencil> {
+    let last = nodes.len() - 1;
+    let stencil = |node: usize| {
+        // The material moves inwards past the springs, so the stencil leans outwards.
+        let start = stencil_start(node, POINTS, last);
+        let mut weights = [0.0; POINTS];
+        lagrange_derivative(&nodes[start..start + POINTS], nodes[node], &mut weights);
+        Stencil { first: start - 1, weights: weights.map(|w| w * nodes[node]) }
+    };
+    (1..=last).map(stencil).collect()
+}
+
+impl Model {
+    /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
+    pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
+        self.derivative.iter().map(|s| dot(&s.weights, &values[s.first..s.first + POINTS])).collect()
+    }
+
+    /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.
+    pub fn elastic_depth_by_edge(&self, fields: &Fields) -> Vec<f64> {
+        let mu = self.mu();
+        let nodes = &self.operators.nodes()[1..];
+        let moved: Vec<f64> = fields
+            .density
+            .iter()
+            .zip(nodes)
+            .map(|(u, x)| -mu * u * x / (self.stick_radius_squared + fields.edge * x))
+            .collect();
+        let mut change = vec![0.0; self.springs()];
+        multiply(self.operators.profile().as_ref(), &moved, &mut change);
+        let scale = fields.edge.powf(mu);
+        change
+            .iter()
+            .zip(&fields.elastic_depth)
+            .map(|(c, depth)| scale * c + mu / fields.edge * depth)
+            .collect()
+    }
+
+    /// Derivative of `λ` by the edge at constant compressions, 1/m², shape `(springs,)`.
+    pub fn log_slip_by_edge(&self, fields: &Fields) -> Vec<f64> {
+        let elastic = self.elastic_depth_by_edge(fields);
+        let nodes = &self.operators.nodes()[1..];
+        let rate = |i: usize| {
+            let slopes = self.unworn.slopes(&fields.unworn[i]);
+            (nodes[i] * slopes.limit_slip - elastic[i]) / fields.slip_depth[i] - nodes[i] * slopes.log_slip
+        };
+        (0..nodes.len()).map(rate).collect()
+    }
+
+    /// Derivative of the elastic depth by the compressions: `Z^(1-ν) F_ij x_j^(k-1)`, shape `(springs, springs - 1)`.
+    pub fn elastic_depth_by_compression(&self, fields: &Fields, i: usize, j: usize) -> f64 {
+        self.operators.profile()[(i, j)] * fields.density_factor[j]
+    }
+
+    /// Rates per cycle of the edge, m², and of the compressions, m, under Archard's law: the closed-form cycle as an explicit
+    /// differential equation.
+    pub fn rates(&self, fields: &Fields) -> (f64, Vec<f64>) {
+        let inner = self.springs() - 1;
+        let by_edge = self.log_slip_by_edge(fields);
+        let along = self.along_annulus(&fields.log_slip);
+        let slip = &fields.slip_depth;
+        let mut worn: Vec<f64> =
+            (0..inner).map(|i| -self.wear_factor * fields.pressure[i] * slip[i]).collect();
+        let mut moved: Vec<f64> =
+            (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
+        // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.
+        let edge_slope = slip[inner] * by_edge[inner];
+        let edge_rate = -dot(&self.edge_row, &worn) / (dot(&self.edge_row, &moved) - edge_slope);
+        self.profile_factors.solve(&mut worn);
+        self.profile_factors.solve(&mut moved);
+        let scale = fields.edge.powf(-self.mu());
+        let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * edge_rate);
+        (edge_rate, (0..inner).map(rate).collect())
+    }
+
+    /// Moves the edge to where the wear depth of the compressions is zero.
+    pub fn close_edge(&self, edge: f64, compression: &[f64]) -> Result<f64> {
+        let last = self.springs() - 1;
+        let mut edge = edge;
+        let mut fields = Fields::default();
+        for _ in 0..20 {
+            self.evaluate(edge, compression, &mut fields);
+            let slopes = self.unworn.slopes(&fields.unworn[last]);
+            let slope = slopes.limit_slip
+                - fields.unworn[last].slip * slopes.log_slip
+                - self.elastic_depth_by_edge(&fields)[last];
+            let change = -fields.wear_depth[last] / slope;
+            edge += change;
+            if change.abs() <= 1e-15 * edge {
+                return Ok(edge);
+            }
+            if !(edge > 0.0 && edge < self.unworn.largest_edge()) {
+                break;
+            }
+        }
+        Err(Error::NotConverged {
+            what: "contact edge",
+            why: format!("a² - c² = {edge:e} m² after 20 iterations"),
+        })
+    }
+
+    /// Adds the derivatives of `λ` by the compressions, from the left times `I - θ ξ ∂/∂ξ`, to the leading columns of a matrix.
+    pub fn add_log_slip_by_compression(&self, fields: &Fields, theta: f64, matrix: &mut Mat<f64>) {
+        let n = self.springs();
+        let scale = fields.edge.powf(self.mu());
+        let per_slip: Vec<f64> = fields.slip_depth.iter().map(|s| -scale / s).collect();
+        let mut changed = vec![0.0; n];
+        for j in 0..n - 1 {
+            // Cells inside a radius add nothing to it but through the stencils that reach one node back and two ahead.
+            let first = j.saturating_sub(POINTS);
+            let factor = fields.density_factor[j];
+            let column = self.operators.profile().col_as_slice(j);
+            for ((change, column), slip) in changed.iter_mut().zip(column).zip(&per_slip).skip(first) {
+                *change = factor * column * slip;
+            }
+            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.derivative);
+            for (i, (entry, stencil)) in rows.enumerate().take(n - 1).skip(first) {
+                let along = dot(&stencil.weights, &changed[stencil.first..stencil.first + POINTS]);
+                *entry += changed[i] - theta * along;
+            }
+            changed[first] = 0.0;
+        }
+    }
+}

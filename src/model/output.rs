@@ -1,0 +1,97 @@
+//! What is reported of a contact: integrals over it, and its fields at fixed radii.
+
+use std::f64::consts::PI;
+
+use super::{Fields, Model, POINTS};
+use crate::grid::{lagrange, stencil_start};
+use crate::linear::dot;
+
+/// The fields on the fixed radii of the output, shape `(springs,)` each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RadialFields {
+    /// Wear depth, m.
+    pub wear_depth: Vec<f64>,
+    /// Pressure, Pa, zero outside the contact.
+    pub pressure: Vec<f64>,
+    /// Slip amplitude, m, zero outside the contact.
+    pub slip: Vec<f64>,
+}
+
+impl Model {
+    /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
+    pub fn wear_volume(&self, fields: &Fields) -> f64 {
+        PI * fields.edge * dot(self.operators.depth_sum(), &fields.wear_depth)
+    }
+
+    /// Normal force, N [S, Eq. (22)].
+    pub fn normal_force(&self, fields: &Fields) -> f64 {
+        self.stick_force
+            + self.contact.half_space().normal_stiffness()
+                * fields.edge
+                * dot(&self.operators.spring_sum()[..fields.density.len()], &fields.density)
+    }
+
+    /// Energy that friction dissipates in one cycle, J.
+    ///
+    /// ```text
+    /// W = 8 μ_f c_N ∫_c^a x^k q (μ_f/M) (q_c - q) dx
+    /// ```
+    pub fn dissipation(&self, fields: &Fields, compression: &[f64]) -> f64 {
+        let friction = self.contact.friction().coefficient;
+        let half_space = self.contact.half_space();
+        let slipping = self.contact.slip_compression();
+        let sum: f64 = compression
+            .iter()
+            .zip(&fields.density)
+            .zip(self.operators.spring_sum())
+            .map(|((q, u), weight)| weight * u * (slipping - q))
+            .sum();
+        4.0 * friction * friction / half_space.stiffness_ratio()
+            * half_space.normal_stiffness()
+            * fields.edge
+            * sum
+    }
+
+    /// Worn volume per cycle, m³: Archard's law on the dissipated energy, `k_w W/μ_f`.
+    pub fn wear_rate(&self, fields: &Fields, compression: &[f64]) -> f64 {
+        self.dissipation(fields, compression) * self.contact.wear().coefficient
+            / self.contact.friction().coefficient
+    }
+
+    /// The fields at [`Model::radii`], by local cubic interpolation between the springs.
+    pub fn radial_fields(&self, fields: &Fields) -> RadialFields {
+        let n = self.springs();
+        let nodes = self.operators.nodes();
+        let nu = 1.0 - self.mu();
+        let slip_per_depth =
+            self.contact.friction().coefficient / self.contact.half_space().stiffness_ratio();
+        let eased: Vec<f64> =
+            (0..n - 1).map(|i| fields.pressure[i] * (1.0 - nodes[i + 1]).powf(-nu)).collect();
+        let mut radial =
+            RadialFields { wear_depth: vec![0.0; n], pressure: vec![0.0; n], slip: vec![0.0; n] };
+        let mut cell = 1;
+        for i in 0..n {
+            let x = nodes[i + 1] * (self.unworn.limit_edge() / fields.edge);
+            if x >= 1.0 {
+                break;
+            }
+            while nodes[cell + 1] < x {
+                cell += 1;
+            }
+            let log_slip = interpolate(&nodes[1..], &fields.log_slip, cell, x);
+            let unworn = self.radial_unworn[i].slip;
+            radial.wear_depth[i] = unworn * log_slip.exp_m1();
+            radial.slip[i] = slip_per_depth * unworn * log_slip.exp();
+            radial.pressure[i] = interpolate(&nodes[1..n], &eased, cell, x) * (1.0 - x).powf(nu);
+        }
+        radial
+    }
+}
+
+/// Local cubic interpolation at `x` in cell `cell` between nodes given from the first spring on.
+fn interpolate(nodes: &[f64], values: &[f64], cell: usize, x: f64) -> f64 {
+    let start = stencil_start(cell, POINTS, values.len()).min(values.len() + 1 - POINTS) - 1;
+    let mut weights = [0.0; POINTS];
+    lagrange(&nodes[start..start + POINTS], x, &mut weights);
+    dot(&weights, &values[start..start + POINTS])
+}
