@@ -51,36 +51,30 @@ impl Factors {
 
     /// Replaces the right-hand side by the solution.
     pub fn solve(&self, rhs: &mut [f64]) {
-        let n = self.lu.nrows();
-        let rhs = MatMut::from_column_major_slice_mut(rhs, n, 1);
-        let permutation = PermRef::new_checked(&self.forward, &self.inverse, n);
-        let scratch = solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq);
-        let stack = &mut MemBuffer::new(scratch);
+        let (lu, permutation, rhs) = self.parts(rhs);
+        let scratch = solve::solve_in_place_scratch::<usize, f64>(lu.nrows(), 1, Par::Seq);
         solve::solve_in_place(
-            self.lu.as_ref(),
-            self.lu.as_ref(),
+            lu,
+            lu,
             permutation,
             rhs,
             Par::Seq,
-            MemStack::new(stack),
+            MemStack::new(&mut MemBuffer::new(scratch)),
         );
     }
 
     /// Replaces the right-hand side by the solution with the transposed matrix.
     pub fn solve_transposed(&self, rhs: &mut [f64]) {
-        let n = self.lu.nrows();
-        let rhs = MatMut::from_column_major_slice_mut(rhs, n, 1);
-        let permutation = PermRef::new_checked(&self.forward, &self.inverse, n);
-        let scratch = solve::solve_transpose_in_place_scratch::<usize, f64>(n, 1, Par::Seq);
+        let (lu, permutation, rhs) = self.parts(rhs);
+        let scratch = solve::solve_transpose_in_place_scratch::<usize, f64>(lu.nrows(), 1, Par::Seq);
         let stack = &mut MemBuffer::new(scratch);
-        solve::solve_transpose_in_place(
-            self.lu.as_ref(),
-            self.lu.as_ref(),
-            permutation,
-            rhs,
-            Par::Seq,
-            MemStack::new(stack),
-        );
+        solve::solve_transpose_in_place(lu, lu, permutation, rhs, Par::Seq, MemStack::new(stack));
+    }
+
+    fn parts<'a>(&'a self, rhs: &'a mut [f64]) -> (MatRef<'a, f64>, PermRef<'a, usize>, MatMut<'a, f64>) {
+        let n = self.lu.nrows();
+        let permutation = PermRef::new_checked(&self.forward, &self.inverse, n);
+        (self.lu.as_ref(), permutation, MatMut::from_column_major_slice_mut(rhs, n, 1))
     }
 }
 
