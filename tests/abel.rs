@@ -61,20 +61,21 @@ fn the_profile_is_exact_for_piecewise_linear_and_for_cubic_densities() {
                 vec![(2.0, 0, 0.0), (1.0, 1, first), (0.5, 2, first), (3.0, 3, first)]
             };
             let density = |x: &f64| terms.iter().map(|(a, m, b)| a * (x - b).max(0.0).powi(*m)).sum::<f64>();
-            let exact = |x: &f64| terms.iter().map(|(a, m, b)| a * profile_of_power(grading, *m, *b, *x)).sum();
+            let exact =
+                |x: &f64| terms.iter().map(|(a, m, b)| a * profile_of_power(grading, *m, *b, *x)).sum();
             let data: Vec<f64> = nodes[1..].iter().map(density).collect();
             let exact: Vec<f64> = nodes[1..].iter().map(exact).collect();
             let error = errors(operators.profile(), &data, &exact).0;
             let sum: f64 = terms.iter().map(|(a, m, b)| a * (1.0 - b).powi(m + 1) / f64::from(m + 1)).sum();
             let sum_error = (dot(operators.spring_sum(), &data) / sum - 1.0).abs();
-            println!("MEASURED F k {grading} degree {degree} {error:e} sum {sum_error:e}");
             if error > worst.0 {
                 worst = (error, grading, degree);
             }
             assert!(sum_error < 1e-14, "k = {grading}, degree {degree}: sum off by {sum_error:e}");
         }
     }
-    assert!(worst.0 < 1e-12, "relative error {:e} at k = {}, degree {}", worst.0, worst.1, worst.2);
+    // Measured: 1.3e-15.
+    assert!(worst.0 < 1e-14, "relative error {:e} at k = {}, degree {}", worst.0, worst.1, worst.2);
 }
 
 #[test]
@@ -89,18 +90,20 @@ fn the_pressure_is_exact_for_piecewise_linear_and_for_cubic_compressions() {
             } else {
                 vec![(1.0, 1, 1.0), (0.5, 2, 1.0), (3.0, 3, 1.0)]
             };
-            let compression = |x: &f64| terms.iter().map(|(a, m, b)| a * (b - x).max(0.0).powi(*m)).sum::<f64>();
-            let exact = |x: &f64| terms.iter().map(|(a, m, b)| a * pressure_of_power(grading, *m, *b, *x)).sum();
+            let compression =
+                |x: &f64| terms.iter().map(|(a, m, b)| a * (b - x).max(0.0).powi(*m)).sum::<f64>();
+            let exact =
+                |x: &f64| terms.iter().map(|(a, m, b)| a * pressure_of_power(grading, *m, *b, *x)).sum();
             let data: Vec<f64> = nodes[1..].iter().map(compression).collect();
             let exact: Vec<f64> = nodes[1..].iter().map(exact).collect();
             let (by_row, error) = errors(operators.pressure(), &data, &exact);
-            println!("MEASURED P k {grading} degree {degree} {error:e} rows {by_row:e}");
             if error > worst.0 {
                 worst = (error, grading, degree);
             }
         }
     }
-    assert!(worst.0 < 1e-11, "relative error {:e} at k = {}, degree {}", worst.0, worst.1, worst.2);
+    // Measured: 8.2e-12, at k = -0.99; 2e-15 for k > 0. Slopes on the tiny cells at the ends lose digits.
+    assert!(worst.0 < 8e-11, "relative error {:e} at k = {}, degree {}", worst.0, worst.1, worst.2);
 }
 
 #[test]
@@ -112,8 +115,8 @@ fn the_worn_volume_is_exact_for_a_root_times_a_cubic() {
         let depths: Vec<f64> = operators.nodes()[1..].iter().map(depth).collect();
         let exact = 1.0 / (1.0 + mu) + 2.0 / (2.0 + mu) + 0.5 / (3.0 + mu) + 3.0 / (4.0 + mu);
         let error = (dot(operators.depth_sum(), &depths) / exact - 1.0).abs();
-        println!("MEASURED sum k {grading} {error:e}");
-        assert!(error < 1e-13, "k = {grading}: relative error {error:e}");
+        // Measured: 4.4e-14.
+        assert!(error < 4e-13, "k = {grading}: relative error {error:e}");
     }
 }
 
@@ -143,7 +146,6 @@ fn both_transforms_stay_finite_and_tend_to_the_identity_in_a_gibson_medium() {
         };
         deviations.push(off(&depth, &density).max(off(&pressure, &compression)) / gap);
     }
-    println!("MEASURED identity {deviations:?}");
     assert!(
         deviations.windows(2).all(|pair| (pair[0] / pair[1] - 1.0).abs() < 0.01),
         "distance from the identity over 1-k: {deviations:?}"

@@ -13,7 +13,8 @@ use support::{Case, orders};
 
 #[test]
 fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
-    let (mut depth, mut volume, mut edge) = ((0.0, String::new()), (0.0, String::new()), (0.0, String::new()));
+    let (mut depth, mut volume, mut edge) =
+        ((0.0, String::new()), (0.0, String::new()), (0.0, String::new()));
     for exponent in [1.0, 2.0, 4.0] {
         for grading in [-0.5, -0.2, 0.0, 0.5, 0.9] {
             for stick_ratio in [0.3, 0.7, 0.95] {
@@ -21,7 +22,7 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
                 let name = format!("n = {exponent}, k = {grading}, c/a0 = {stick_ratio}");
                 let shape = LimitingShape::from_contact(&case.contact()).unwrap().unwrap();
                 let plan = Plan { outputs: vec![], end: End::Rate(1e-12) };
-                let mut simulation = case.simulation(Box::new(Implicit::new(1e-5)), 1e-5, plan);
+                let mut simulation = case.simulation(Box::new(Implicit::new(1e-3)), 1e-3, plan);
                 let outcome = simulation.run(&mut []).unwrap();
                 assert!(matches!(outcome, Outcome::Rate | Outcome::WornOut), "{name}: {outcome:?}");
                 let model = simulation.model();
@@ -41,10 +42,10 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
             }
         }
     }
-    println!("MEASURED depth {depth:?} volume {volume:?} edge {edge:?}");
-    assert!(depth.0 <= 1e-8, "largest distance from the limit over its depth: {depth:?}");
-    assert!(volume.0 <= 1e-6, "largest relative error of the worn volume: {volume:?}");
-    assert!(edge.0 <= 1.0, "largest error of the contact edge in cells: {edge:?}");
+    // Measured: depth 2.7e-13, volume 9.3e-8 (cone, k = -0.5, c/a0 = 0.3), edge 4e-9 cells.
+    assert!(depth.0 <= 3e-12, "largest distance from the limit over its depth: {depth:?}");
+    assert!(volume.0 <= 9e-7, "largest relative error of the worn volume: {volume:?}");
+    assert!(edge.0 <= 4e-8, "largest error of the contact edge in cells: {edge:?}");
 }
 
 /// Error of the limit, relative to its largest depth, with the initial compression interpolated between the nodes.
@@ -57,8 +58,8 @@ fn error_of_interpolated_limit(exponent: f64, grading: f64, cells: usize, degree
     let operators = AbelOperators::new(grading, nodes, degree).unwrap();
     let depths = |edge: f64| {
         let density = |x: &f64| {
-            let compression =
-                contact.slip_compression() - contact.equivalent_profile().rise(shape.stick_radius(), edge * x);
+            let compression = contact.slip_compression()
+                - contact.equivalent_profile().rise(shape.stick_radius(), edge * x);
             (squared + edge * x).powf(0.5 * (grading - 1.0)) * compression
         };
         let densities: Vec<f64> = operators.nodes()[1..].iter().map(density).collect();
@@ -80,14 +81,14 @@ fn the_limit_is_second_order_without_help_and_faster_with_cubics() {
                 [25, 50, 100, 200].map(|cells| error_of_interpolated_limit(exponent, grading, cells, degree))
             };
             let (linear, cubic) = (errors(1), errors(3));
-            println!("MEASURED n {exponent} k {grading} {linear:?} {:?} {cubic:?} {:?}", orders(&linear), orders(&cubic));
+            // Measured: 1.91 to 2.00 with degree 1, 3.87 to 4.00 with degree 3.
             assert!(
                 orders(&linear).iter().all(|order| (1.8..2.3).contains(order)),
                 "n = {exponent}, k = {grading}: errors {linear:?}, orders {:?}",
                 orders(&linear)
             );
             assert!(
-                orders(&cubic).iter().all(|order| *order > 2.5),
+                orders(&cubic).iter().all(|order| *order > 3.7),
                 "n = {exponent}, k = {grading}: errors {cubic:?}, orders {:?}",
                 orders(&cubic)
             );
