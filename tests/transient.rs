@@ -94,18 +94,12 @@ fn assert_orders(errors: &[f64], range: std::ops::Range<f64>) {
     assert!(orders.iter().all(|order| range.contains(order)), "errors {errors:?}, orders {orders:?}");
 }
 
+/// With the edge bound by a constraint and not by its own equation, the third order of the method is not kept.
 #[test]
-fn the_implicit_stepper_is_of_third_order_on_few_springs() {
-    let errors = errors_in_time(few_springs(), &mut Implicit::new(1e-12), &[80, 160, 320]);
-    assert_orders(&errors, 2.6..3.3);
-}
-
-/// Diagonally implicit methods lose order on stiff components, to no less than their stage order plus one.
-#[test]
-fn the_implicit_stepper_keeps_second_order_on_stiff_springs() {
-    // Measured: 1.9, 2.1, 2.2.
-    let errors = errors_in_time(paraboloid(30), &mut Implicit::new(1e-12), &[8, 16, 32, 64]);
-    assert_orders(&errors, 1.8..3.3);
+fn the_implicit_stepper_is_of_second_order() {
+    // Measured: 1.98, 2.00 on few springs, 1.9, 2.1, 2.2 on a stiff mesh.
+    assert_orders(&errors_in_time(few_springs(), &mut Implicit::new(1e-12), &[80, 160, 320]), 1.9..2.1);
+    assert_orders(&errors_in_time(paraboloid(30), &mut Implicit::new(1e-12), &[8, 16, 32, 64]), 1.8..2.4);
 }
 
 #[test]
