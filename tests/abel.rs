@@ -102,7 +102,7 @@ fn the_pressure_is_exact_for_piecewise_linear_and_for_cubic_compressions() {
             }
         }
     }
-    // Measured: 8.2e-12, at k = -0.99; 2e-15 for k > 0. Slopes on the tiny cells at the ends lose digits.
+    // Measured: 8.2e-12, at k = -0.99; 2e-15 for k > 0. Where it comes from was not looked into.
     assert!(worst.0 < 8e-11, "relative error {:e} at k = {}, degree {}", worst.0, worst.1, worst.2);
 }
 
