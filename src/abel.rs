@@ -27,6 +27,9 @@ const MOST_NODES: usize = 24;
 /// Most nodes of a local polynomial.
 const MOST_POINTS: usize = 4;
 
+/// Nodes of the local polynomial through the wear depth in its integral: two more, so that the volume keeps up with the depth.
+const SUM_POINTS: usize = 6;
+
 /// Product-integration operators of one grading on one mesh.
 #[derive(Debug, Clone)]
 pub struct AbelOperators {
@@ -140,7 +143,8 @@ impl<'a> Assembly<'a> {
             points,
             nu,
             mu,
-            profile_factor: argument.sin() / argument,
+            // The sine of the smaller: next to π the other loses its digits.
+            profile_factor: (std::f64::consts::PI * nu.min(mu)).sin() / argument,
             upper_end: Rule::jacobi(SINGULAR_NODES, -nu, 0.0)?,
             lower_end: Rule::jacobi(SINGULAR_NODES, 0.0, -mu)?,
             depth_end: Rule::jacobi(SINGULAR_NODES, 0.0, mu)?,
@@ -196,19 +200,19 @@ impl<'a> Assembly<'a> {
                 *weight += width * part;
             }
         }
-        let start = stencil_start(cell, self.points, self.nodes.len() - 1);
-        let wide = (start, start + self.points);
+        let last = self.nodes.len() - 1;
+        let points = SUM_POINTS.min(last);
+        let start = stencil_start(cell, points, last);
         let left = self.nodes[cell];
-        let depth = if cell == 0 {
-            self.map(cell, &self.depth_end, wide)
-        } else {
-            self.map(cell, &self.legendre[11], wide)
-        };
-        for (point, value) in depth.points.iter().zip(&depth.values) {
-            let power =
-                if cell == 0 { width.powf(self.mu) / (1.0 + self.mu) } else { (left + point).powf(self.mu) };
-            for (index, part) in (wide.0..wide.1).zip(value) {
-                into.depth_sum[index - 1] += width * power * part * self.nodes[index].powf(-self.mu);
+        let rule = if cell == 0 { &self.depth_end } else { &self.legendre[11] };
+        for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
+            let x = left + width * node;
+            let power = if cell == 0 { width.powf(self.mu) / (1.0 + self.mu) } else { x.powf(self.mu) };
+            let mut values = [0.0; SUM_POINTS];
+            lagrange(&self.nodes[start..start + points], x, &mut values);
+            for (index, value) in (start..start + points).zip(values) {
+                into.depth_sum[index - 1] +=
+                    width * power * weight * value * self.nodes[index].powf(-self.mu);
             }
         }
     }

@@ -152,7 +152,13 @@ impl<'a> Transform<'a> {
         let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
         let argument = std::f64::consts::PI * mu;
         let rule = Rule::jacobi(NODES, 0.0, -nu)?;
-        Ok(Self { profile, stick_radius, nu, factor: argument.sin() / argument, rule })
+        Ok(Self {
+            profile,
+            stick_radius,
+            nu,
+            factor: (std::f64::consts::PI * nu.min(mu)).sin() / argument,
+            rule,
+        })
     }
 
     /// `(F 1)/ℓ^μ`.

@@ -1,0 +1,97 @@
+//! The simulated limit against the paper's closed form.
+
+mod support;
+
+use fretwear::abel::AbelOperators;
+use fretwear::closed_form::LimitingShape;
+use fretwear::grid::{Clustering, slip_annulus};
+use fretwear::linear::multiply;
+use fretwear::roots::bracketed;
+use fretwear::simulation::{End, Outcome, Plan};
+use fretwear::stepper::Implicit;
+use support::{Case, orders};
+
+#[test]
+fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
+    let (mut depth, mut volume, mut edge) =
+        ((0.0, String::new()), (0.0, String::new()), (0.0, String::new()));
+    for exponent in [1.0, 2.0, 4.0] {
+        for grading in [-0.5, -0.2, 0.0, 0.5, 0.9] {
+            for stick_ratio in [0.3, 0.7, 0.95] {
+                let case = Case::new(exponent, grading, stick_ratio, 100);
+                let name = format!("n = {exponent}, k = {grading}, c/a0 = {stick_ratio}");
+                let shape = LimitingShape::from_contact(&case.contact()).unwrap().unwrap();
+                let plan = Plan { outputs: vec![], end: End::Rate(1e-12) };
+                let mut simulation = case.simulation(Box::new(Implicit::new(1e-3)), 1e-3, plan);
+                let outcome = simulation.run(&mut []).unwrap();
+                assert!(matches!(outcome, Outcome::Rate | Outcome::WornOut), "{name}: {outcome:?}");
+                let model = simulation.model();
+                let limit: Vec<f64> =
+                    model.offsets().iter().map(|offset| shape.wear_depth_at_offset(*offset)).collect();
+                let distance = support::distance(simulation.wear_depth(), &limit) / shape.wear_depth_max();
+                let worn = model.wear_volume(simulation.fields()) / shape.wear_volume() - 1.0;
+                let nodes = model.operators().nodes();
+                let last_cell = 1.0 - nodes[nodes.len() - 2];
+                let limit_edge = shape.contact_radius_limit().powi(2) - shape.stick_radius().powi(2);
+                let off = (simulation.state().edge / limit_edge - 1.0).abs() / last_cell;
+                for (worst, value) in [(&mut depth, distance), (&mut volume, worn.abs()), (&mut edge, off)] {
+                    if !(value <= worst.0) {
+                        *worst = (value, format!("{name}: {outcome:?} at τ = {}", simulation.state().cycles));
+                    }
+                }
+            }
+        }
+    }
+    // Measured: depth 2.7e-13, volume 9.3e-8 (cone, k = -0.5, c/a0 = 0.3), edge 4e-9 cells.
+    assert!(depth.0 <= 3e-12, "largest distance from the limit over its depth: {depth:?}");
+    assert!(volume.0 <= 9e-7, "largest relative error of the worn volume: {volume:?}");
+    assert!(edge.0 <= 4e-8, "largest error of the contact edge in cells: {edge:?}");
+}
+
+/// Error of the limit, relative to its largest depth, with the initial compression interpolated between the nodes.
+fn error_of_interpolated_limit(exponent: f64, grading: f64, cells: usize, degree: usize) -> f64 {
+    let contact = Case::new(exponent, grading, 0.7, cells).contact();
+    let shape = LimitingShape::from_contact(&contact).unwrap().unwrap();
+    let squared = shape.stick_radius().powi(2);
+    let limit_edge = shape.contact_radius_limit().powi(2) - squared;
+    let nodes = slip_annulus(cells, (limit_edge / squared).ln_1p(), Clustering::Cubic);
+    let operators = AbelOperators::new(grading, nodes, degree).unwrap();
+    let depths = |edge: f64| {
+        let density = |x: &f64| {
+            let compression = contact.slip_compression()
+                - contact.equivalent_profile().rise(shape.stick_radius(), edge * x);
+            (squared + edge * x).powf(0.5 * (grading - 1.0)) * compression
+        };
+        let densities: Vec<f64> = operators.nodes()[1..].iter().map(density).collect();
+        let mut depths = vec![0.0; cells];
+        multiply(operators.profile().as_ref(), &densities, &mut depths);
+        depths.iter().map(|depth| depth * edge.powf(0.5 * (1.0 - grading))).collect::<Vec<_>>()
+    };
+    let edge = bracketed(|edge| depths(edge)[cells - 1], 0.8 * limit_edge, 1.2 * limit_edge, 0.0).unwrap();
+    let exact: Vec<f64> =
+        operators.nodes()[1..].iter().map(|x| shape.wear_depth_at_offset(edge * x)).collect();
+    support::distance(&depths(edge), &exact) / shape.wear_depth_max()
+}
+
+#[test]
+fn the_limit_is_second_order_without_help_and_faster_with_cubics() {
+    for exponent in [1.0, 4.0] {
+        for grading in [-0.5, 0.0, 0.5] {
+            let errors = |degree| {
+                [25, 50, 100, 200].map(|cells| error_of_interpolated_limit(exponent, grading, cells, degree))
+            };
+            let (linear, cubic) = (errors(1), errors(3));
+            // Measured: 1.91 to 2.00 with degree 1, 3.87 to 4.00 with degree 3.
+            assert!(
+                orders(&linear).iter().all(|order| (1.8..2.3).contains(order)),
+                "n = {exponent}, k = {grading}: errors {linear:?}, orders {:?}",
+                orders(&linear)
+            );
+            assert!(
+                orders(&cubic).iter().all(|order| *order > 3.7),
+                "n = {exponent}, k = {grading}: errors {cubic:?}, orders {:?}",
+                orders(&cubic)
+            );
+        }
+    }
+}
