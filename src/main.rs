@@ -143,7 +143,14 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
     let mut progress = (!arguments.quiet && !arguments.json).then(Progress::default);
     let result = run.execute(progress.as_mut().map(|it| it as &mut dyn Observer));
     drop(progress);
-    let result = result?;
+    let result = match result {
+        Ok(result) => result,
+        // The input was in order: whatever stops a run that has begun is a failure of the run.
+        Err(error) => {
+            complain("error", &error.to_string());
+            return Ok((String::new(), ExitCode::FAILURE));
+        }
+    };
     let interrupted = result.stop_reason == StopReason::Interrupted;
     Ok((report(&result), if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS }))
 }

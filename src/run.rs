@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 
 use crate::closed_form::LimitingShape;
+use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::loading;
@@ -18,6 +19,7 @@ use crate::snapshot::{
     Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
 };
 use crate::stepper::{CycleJump, EveryCycle, Implicit, Stepper};
+use crate::stick_slip::Regime;
 
 /// Part of the run at which the first of geometrically spread snapshots is taken.
 const FIRST_SNAPSHOT: f64 = 1e-4;
@@ -175,6 +177,7 @@ struct Parts {
 impl Parts {
     fn new(scene: &Scene) -> Result<Self> {
         let contact = scene.contact()?;
+        check_regime(scene, &contact)?;
         let numerics = scene.numerics();
         let springs = numerics.springs.unwrap_or_else(|| springs_for(numerics.accuracy));
         check_memory(springs)?;
@@ -197,6 +200,22 @@ impl Parts {
         let plan = plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole);
         Ok(Self { model, stepper, tolerance, plan, limit })
     }
+}
+
+/// Refuses contacts without partial slip, which has a slip annulus to follow.
+fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
+    let amplitude = contact.amplitude();
+    let why = match contact.regime() {
+        Regime::PartialSlip => return Ok(()),
+        Regime::Stick => {
+            format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more")
+        }
+        Regime::FullSliding => format!(
+            "{amplitude:e} m makes the whole contact slide, and only partial slip is simulated; ask for less than {:e} m",
+            contact.amplitude_full_sliding()
+        ),
+    };
+    Err(Error::Inconsistent { what: scene.loading().amplitude.key(), why })
 }
 
 /// Springs that keep the error of the worn volume below `accuracy` in the scenes measured (docs/numerics.md).

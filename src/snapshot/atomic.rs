@@ -93,6 +93,9 @@ impl AtomicFile {
                 Err(_) => fs::rename(&temporary.path, &self.path)?,
             }
         }
+        // The lock was to keep the temporary from being cleared away; other programs that read the file respect it, and a child
+        // process started meanwhile would hold on to it.
+        let _ = temporary.file.unlock();
         drop(temporary);
         self.synchronise_folder()
     }

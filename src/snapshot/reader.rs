@@ -44,10 +44,11 @@ impl RunFile {
     pub fn open(path: &Path) -> Result<Self> {
         check_signature(path)?;
         let source = Source { path: path.to_owned() };
-        let file = File::open(path).map_err(|error| {
-            source
-                .error(format!("is damaged, cut short or locked by another program ({error}); {WRITE_AGAIN}"))
-        })?;
+        // No lock is needed: a run replaces its file as a whole, so what is opened here never changes.
+        let file = File::with_options()
+            .with_fapl(|access| access.file_locking(false))
+            .open(path)
+            .map_err(|error| source.error(format!("is damaged or cut short ({error}); {WRITE_AGAIN}")))?;
         source.check_format(&file)?;
         let header = source.header(&file)?;
         let snapshots = source.snapshots(&file, header.radius.len())?;
