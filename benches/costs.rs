@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, criterion_group, criterion_main};
 use fretwear::abel::AbelOperators;
 use fretwear::closed_form::LimitingShape;
 use fretwear::contact::InitialContact;
@@ -45,26 +45,26 @@ fn parts(criterion: &mut Criterion) {
     let contact = contact();
     for springs in SPRINGS {
         let nodes = slip_annulus(springs, 1.0, Clustering::Cubic);
-        criterion.bench_function(BenchmarkId::new("operators", springs), |bench| {
+        criterion.bench_function(&format!("operators/{springs}"), |bench| {
             bench.iter(|| AbelOperators::new(0.0, black_box(nodes.clone()), 3));
         });
-        criterion.bench_function(BenchmarkId::new("model", springs), |bench| {
+        criterion.bench_function(&format!("model/{springs}"), |bench| {
             bench.iter(|| model(black_box(&contact), springs));
         });
         let simulation = midway(&contact, springs);
         let (model, state) = (simulation.model(), simulation.state());
         let mut fields = Fields::default();
-        criterion.bench_function(BenchmarkId::new("evaluate", springs), |bench| {
+        criterion.bench_function(&format!("evaluate/{springs}"), |bench| {
             bench.iter(|| model.evaluate(state.edge, black_box(&state.compression), &mut fields));
         });
-        criterion.bench_function(BenchmarkId::new("explicit rates", springs), |bench| {
+        criterion.bench_function(&format!("explicit rates/{springs}"), |bench| {
             bench.iter(|| model.rates(black_box(&fields)));
         });
         let mut stepper = Implicit::new(TOLERANCE);
         let cycles = 0.1 / contact.tau_per_cycle();
         let trial = stepper.step(model, state, cycles).expect("a step");
         assert!(trial.state.is_some(), "the step at {springs} springs finds no state");
-        criterion.bench_function(BenchmarkId::new("implicit step", springs), |bench| {
+        criterion.bench_function(&format!("implicit step/{springs}"), |bench| {
             bench.iter(|| stepper.step(model, black_box(state), cycles));
         });
     }
@@ -80,7 +80,7 @@ fn whole_scene(criterion: &mut Criterion) {
     };
     for springs in SPRINGS {
         if springs <= MOST_REPEATED {
-            criterion.bench_function(BenchmarkId::new("main scene with its file", springs), |bench| {
+            criterion.bench_function(&format!("main scene with its file/{springs}"), |bench| {
                 bench.iter(|| run(springs));
             });
         } else {
