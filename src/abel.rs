@@ -21,8 +21,12 @@ use crate::quadrature::Rule;
 /// Nodes of the rule in the cell that holds the end-point singularity: exact for every local polynomial used here.
 const SINGULAR_NODES: usize = 6;
 
-/// Largest Gauss-Legendre rule for the cells beside it; enough for a gap of a fifth of the cell.
-const MOST_NODES: usize = 24;
+/// Sizes of the Gauss-Legendre rules for the cells beside it; the largest is enough for a gap of a twentieth of the cell.
+const REGULAR_NODES: [usize; 9] = [3, 4, 5, 6, 8, 12, 16, 24, 44];
+
+/// Indices in [`REGULAR_NODES`] of the rules for the plain integrals: exact for the local polynomials, and accurate for a power.
+const PLAIN: usize = 1;
+const POWER: usize = 5;
 
 /// Most nodes of a local polynomial.
 const MOST_POINTS: usize = 4;
@@ -148,14 +152,15 @@ impl<'a> Assembly<'a> {
             upper_end: Rule::jacobi(SINGULAR_NODES, -nu, 0.0)?,
             lower_end: Rule::jacobi(SINGULAR_NODES, 0.0, -mu)?,
             depth_end: Rule::jacobi(SINGULAR_NODES, 0.0, mu)?,
-            legendre: (1..=MOST_NODES).map(Rule::legendre).collect::<Result<_>>()?,
+            legendre: REGULAR_NODES.into_iter().map(Rule::legendre).collect::<Result<_>>()?,
         })
     }
 
-    /// Nodes of the Gauss-Legendre rule that integrates a kernel singular at `gap` cells' lengths from the cell to round-off.
-    fn legendre_nodes(gap: f64) -> usize {
+    /// Index of the Gauss-Legendre rule that integrates a kernel singular `gap` widths from the cell to round-off.
+    fn regular_rule(gap: f64) -> usize {
         let ellipse = 1.0 + 2.0 * gap + 2.0 * (gap * (1.0 + gap)).sqrt();
-        ((18.5 / ellipse.ln()).ceil() as usize + 2).min(MOST_NODES)
+        let needed = 18.5 / ellipse.ln() + 2.0;
+        REGULAR_NODES.partition_point(|nodes| (*nodes as f64) < needed).min(REGULAR_NODES.len() - 1)
     }
 
     /// Nodes of the local polynomial of a cell: indices of the first and one past the last.
@@ -184,7 +189,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_cell(&self, cell: usize, into: &mut AbelOperators) {
-        let mut mapped = Cell { assembly: self, index: cell, regular: vec![None; MOST_NODES + 1] };
+        let mut mapped = Cell { assembly: self, index: cell, regular: vec![None; REGULAR_NODES.len()] };
         mapped.add_profile(&mut into.profile);
         if cell > 0 {
             mapped.add_pressure(&mut into.pressure);
@@ -194,7 +199,7 @@ impl<'a> Assembly<'a> {
 
     /// Adds the cell's part of the weights of the plain integrals.
     fn add_sums(&self, cell: usize, width: f64, stencil: (usize, usize), into: &mut AbelOperators) {
-        let spring = self.map(cell, &self.legendre[3], stencil);
+        let spring = self.map(cell, &self.legendre[PLAIN], stencil);
         for value in &spring.values {
             for (weight, part) in into.spring_sum[stencil.0 - 1..stencil.1 - 1].iter_mut().zip(value) {
                 *weight += width * part;
@@ -204,7 +209,7 @@ impl<'a> Assembly<'a> {
         let points = SUM_POINTS.min(last);
         let start = stencil_start(cell, points, last);
         let left = self.nodes[cell];
-        let rule = if cell == 0 { &self.depth_end } else { &self.legendre[11] };
+        let rule = if cell == 0 { &self.depth_end } else { &self.legendre[POWER] };
         for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
             let x = left + width * node;
             let power = if cell == 0 { width.powf(self.mu) / (1.0 + self.mu) } else { x.powf(self.mu) };
@@ -261,10 +266,10 @@ impl Cell<'_> {
 
     /// The Gauss-Legendre rule for a kernel that is singular `gap` widths from the cell.
     fn regular(&mut self, gap: f64) -> &Mapped {
-        let count = Assembly::legendre_nodes(gap);
+        let rule = Assembly::regular_rule(gap);
         let (assembly, cell) = (self.assembly, self.index);
-        self.regular[count]
-            .get_or_insert_with(|| assembly.map(cell, &assembly.legendre[count - 1], assembly.stencil(cell)))
+        self.regular[rule]
+            .get_or_insert_with(|| assembly.map(cell, &assembly.legendre[rule], assembly.stencil(cell)))
     }
 
     /// Left and right end and width.

@@ -18,8 +18,8 @@ const FIRST_GROWTH: f64 = 1e-3;
 /// Compression, relative to `q_c`, below which no pressure is left but round-off.
 const WORN_OUT: f64 = 1e-13;
 
-/// Loss of wear depth, in tolerances, that is within the error of a step and not a step in the wrong direction.
-const REGAIN: f64 = 0.1;
+/// Loss of wear depth, relative to the limit's largest, that the output's interpolation between moving springs may show.
+const INTERPOLATION: f64 = 1e-6;
 
 /// How far the rate may fall below the one asked for in the last step.
 const OVERSHOT: f64 = 0.5;
@@ -299,7 +299,7 @@ impl Simulation {
     fn accept(&mut self, mut state: State, target: Option<f64>) -> bool {
         let fields = self.model.fields(&state);
         let wear_depth = self.model.radial_fields(&fields).wear_depth;
-        let allowed = REGAIN * self.tolerance * self.model.depth_scale();
+        let allowed = (self.tolerance + INTERPOLATION) * self.model.depth_scale();
         let grew = wear_depth.iter().zip(&self.wear_depth).all(|(now, before)| *now >= before - allowed);
         if !(grew && fields.are_physical()) {
             return false;
