@@ -298,7 +298,7 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
     }
     let group = file.group("checkpoint").expect("the group");
     let all = [file.datasets().expect("datasets"), group.datasets().expect("datasets")].concat();
-    assert_eq!(all.len(), 17 + 13, "{all:?}");
+    assert_eq!(all.len(), 17 + 15, "{all:?}");
     for dataset in all {
         for attribute in ["units", "long_name"] {
             let found = text(&dataset, attribute).unwrap_or_default();
