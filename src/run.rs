@@ -218,9 +218,9 @@ fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
     Err(Error::Inconsistent { what: scene.loading().amplitude.key(), why })
 }
 
-/// Springs that keep the error of the worn volume below `accuracy` in the scenes measured (docs/numerics.md).
+/// Springs that keep the error of the worn volume, of third order, below `accuracy` in the scenes measured (docs/numerics.md).
 fn springs_for(accuracy: f64) -> usize {
-    (120.0 * (1e-4 / accuracy).powf(0.42)).ceil().max(20.0) as usize
+    (120.0 * (1e-4 / accuracy).cbrt()).ceil() as usize
 }
 
 /// Tolerance of one step that keeps the accumulated error of the time stepping below `accuracy`.
