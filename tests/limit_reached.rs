@@ -35,7 +35,7 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
                 let limit_edge = shape.contact_radius_limit().powi(2) - shape.stick_radius().powi(2);
                 let off = (simulation.state().edge / limit_edge - 1.0).abs() / last_cell;
                 for (worst, value) in [(&mut depth, distance), (&mut volume, worn.abs()), (&mut edge, off)] {
-                    if !(value <= worst.0) {
+                    if value.is_nan() || value > worst.0 {
                         *worst = (value, format!("{name}: {outcome:?} at τ = {}", simulation.state().cycles));
                     }
                 }
