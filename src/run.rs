@@ -258,7 +258,7 @@ fn plan(duration: loading::Duration, output: &Output, tau_per_cycle: f64, whole:
     let round = |cycles: f64| if whole { cycles.round().max(1.0) } else { cycles };
     let end = match duration {
         loading::Duration::Cycles(cycles) => End::Cycles(round(cycles)),
-        loading::Duration::Tau(tau) => End::Cycles(round(tau / tau_per_cycle)),
+        loading::Duration::Tau(tau) => End::Cycles(round(cycles_at(tau, tau_per_cycle))),
         loading::Duration::UntilRate(fraction) => End::Rate(fraction),
     };
     let mut outputs: Vec<f64> = match (output, end) {
@@ -268,7 +268,7 @@ fn plan(duration: loading::Duration, output: &Output, tau_per_cycle: f64, whole:
             geometric(first, last, *count)
         }
         (Output::AtCycles(cycles), _) => cycles.clone(),
-        (Output::AtTau(taus), _) => taus.iter().map(|tau| tau / tau_per_cycle).collect(),
+        (Output::AtTau(taus), _) => taus.iter().map(|tau| cycles_at(*tau, tau_per_cycle)).collect(),
     };
     if let End::Cycles(last) = end {
         outputs.retain(|cycles| *cycles < last);
@@ -277,6 +277,13 @@ fn plan(duration: loading::Duration, output: &Output, tau_per_cycle: f64, whole:
     let mut outputs: Vec<f64> = outputs.into_iter().filter(|cycles| *cycles > 0.0).map(round).collect();
     outputs.dedup();
     Plan { outputs, end }
+}
+
+/// Cycles at a dimensionless time: of the doubles next to the quotient the one that gives this time back, if there is one.
+fn cycles_at(tau: f64, tau_per_cycle: f64) -> f64 {
+    let cycles = tau / tau_per_cycle;
+    let candidates = [cycles, cycles.next_up(), cycles.next_down()];
+    candidates.into_iter().find(|it| it * tau_per_cycle == tau).unwrap_or(cycles)
 }
 
 /// `count` numbers of cycles in constant ratio, the last of them `last`.
