@@ -112,6 +112,12 @@ impl AbelOperators {
     }
 }
 
+/// `sin(πν)/(π μ)`, the factor of Eq. (20) with that of the mean over its kernel; finite as `k → 1`.
+pub(crate) fn profile_factor(nu: f64, mu: f64) -> f64 {
+    // The sine of the smaller: next to π the other loses its digits.
+    (std::f64::consts::PI * nu.min(mu)).sin() / (std::f64::consts::PI * mu)
+}
+
 /// Everything that the weights of one cell need.
 struct Assembly<'a> {
     nodes: &'a [f64],
@@ -141,14 +147,12 @@ impl<'a> Assembly<'a> {
         if !(nu > 0.0 && mu > 0.0) {
             return Err(Error::OutOfRange { name: "half_space.grading", value: grading, range: "(-1, 1)" });
         }
-        let argument = std::f64::consts::PI * mu;
         Ok(Self {
             nodes,
             points,
             nu,
             mu,
-            // The sine of the smaller: next to π the other loses its digits.
-            profile_factor: (std::f64::consts::PI * nu.min(mu)).sin() / argument,
+            profile_factor: profile_factor(nu, mu),
             upper_end: Rule::jacobi(SINGULAR_NODES, -nu, 0.0)?,
             lower_end: Rule::jacobi(SINGULAR_NODES, 0.0, -mu)?,
             depth_end: Rule::jacobi(SINGULAR_NODES, 0.0, mu)?,

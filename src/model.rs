@@ -92,6 +92,8 @@ pub struct Model {
     derivative: Vec<Stencil>,
     radial_unworn: Vec<UnwornValues>,
     stick_radius_squared: f64,
+    /// `c^(k-1)`.
+    stick_density_factor: f64,
     stick_force: f64,
     wear_factor: f64,
     depth_scale: f64,
@@ -148,6 +150,7 @@ impl Model {
             edge_row,
             radial_unworn,
             stick_radius_squared,
+            stick_density_factor: stick_radius_squared.powf(-0.5 * (1.0 - grading)),
             stick_force,
             wear_factor,
             depth_scale,
@@ -225,21 +228,17 @@ impl Model {
     /// true contact edge.
     pub fn edge_mismatch(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> f64 {
         let inner = self.springs() - 1;
-        let at = |i: usize| self.unworn.at(edge * self.operators.nodes()[i + 1]);
-        let elastic = |i: usize| {
-            let values = at(i);
-            values.limit_slip - slip(i, &values)
-        };
-        let last = at(inner);
-        let carried: f64 = (0..inner).map(|i| self.edge_row[i] * elastic(i)).sum();
+        let last = self.unworn.at(edge);
+        let elastic =
+            |(i, values): (usize, UnwornValues)| self.edge_row[i] * (values.limit_slip - slip(i, &values));
+        let carried: f64 = self.unworn_on_springs(edge).take(inner).enumerate().map(elastic).sum();
         last.limit_slip - last.slip - carried
     }
 
     /// Compressions, m, that give the inner springs the slip depth `slip(spring, unworn)` with the contact edge at `edge`.
     pub fn compression(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> Vec<f64> {
         let inner = self.springs() - 1;
-        let values: Vec<_> =
-            (0..inner).map(|i| self.unworn.at(edge * self.operators.nodes()[i + 1])).collect();
+        let values: Vec<_> = self.unworn_on_springs(edge).take(inner).collect();
         let mut solution: Vec<f64> =
             values.iter().enumerate().map(|(i, v)| v.limit_slip - slip(i, v)).collect();
         self.profile_factors.solve(&mut solution);
@@ -266,7 +265,7 @@ impl Model {
             part.resize(n, 0.0);
         }
         fields.unworn.clear();
-        fields.unworn.extend(self.operators.nodes()[1..].iter().map(|x| self.unworn.at(edge * x)));
+        fields.unworn.extend(self.unworn_on_springs(edge));
         for (factor, values) in fields.density_factor.iter_mut().zip(&fields.unworn) {
             *factor = self.density_factor(values);
         }
@@ -301,13 +300,18 @@ impl Model {
         self.radial_unworn.iter().map(|u| (u.limit_slip - u.slip).max(0.0)).collect()
     }
 
-    fn mu(&self) -> f64 {
+    /// The unworn slip on every spring, with the contact edge at `edge`.
+    fn unworn_on_springs(&self, edge: f64) -> impl Iterator<Item = UnwornValues> {
+        self.operators.nodes()[1..].iter().map(move |x| self.unworn.at(edge * x))
+    }
+
+    /// `μ = (1-k)/2`, the exponent with which the transforms scale with the edge.
+    pub(crate) fn mu(&self) -> f64 {
         0.5 * (1.0 - self.contact.half_space().grading())
     }
 
     /// `x^(k-1) = s^(ν-1)`.
     fn density_factor(&self, values: &UnwornValues) -> f64 {
-        let mu = self.mu();
-        self.stick_radius_squared.powf(-mu) * (-mu * values.logarithm).exp()
+        self.stick_density_factor * (-self.mu() * values.logarithm).exp()
     }
 }

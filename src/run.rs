@@ -295,21 +295,22 @@ fn geometric(first: f64, last: f64, count: usize) -> Vec<f64> {
 fn limit_curves(model: &Model, limit: &LimitingShape) -> LimitCurves {
     let wear_depth: Vec<f64> =
         model.offsets().into_iter().map(|offset| limit.wear_depth_at_offset(offset)).collect();
+    LimitCurves { profile: worn_profile(model, &wear_depth), wear_depth }
+}
+
+/// Profile, m, with a depth worn away at the radii of the output.
+fn worn_profile(model: &Model, wear_depth: &[f64]) -> Vec<f64> {
     let indenter = model.contact().indenter();
-    let profile =
-        model.radii().iter().zip(&wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect();
-    LimitCurves { profile, wear_depth }
+    model.radii().iter().zip(wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect()
 }
 
 /// The contact as it is now.
 fn snapshot(simulation: &Simulation) -> Snapshot {
     let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
     let contact = model.contact();
-    let radial = model.radial_fields(fields);
+    let radial = simulation.radial_fields().clone();
     let unworn = state.cycles == 0.0;
     let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
-    let profile =
-        model.radii().iter().zip(&wear_depth).map(|(r, w)| contact.indenter().profile(*r) + w).collect();
     Snapshot {
         cycles: state.cycles,
         tau: state.cycles * contact.tau_per_cycle(),
@@ -319,7 +320,7 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
         indentation: contact.indentation(),
         normal_force: model.normal_force(fields),
         dissipated_energy: state.dissipated_energy,
-        profile,
+        profile: worn_profile(model, &wear_depth),
         wear_depth,
         pressure: radial.pressure,
         slip: radial.slip,
@@ -384,8 +385,5 @@ fn error_estimate(simulation: &Simulation) -> Option<f64> {
     let (model, state) = (simulation.model(), simulation.state());
     let contact = model.contact();
     let by_energy = state.dissipated_energy * contact.wear().coefficient / contact.friction().coefficient;
-    let limit = std::f64::consts::PI
-        * model.unworn().limit_edge()
-        * crate::linear::dot(model.operators().depth_sum(), &model.limit_depth());
-    Some((by_energy - model.wear_volume(simulation.fields())).abs() / limit)
+    Some((by_energy - model.wear_volume(simulation.fields())).abs() / model.limit_volume())
 }

@@ -1,7 +1,7 @@
 //! The loop over time: which step to try, where to land, when to stop.
 
 use crate::error::{Error, Result};
-use crate::model::{Fields, Model, State};
+use crate::model::{Fields, Model, RadialFields, State};
 use crate::stepper::Stepper;
 
 /// Safety factor and bounds of the choice of steps.
@@ -110,7 +110,7 @@ pub struct Simulation {
     plan: Plan,
     state: State,
     fields: Fields,
-    wear_depth: Vec<f64>,
+    radial: RadialFields,
     progress: Progress,
 }
 
@@ -142,8 +142,8 @@ impl Simulation {
         progress: Progress,
     ) -> Self {
         let fields = model.fields(&state);
-        let wear_depth = model.radial_fields(&fields).wear_depth;
-        Self { model, stepper, tolerance, plan, state, fields, wear_depth, progress }
+        let radial = model.radial_fields(&fields);
+        Self { model, stepper, tolerance, plan, state, fields, radial, progress }
     }
 
     /// The model.
@@ -161,9 +161,14 @@ impl Simulation {
         &self.fields
     }
 
+    /// The fields at the radii of the output.
+    pub fn radial_fields(&self) -> &RadialFields {
+        &self.radial
+    }
+
     /// Wear depth at the radii of the output, m, shape `(springs,)`.
     pub fn wear_depth(&self) -> &[f64] {
-        &self.wear_depth
+        &self.radial.wear_depth
     }
 
     /// The plan.
@@ -221,7 +226,7 @@ impl Simulation {
                 let spent = self.wear_rate() <= fraction * self.progress.first_rate;
                 let limit = WORN_OUT * self.model.contact().slip_compression();
                 let worn_out = self.state.compression.iter().all(|q| *q <= limit);
-                if worn_out { Some(Outcome::WornOut) } else { spent.then_some(Outcome::Rate) }
+                spent.then_some(Outcome::Rate).or(worn_out.then_some(Outcome::WornOut))
             }
         }
     }
@@ -235,11 +240,12 @@ impl Simulation {
             let error = trial.error / self.tolerance;
             let accepted = match trial.state {
                 Some(state) if error <= 1.0 => {
-                    if let Some(shorter) = self.overshoot(&state, step) {
+                    let fields = self.model.fields(&state);
+                    if let Some(shorter) = self.overshoot(&state, &fields, step) {
                         self.progress.next_step = shorter;
                         continue;
                     }
-                    self.accept(state, target)
+                    self.accept(state, fields, target)
                 }
                 _ => false,
             };
@@ -282,32 +288,31 @@ impl Simulation {
     }
 
     /// The step that ends where the rate is what was asked for, if this one leaves it far behind; the rate falls exponentially.
-    fn overshoot(&self, state: &State, step: f64) -> Option<f64> {
+    fn overshoot(&self, state: &State, fields: &Fields, step: f64) -> Option<f64> {
         let End::Rate(fraction) = self.plan.end else { return None };
         if self.stepper.prescribed_step().is_some() {
             return None;
         }
         let wanted = fraction * self.progress.first_rate;
-        let reached =
-            self.model.wear_rate(&self.model.fields(state), &state.compression).max(f64::MIN_POSITIVE);
+        let reached = self.model.wear_rate(fields, &state.compression).max(f64::MIN_POSITIVE);
         let now = self.wear_rate();
         let part = (now / wanted).ln() / (now / reached).ln();
         (reached < OVERSHOT * wanted && part < 1.0).then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
     }
 
     /// Takes a state over if it is one that wear can lead to.
-    fn accept(&mut self, mut state: State, target: Option<f64>) -> bool {
-        let fields = self.model.fields(&state);
-        let wear_depth = self.model.radial_fields(&fields).wear_depth;
+    fn accept(&mut self, mut state: State, fields: Fields, target: Option<f64>) -> bool {
+        let radial = self.model.radial_fields(&fields);
         let allowed = (self.tolerance + INTERPOLATION) * self.model.depth_scale();
-        let grew = wear_depth.iter().zip(&self.wear_depth).all(|(now, before)| *now >= before - allowed);
+        let mut pairs = radial.wear_depth.iter().zip(&self.radial.wear_depth);
+        let grew = pairs.all(|(now, before)| *now >= before - allowed);
         if !(grew && fields.are_physical()) {
             return false;
         }
         if let Some(target) = target {
             state.cycles = target;
         }
-        (self.state, self.fields, self.wear_depth) = (state, fields, wear_depth);
+        (self.state, self.fields, self.radial) = (state, fields, radial);
         true
     }
 

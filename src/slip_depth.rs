@@ -9,6 +9,7 @@
 //!
 //! As wear changes nothing inside `c`, the depth worn away is the growth of the slip depth, `w = S - S_0`.
 
+use crate::abel::profile_factor;
 use crate::chebyshev::Chebyshev;
 use crate::error::{Error, Result};
 use crate::indenter::EquivalentProfile;
@@ -150,15 +151,8 @@ struct Transform<'a> {
 impl<'a> Transform<'a> {
     fn new(profile: &'a EquivalentProfile, stick_radius: f64) -> Result<Self> {
         let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
-        let argument = std::f64::consts::PI * mu;
         let rule = Rule::jacobi(NODES, 0.0, -nu)?;
-        Ok(Self {
-            profile,
-            stick_radius,
-            nu,
-            factor: (std::f64::consts::PI * nu.min(mu)).sin() / argument,
-            rule,
-        })
+        Ok(Self { profile, stick_radius, nu, factor: profile_factor(nu, mu), rule })
     }
 
     /// `(F 1)/ℓ^μ`.

@@ -46,8 +46,7 @@ pub trait Stepper {
     }
 }
 
-/// Largest estimated error over the springs, of a change `log_slip` of `λ`, in wear depth over the largest depth of the limit.
-fn relative_depth_error(model: &Model, slip_depth: &[f64], log_slip: &[f64]) -> f64 {
-    let largest = slip_depth.iter().zip(log_slip).map(|(s, e)| (s * e).abs()).fold(0.0, f64::max);
-    largest / model.depth_scale()
+/// Largest of some errors of the wear depth, m, over the largest depth of the limit.
+fn relative_depth_error(model: &Model, depths: impl Iterator<Item = f64>) -> f64 {
+    depths.fold(0.0, |largest: f64, depth| largest.max(depth.abs())) / model.depth_scale()
 }

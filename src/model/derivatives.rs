@@ -64,7 +64,7 @@ impl Model {
         (0..nodes.len()).map(rate).collect()
     }
 
-    /// Derivative of the elastic depth by the compressions: `Z^(1-ν) F_ij x_j^(k-1)`, shape `(springs, springs - 1)`.
+    /// Derivative of the elastic depth at spring `i` by the compression of spring `j`, over `Z^(1-ν)`: `F_ij x_j^(k-1)`.
     pub fn elastic_depth_by_compression(&self, fields: &Fields, i: usize, j: usize) -> f64 {
         self.operators.profile()[(i, j)] * fields.density_factor[j]
     }

@@ -20,7 +20,16 @@ pub struct RadialFields {
 impl Model {
     /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
     pub fn wear_volume(&self, fields: &Fields) -> f64 {
-        PI * fields.edge * dot(self.operators.depth_sum(), &fields.wear_depth)
+        self.volume(fields.edge, &fields.wear_depth)
+    }
+
+    /// Worn volume of the limit by the program's own quadrature, m³.
+    pub fn limit_volume(&self) -> f64 {
+        self.volume(self.unworn.limit_edge(), &self.limit_depth())
+    }
+
+    fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
+        PI * edge * dot(self.operators.depth_sum(), wear_depth)
     }
 
     /// Normal force, N [S, Eq. (22)].

@@ -62,9 +62,8 @@ impl CycleJump {
             difference.iter().zip(&self.fields.density_factor).map(|(q, factor)| q * factor).collect();
         let mut depth = vec![0.0; model.springs()];
         multiply(model.operators().profile().as_ref(), &density, &mut depth);
-        let scale = self.fields.edge.powf(0.5 * (1.0 - model.contact().half_space().grading()));
-        depth.iter_mut().for_each(|value| *value *= scale);
-        relative_depth_error(model, &depth, &vec![1.0; depth.len()])
+        let scale = self.fields.edge.powf(model.mu());
+        relative_depth_error(model, depth.into_iter().map(|value| scale * value))
     }
 }
 

@@ -122,7 +122,8 @@ impl Stepper for Implicit {
             parts.map(|(stage, (weight, embedded))| cycles * (weight - embedded) * stage.log_slip[i]).sum()
         };
         let difference: Vec<f64> = (0..start.len() - 1).map(difference).collect();
-        let error = relative_depth_error(model, &self.fields.slip_depth, &difference);
+        let depths = self.fields.slip_depth.iter().zip(&difference).map(|(slip, change)| slip * change);
+        let error = relative_depth_error(model, depths);
         Ok(Trial { state: Some(at), error, rate_evaluations: evaluations })
     }
 
@@ -200,7 +201,7 @@ impl Implicit {
         let n = model.springs();
         let inner = n - 1;
         let theta = 1.0 - target.edge / fields.edge;
-        let mu = 0.5 * (1.0 - model.contact().half_space().grading());
+        let mu = model.mu();
         let growth = target.step * model.wear_factor();
         let per_compression = growth * model.contact().half_space().normal_stiffness() / std::f64::consts::PI
             * fields.edge.powf(-mu);
