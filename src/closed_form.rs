@@ -20,8 +20,10 @@
 
 mod limiting_shape;
 mod wear_integral;
+mod wear_volume;
 
 pub use limiting_shape::LimitingShape;
+pub use wear_volume::{PowerLawVolume, gibson_wear_volume};
 
 pub use crate::half_space::similar_stiffness_ratio;
 pub use crate::stick_slip::{Regime, full_sliding_amplitude, slip_compression, stick_radius};

@@ -6,9 +6,9 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 use fretwear::progress::Progress;
-use fretwear::report::{self, CheckReport, InfoReport, LimitReport, RunReport, TableFile};
+use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile};
 use fretwear::run::{Resumed, RunResult};
-use fretwear::scene::Scene;
+use fretwear::scene::{MapScene, Scene};
 use fretwear::simulation::Observer;
 use fretwear::snapshot::StopReason;
 use fretwear::{Error, Result};
@@ -33,6 +33,8 @@ enum Command {
     Run(Run),
     /// Evaluate the limiting shape of a scene in closed form, without stepping in time
     Limit(Limit),
+    /// Compare gradings: wear maps, the optimal grading and worn profiles in closed form
+    Map(Map),
     /// Validate a scene and show what follows from it, without running anything
     Check(Check),
     /// Show what is in a result file and whether it is complete
@@ -81,6 +83,22 @@ struct Limit {
 }
 
 #[derive(Args)]
+struct Map {
+    /// What to compare, a TOML file; by default a paraboloid under elastic similarity
+    #[arg(value_name = "MAP.toml")]
+    map: Option<PathBuf>,
+    /// Directory for map.h5 and its CSV tables, made if it is missing
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Overwrite files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Args)]
 struct Check {
     /// The scene, a TOML file
     #[arg(value_name = "SCENE.toml")]
@@ -104,6 +122,7 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Run(arguments) => run(&arguments),
         Command::Limit(arguments) => limit(&arguments).map(done),
+        Command::Map(arguments) => map(&arguments).map(done),
         Command::Check(arguments) => check(&arguments).map(done),
         Command::Info(arguments) => info(&arguments).map(done),
     };
@@ -173,6 +192,12 @@ fn limit(arguments: &Limit) -> Result<String> {
         (false, Some(_)) => report.text() + "\n" + &report.profile_text(),
         (false, None) => report.text(),
     })
+}
+
+fn map(arguments: &Map) -> Result<String> {
+    let scene = arguments.map.as_deref().map(MapScene::read).transpose()?.unwrap_or_default();
+    let report = MapReport::write(&scene, &arguments.output, arguments.force)?;
+    Ok(if arguments.json { report::json(&report) } else { report.text() })
 }
 
 fn check(arguments: &Check) -> Result<String> {

@@ -1,5 +1,7 @@
 //! Gauss rules on [0, 1] for integrands with an algebraic end-point singularity.
 
+use std::sync::OnceLock;
+
 use crate::error::{Error, Result};
 
 /// Largest number of nodes of a [`Rule`]: the rounding errors of more were never looked at.
@@ -65,11 +67,7 @@ impl Rule {
                 range: "[1, 200]",
             });
         }
-        for (name, value) in [("upper quadrature exponent", upper), ("lower quadrature exponent", lower)] {
-            if !(value > -1.0 && value.is_finite()) {
-                return Err(Error::OutOfRange { name, value, range: "(-1, inf)" });
-            }
-        }
+        check_exponents(upper, lower)?;
         let rising = Jacobi::new(node_count, upper, lower);
         let below = rising.zeros_up_to(0.5);
         let from_below = rising.smallest_zeros(below)?;
@@ -125,6 +123,54 @@ impl Rule {
             why: format!(
                 "their sum is {found}, not {expected} ({count} nodes, exponents {upper} and {lower})"
             ),
+        })
+    }
+}
+
+fn check_exponents(upper: f64, lower: f64) -> Result<()> {
+    for (name, value) in [("upper quadrature exponent", upper), ("lower quadrature exponent", lower)] {
+        if !(value > -1.0 && value.is_finite()) {
+            return Err(Error::OutOfRange { name, value, range: "(-1, inf)" });
+        }
+    }
+    Ok(())
+}
+
+/// Rules of one pair of exponents, each built when it is first asked for.
+///
+/// Nodes are dear: a rule of 48 costs as much as a thousand evaluations of a simple integrand.
+#[derive(Debug, Clone)]
+pub struct RuleFamily {
+    exponents: (f64, f64),
+    rules: [OnceLock<Rule>; FAMILY.len()],
+}
+
+/// Node counts of a [`RuleFamily`].
+const FAMILY: [usize; 16] = [12, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 136, 168, MAX_NODES];
+
+impl RuleFamily {
+    /// Rules of weight `(1-v)^upper v^lower`, as [`Rule::jacobi`] gives them.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the exponent that is not above -1, or above 10.
+    pub fn new(upper: f64, lower: f64) -> Result<Self> {
+        check_exponents(upper, lower)?;
+        if upper.max(lower) > 10.0 {
+            return Err(Error::OutOfRange {
+                name: "quadrature exponent",
+                value: upper.max(lower),
+                range: "(-1, 10]",
+            });
+        }
+        Ok(Self { exponents: (upper, lower), rules: Default::default() })
+    }
+
+    /// The smallest rule of at least so many nodes; the largest one if none has as many.
+    pub fn at_least(&self, node_count: usize) -> &Rule {
+        let place = FAMILY.partition_point(|&count| count < node_count).min(FAMILY.len() - 1);
+        let (upper, lower) = self.exponents;
+        self.rules[place].get_or_init(|| {
+            Rule::jacobi(FAMILY[place], upper, lower).expect("for exponents in (-1, 10] no zero is missed")
         })
     }
 }

@@ -5,12 +5,14 @@
 mod check;
 mod info;
 mod limit;
+mod map;
 mod run;
 mod text;
 
 pub use check::CheckReport;
 pub use info::InfoReport;
 pub use limit::{LimitReport, ProfileTable, parse_radii};
+pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;
 
 use std::path::Path;

@@ -41,9 +41,12 @@ use crate::loading::Loading;
 use crate::wear::Archard;
 
 mod document;
+mod map;
 pub mod quantity;
 mod sections;
 mod unit;
+
+pub use map::MapScene;
 
 /// Most snapshots a scene may ask for.
 pub const MOST_SNAPSHOTS: usize = 100_000;
@@ -145,7 +148,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`], whose message shows file, line and column, the line with the bad place marked, the key, and the cure.
     pub fn from_toml(text: &str, name: &str) -> Result<Self> {
-        let source = document::Source { name, text };
+        let source = document::Source { name, text, kind: "a scene" };
         if text.len() as u64 > LARGEST {
             return Err(source.missing(format_args!("is larger than {LARGEST} bytes, which no scene is")));
         }
@@ -158,25 +161,7 @@ impl Scene {
     /// # Errors
     /// [`Error::File`] if it cannot be read as text, else as [`Scene::from_toml`].
     pub fn read(path: &Path) -> Result<Self> {
-        let failed = |why: String| Error::File { path: path.to_path_buf(), why };
-        let reason = |error: std::io::Error| match error.kind() {
-            std::io::ErrorKind::NotFound => failed("there is no such file".into()),
-            std::io::ErrorKind::IsADirectory => failed("is a directory, not a scene".into()),
-            _ => failed(format!("cannot be read: {error}")),
-        };
-        let file = File::open(path).map_err(reason)?;
-        let mut bytes = Vec::new();
-        // One byte past the limit tells a file that is too large from one that just fits.
-        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(reason)?;
-        if bytes.len() as u64 > LARGEST {
-            return Err(failed(format!("is larger than {LARGEST} bytes, which no scene is")));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
-            failed(format!("line {line} is not UTF-8 text; a scene is a TOML file in UTF-8"))
-        })?;
-        Self::from_toml(&text, &path.display().to_string())
+        Self::from_toml(&read_text(path)?, &path.display().to_string())
     }
 
     /// Title, one line.
@@ -236,4 +221,26 @@ impl Scene {
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
+}
+
+/// Reads a TOML file, bounded in size.
+fn read_text(path: &Path) -> Result<String> {
+    let failed = |why: String| Error::File { path: path.to_path_buf(), why };
+    let reason = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => failed("there is no such file".into()),
+        std::io::ErrorKind::IsADirectory => failed("is a directory, not a file".into()),
+        _ => failed(format!("cannot be read: {error}")),
+    };
+    let file = File::open(path).map_err(reason)?;
+    let mut bytes = Vec::new();
+    // One byte past the limit tells a file that is too large from one that just fits.
+    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(reason)?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(failed(format!("is larger than {LARGEST} bytes, which no such file is")));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
+        failed(format!("line {line} is not UTF-8 text; it must be a TOML file in UTF-8"))
+    })
 }

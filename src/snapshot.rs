@@ -6,6 +6,7 @@
 //! A file is laid out in memory, written to a temporary beside it, synchronised and renamed, so a run killed at
 //! any moment leaves either the previous save or the new one, never a torn file.
 
+mod arrays;
 mod atomic;
 mod encode;
 mod labelled;
@@ -13,6 +14,7 @@ pub mod layout;
 mod reader;
 mod writer;
 
+pub use arrays::{Array, ArrayFile, Coordinate};
 pub(crate) use atomic::AtomicFile;
 pub use reader::RunFile;
 pub use writer::RunWriter;

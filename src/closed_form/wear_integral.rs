@@ -1,8 +1,11 @@
 //! The wear integrals [S, Eqs. (3), (4)] in logarithmic variables, in which nothing cancels.
 
+use std::sync::Arc;
+
 use crate::error::{Error, Result};
 use crate::indenter::EquivalentProfile;
-use crate::quadrature::{MAX_NODES, Rule};
+use crate::quadrature::{MAX_NODES, RuleFamily};
+use crate::roots;
 
 /// Factor in front of [S, Eq. (3)], `S = sin(πμ)/(πμ)` with `μ = (1-k)/2`; finite as `k → ±1`.
 pub(super) fn transform_factor(grading: f64) -> f64 {
@@ -26,7 +29,8 @@ pub(super) struct WearIntegral {
     pub(super) profile: EquivalentProfile,
     pub(super) indentation: f64,
     pub(super) contact_radius: f64,
-    rule: Rule,
+    rules: Arc<RuleFamily>,
+    nodes: usize,
     mu: f64,
     nu: f64,
 }
@@ -44,48 +48,102 @@ struct Node {
 }
 
 impl WearIntegral {
-    /// Integrals up to radii `c e^span` or so, for which the number of nodes is chosen.
+    /// The rules for one grading, which every profile and amplitude can share.
+    pub(super) fn rules(grading: f64) -> Result<Arc<RuleFamily>> {
+        RuleFamily::new(0.0, 0.5 * (1.0 - grading)).map(Arc::new)
+    }
+
+    /// Integrals of a first contact.
     pub(super) fn new(
         profile: EquivalentProfile,
         indentation: f64,
         contact_radius: f64,
-        largest_span: f64,
-    ) -> Result<Self> {
-        let nodes = node_count(&profile, contact_radius, largest_span).min(MAX_NODES);
-        Self::with_nodes(profile, indentation, contact_radius, nodes)
+        rules: Arc<RuleFamily>,
+    ) -> Self {
+        let (mu, nu) = (0.5 * (1.0 - profile.grading()), 0.5 * (1.0 + profile.grading()));
+        Self { profile, indentation, contact_radius, rules, nodes: 1, mu, nu }
     }
 
-    /// Makes sure of the nodes for radii up to `c e^span = a0 e^growth`; tells whether there had been too few.
+    /// The limit `b = ln(a∞/a0)`, the root of `Δf(a∞) = 0`; chooses the number of nodes for radii up to there.
+    ///
+    /// # Arguments
+    /// * `stick_logarithm` -- `η = ln(a0/c)`, positive
+    /// * `largest` -- the most that `b` can be
     ///
     /// # Errors
-    /// [`Error::NotConverged`] if more are needed than a rule can have: next to the equator of a sphere, or for exponents in the thousands.
-    pub(super) fn refine(&mut self, span: f64, growth: f64) -> Result<bool> {
-        let needed = node_count(&self.profile, self.contact_radius * growth.exp(), span);
-        if needed <= self.rule.len() {
-            return Ok(false);
+    /// [`Error::Inconsistent`] if there is none up to the largest; [`Error::NotConverged`] if more nodes are needed than a rule can have:
+    /// next to the equator of a sphere, or for exponents in the thousands.
+    pub(super) fn limiting_growth(&mut self, stick_logarithm: f64, largest: f64) -> Result<f64> {
+        // A guess from above in most cases; it is looked at again.
+        let guess = (stick_logarithm * self.mu).min(largest);
+        self.nodes = self.node_count(stick_logarithm + guess, guess).min(MAX_NODES);
+        loop {
+            let growth = self.growth_with_nodes(stick_logarithm, largest)?;
+            let needed = self.node_count(stick_logarithm + growth, growth);
+            if needed <= self.nodes {
+                return Ok(growth);
+            }
+            if needed > MAX_NODES {
+                return Err(Error::NotConverged {
+                    what: "wear integral",
+                    why: format!(
+                        "{needed} nodes are needed for a contact radius of {} m at an indentation of {} m, {MAX_NODES} are the most",
+                        self.contact_radius * growth.exp(),
+                        self.indentation
+                    ),
+                });
+            }
+            self.nodes = needed;
         }
-        if needed > MAX_NODES {
-            return Err(Error::NotConverged {
-                what: "wear integral",
-                why: format!(
-                    "{needed} nodes are needed for a contact radius of {} m at an indentation of {} m, {MAX_NODES} are the most",
-                    self.contact_radius * growth.exp(),
-                    self.indentation
-                ),
-            });
-        }
-        self.rule = Rule::jacobi(needed, 0.0, self.mu)?;
-        Ok(true)
     }
 
-    pub(super) fn with_nodes(
-        profile: EquivalentProfile,
-        indentation: f64,
-        contact_radius: f64,
-        nodes: usize,
-    ) -> Result<Self> {
-        let (mu, nu) = (0.5 * (1.0 - profile.grading()), 0.5 * (1.0 + profile.grading()));
-        Ok(Self { rule: Rule::jacobi(nodes, 0.0, mu)?, profile, indentation, contact_radius, mu, nu })
+    /// The same with the nodes as they are.
+    pub(super) fn growth_with_nodes(&self, stick_logarithm: f64, largest: f64) -> Result<f64> {
+        let mean = |growth: f64| self.mean_compression(stick_logarithm + growth, growth);
+        // First order in small amplitudes, an upper bound there; else the bound that always holds, with room for rounding.
+        let small = stick_logarithm * self.mu * 1.01;
+        let bound = largest * (1.0 + 1e-9) + f64::EPSILON;
+        let high = [small, bound].into_iter().find(|&growth| growth <= bound && mean(growth) < 0.0);
+        match high {
+            Some(high) => roots::bracketed(mean, 0.0, high, 0.0),
+            None => Err(Error::Inconsistent {
+                what: "limiting shape",
+                why: format!(
+                    "at an indentation of {} m the worn indenter would touch beyond {} m",
+                    self.indentation,
+                    self.contact_radius * largest.exp()
+                ),
+            }),
+        }
+    }
+
+    /// The same with another number of nodes.
+    #[cfg(test)]
+    pub(super) fn with_nodes(mut self, nodes: usize) -> Self {
+        self.nodes = nodes;
+        self
+    }
+
+    /// Nodes for round-off accuracy at radii up to `c e^span = a0 e^growth`.
+    ///
+    /// The integrands have the zeros of `φ`, `v = ±iπ/L`, and for the sphere its equator, `v = -ln(R/r)/L`, as nearest singularities;
+    /// the error falls as `ρ^(-2n)` with the sum `ρ` of the semi-axes of the ellipse through them. Steep power laws and long spans add a
+    /// boundary layer of relative width `1/(nL)`.
+    fn node_count(&self, span: f64, growth: f64) -> usize {
+        const DIGITS: f64 = 18.5; // half of -ln(1e-16)
+        // Of the ellipse with foci 0 and 1 at these distances, in units of half the distance of the foci.
+        let ellipse = |to_zero: f64, to_one: f64| {
+            let axis = to_zero + to_one;
+            axis + (axis * axis - 1.0).sqrt()
+        };
+        let imaginary = std::f64::consts::PI / span;
+        let steepness = self.profile.exponent().unwrap_or(2.0).max(2.0) * span;
+        let smooth = DIGITS / ellipse(imaginary, imaginary.hypot(1.0)).ln() + 2.5 * steepness.sqrt();
+        let rim = self.profile.singular_radius().map_or(0.0, |radius| {
+            let distance = (radius / self.contact_radius).ln() - growth;
+            DIGITS / ellipse(distance / span, 1.0 + distance / span).ln()
+        });
+        smooth.max(rim).ceil() as usize + 8
     }
 
     /// `Δf/d` at the radius `c e^span = a0 e^growth`.
@@ -144,7 +202,7 @@ impl WearIntegral {
     fn mean(&self, span: f64, growth: f64, integrand: impl Fn(f64, &Node) -> f64) -> f64 {
         let edge = self.edge_compression(growth);
         let origin = self.profile.at(self.contact_radius * growth.exp());
-        self.rule.mean(|v| {
+        self.rules.at_least(self.nodes).mean(|v| {
             let doubled = 2.0 * span * v;
             let rise = origin.rise(-span * v) / self.indentation;
             integrand(
@@ -158,26 +216,4 @@ impl WearIntegral {
 /// `ln φ(y) = ln((e^y - 1)/y)`, `y >= 0`, without overflow.
 fn logarithmic_growth(y: f64) -> f64 {
     if y > 0.0 { y + (-(-y).exp_m1() / y).ln() } else { 0.0 }
-}
-
-/// Nodes for round-off accuracy at radii up to `outermost` and spans up to `span`.
-///
-/// The integrands have the zeros of `φ`, `v = ±iπ/L`, and for the sphere its equator, `v = -ln(R/r)/L`, as nearest singularities; the
-/// error falls as `ρ^(-2n)` with the sum `ρ` of the semi-axes of the ellipse through them. Steep power laws and long spans add a
-/// boundary layer of relative width `1/(nL)`.
-fn node_count(profile: &EquivalentProfile, outermost: f64, span: f64) -> usize {
-    const DIGITS: f64 = 18.5; // half of -ln(1e-16)
-    // Of the ellipse with foci 0 and 1 at these distances, in units of half the distance of the foci.
-    let ellipse = |to_zero: f64, to_one: f64| {
-        let axis = to_zero + to_one;
-        axis + (axis * axis - 1.0).sqrt()
-    };
-    let imaginary = std::f64::consts::PI / span;
-    let steepness = profile.exponent().unwrap_or(2.0).max(2.0) * span;
-    let smooth = DIGITS / ellipse(imaginary, imaginary.hypot(1.0)).ln() + 2.5 * steepness.sqrt();
-    let rim = profile.singular_radius().map_or(0.0, |radius| {
-        let distance = (radius / outermost).ln() / span;
-        DIGITS / ellipse(distance, 1.0 + distance).ln()
-    });
-    smooth.max(rim).ceil() as usize + 8
 }

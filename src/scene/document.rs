@@ -14,6 +14,8 @@ use crate::error::{Error, Result};
 pub(super) struct Source<'a> {
     pub(super) name: &'a str,
     pub(super) text: &'a str,
+    /// What it describes: `a scene`.
+    pub(super) kind: &'static str,
 }
 
 impl<'a> Source<'a> {
@@ -130,7 +132,7 @@ impl<'a> Section<'a> {
             return Err(self.source.error(place, format_args!("this version does not offer {name}")));
         }
         let cure = suggestion(key.get_ref(), known);
-        Err(self.source.error(place, format_args!("{name} is not a key of a scene; {cure}")))
+        Err(self.source.error(place, format_args!("{name} is not a key of {}; {cure}", self.source.kind)))
     }
 
     /// The value of a key, if given.
@@ -265,6 +267,11 @@ impl<'a> Entry<'a> {
         // A table has no text of its own to show.
         let place = if matches!(self.value, DeValue::Table(_)) { &self.key_place } else { &self.place };
         self.source.error(place.clone(), format_args!("{}: {wanted}, found {found}", self.path))
+    }
+
+    /// Whether the value is a table.
+    pub(super) fn is_table(&self) -> bool {
+        matches!(self.value, DeValue::Table(_))
     }
 
     /// The value as a table.

@@ -61,7 +61,7 @@ fn table<'a>(root: &Section<'a>, key: &str, cure: &str) -> Result<Section<'a>> {
 }
 
 /// One line: a title goes into files and figures.
-fn title(entry: &Entry) -> Result<String> {
+pub(super) fn title(entry: &Entry) -> Result<String> {
     const LONGEST: usize = 1000;
     let title = entry.string()?;
     if title.chars().any(char::is_control) {
@@ -172,7 +172,7 @@ fn body(section: &Section, grading: Option<f64>, warnings: &mut Vec<String>) -> 
     body.map_err(|error| section.locate(error))
 }
 
-fn poisson(section: &Section) -> Result<Poisson> {
+pub(super) fn poisson(section: &Section) -> Result<Poisson> {
     let entry = section.required("poisson_ratio", "a number such as 0.3, or \"similar\"")?;
     match entry.string() {
         Ok("similar") => Ok(Poisson::Similar),

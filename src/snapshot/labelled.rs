@@ -90,6 +90,18 @@ impl Dimension {
         let extent = if resizable { Extent::resizable(length) } else { Extent::fixed(length) };
         let scale = builder.shape(extent).create(label.name)?;
         scale.write_raw(&index)?;
+        Self::with_scale(scale, label, length, resizable)
+    }
+
+    /// Creates a coordinate whose values are more than an index.
+    pub(super) fn coordinate(group: &Group, label: Label, values: &[f64]) -> Result<Self> {
+        let builder = group.new_dataset::<f64>().obj_track_times(false).no_chunk();
+        let scale = builder.shape(values.len()).create(label.name)?;
+        scale.write_raw(values)?;
+        Self::with_scale(scale, label, values.len(), false)
+    }
+
+    fn with_scale(scale: Dataset, label: Label, length: usize, resizable: bool) -> Result<Self> {
         put_label(&scale, label)?;
         let name = format!("{}\0", label.name);
         let name = CStr::from_bytes_with_nul(name.as_bytes()).map_err(|error| error.to_string())?;

@@ -10,7 +10,7 @@ pub const FORMAT_VERSION: i32 = 1;
 pub const CHECKPOINT: &str = "checkpoint";
 
 /// Name, units (in the spelling of UDUNITS) and meaning of one dataset.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Label {
     /// Name of the dataset in its group.
     pub name: &'static str,
@@ -20,7 +20,8 @@ pub struct Label {
     pub long_name: &'static str,
 }
 
-const fn label(name: &'static str, units: &'static str, long_name: &'static str) -> Label {
+/// A label.
+pub const fn label(name: &'static str, units: &'static str, long_name: &'static str) -> Label {
     Label { name, units, long_name }
 }
 

@@ -3,6 +3,8 @@
 // Every test file uses a part of this.
 #![allow(dead_code)]
 
+pub mod reference;
+
 use fretwear::contact::InitialContact;
 use fretwear::friction::Coulomb;
 use fretwear::grid::Clustering;

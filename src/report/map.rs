@@ -1,0 +1,116 @@
+//! `fretwear map`: what the maps show, in a few numbers.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::text::{Rows, number};
+use crate::error::Result;
+use crate::scene::MapScene;
+use crate::wear_map::{self, Control, End, MapStudy, Optimum};
+
+/// Summary of a wear map; the serialised fields are the keys of the JSON.
+#[derive(Debug, Clone, Serialize)]
+pub struct MapReport {
+    /// Title of the map.
+    #[serde(skip)]
+    pub title: Option<String>,
+    /// The files written.
+    pub files: Vec<PathBuf>,
+    /// Exponent of the indenter.
+    pub exponent: f64,
+    /// First and last grading.
+    pub grading_range: [f64; 2],
+    /// First and last `U/(μ_f d)`.
+    pub amplitude_ratio_range: [f64; 2],
+    /// Number of gradings and of amplitudes.
+    pub points: [usize; 2],
+    /// Smallest and largest `ΔV(k)/ΔV(0)` on the map; null where the homogeneous contact slides at every amplitude.
+    pub wear_volume_ratio_range: Option<[f64; 2]>,
+    /// Amplitude ratio below which a slightly negative grading wears less than a homogeneous medium.
+    pub optimum_crosses_zero: Option<f64>,
+    /// Amplitude ratio above which the limit `k → 1` wears less than the homogeneous medium.
+    pub limit_beats_homogeneous: Option<f64>,
+    /// Amplitude ratio above which no grading wears less than the limit `k → 1`.
+    pub limit_is_best: Option<f64>,
+    /// The optimal grading over the amplitude at the same indentation.
+    pub optimum: Vec<OptimumRow>,
+}
+
+/// One row of the table of optimal gradings.
+#[derive(Debug, Clone, Serialize)]
+pub struct OptimumRow {
+    /// `U/(μ_f d)`.
+    pub amplitude_ratio: f64,
+    /// `k*`.
+    pub grading: f64,
+    /// Least worn volume over that of the homogeneous medium.
+    pub wear_volume_ratio: f64,
+}
+
+impl MapReport {
+    /// Computes the maps of a scene and writes their files into a directory.
+    ///
+    /// # Errors
+    /// Those of the closed form; [`Error::File`](crate::Error::File) names a file that cannot be written, before anything is.
+    pub fn write(scene: &MapScene, folder: &Path, overwrite: bool) -> Result<Self> {
+        wear_map::check_folder(folder, overwrite)?;
+        let study = MapStudy::new(scene)?;
+        let files = wear_map::write(scene, &study, folder, overwrite)?;
+        let map = &study.map;
+        let ends = |values: &[f64]| [values[0], values[values.len() - 1]];
+        let ratios = || map.ratio.iter().copied().filter(|ratio| ratio.is_finite());
+        let least = ratios().fold(f64::INFINITY, f64::min);
+        let at_indentation = study.optimum.iter().find(|curve| curve.control == Control::Indentation);
+        let row = |it: &Optimum| OptimumRow {
+            amplitude_ratio: it.amplitude_ratio,
+            grading: if it.end == End::MinusOne { -1.0 } else { it.grading },
+            wear_volume_ratio: it.volume_ratio,
+        };
+        Ok(Self {
+            title: scene.title.clone(),
+            files,
+            exponent: scene.exponent,
+            grading_range: ends(&map.gradings),
+            amplitude_ratio_range: ends(&map.amplitude_ratios),
+            points: [map.gradings.len(), map.amplitude_ratios.len()],
+            wear_volume_ratio_range: least
+                .is_finite()
+                .then(|| [least, ratios().fold(f64::NEG_INFINITY, f64::max)]),
+            optimum_crosses_zero: study.thresholds.optimum_crosses_zero,
+            limit_beats_homogeneous: study.thresholds.limit_beats_homogeneous,
+            limit_is_best: study.thresholds.limit_is_best,
+            optimum: at_indentation.iter().flat_map(|curve| curve.points.iter().map(row)).collect(),
+        })
+    }
+
+    /// A table for people.
+    pub fn text(&self) -> String {
+        const MOST_ROWS: usize = 12;
+        let range = |[from, to]: [f64; 2]| format!("{} to {}", number(from), number(to));
+        let amplitude = |value: Option<f64>| value.map(|it| format!("U/(μ_f d) = {}", number(it)));
+        let mut rows = Rows::titled(self.title.as_deref());
+        rows.row("indenter", format!("f = A r^{}", number(self.exponent)));
+        rows.row("grading k", format!("{}, {} values", range(self.grading_range), self.points[0]));
+        rows.row(
+            "amplitude U/(μ_f d)",
+            format!("{}, {} values", range(self.amplitude_ratio_range), self.points[1]),
+        );
+        rows.optional("worn volume over homogeneous", self.wear_volume_ratio_range.map(range));
+        rows.gap();
+        rows.optional("negative k is best below", amplitude(self.optimum_crosses_zero));
+        rows.optional("k → 1 beats k = 0 above", amplitude(self.limit_beats_homogeneous));
+        rows.optional("k → 1 is best above", amplitude(self.limit_is_best));
+        rows.gap();
+        let stride = self.optimum.len().div_ceil(MOST_ROWS).max(1);
+        for row in self.optimum.iter().step_by(stride) {
+            let name = format!("best k at U/(μ_f d) = {}", number(row.amplitude_ratio));
+            rows.row(&name, format!("{}, wears {}", number(row.grading), number(row.wear_volume_ratio)));
+        }
+        rows.gap();
+        for file in &self.files {
+            rows.row("written", file.display());
+        }
+        rows.finish()
+    }
+}

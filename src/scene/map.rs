@@ -1,0 +1,224 @@
+//! The file of `fretwear map`: what to compare, over which gradings and amplitudes.
+
+use std::path::Path;
+
+use super::document::{Entry, Section, Source};
+use super::quantity::Dimension;
+use super::sections;
+use super::{LARGEST, read_text};
+use crate::error::Result;
+use crate::half_space::{HalfSpace, Poisson};
+
+/// Most gradings or amplitudes along one axis.
+pub const MOST_ALONG_AXIS: usize = 20_000;
+
+/// Most points of a map.
+pub const MOST_POINTS: usize = 10_000_000;
+
+/// A valid description of wear maps.
+///
+/// # Examples
+/// ```
+/// use fretwear::scene::MapScene;
+///
+/// let scene = MapScene::from_toml("[map]\ngrading = { from = -0.5, to = 0.5, count = 11 }", "map.toml")?;
+/// assert_eq!((scene.exponent, scene.gradings.len(), scene.gradings[5]), (2.0, 11, 0.0));
+/// # Ok::<(), fretwear::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapScene {
+    /// Title, one line.
+    pub title: Option<String>,
+    /// Exponent `n` of the indenter `f = A r^n`.
+    pub exponent: f64,
+    /// Poisson's ratio of all half-spaces, or elastic similarity.
+    pub poisson: Poisson,
+    /// Gradings of the map, increasing, each in (-1, 1).
+    pub gradings: Vec<f64>,
+    /// Amplitudes `U/(μ_f d)` of the map, increasing, each positive.
+    pub amplitude_ratios: Vec<f64>,
+    /// Values `ΔV(k)/ΔV(0)` of the isolines, increasing, each positive.
+    pub levels: Vec<f64>,
+    /// Amplitudes `U/(μ_f d)` at which the optimal grading is searched, increasing.
+    pub optimum_amplitude_ratios: Vec<f64>,
+    /// Depths of reference `z0`, in contact radii of the homogeneous contact, for the optimum at fixed force.
+    pub reference_depths: Vec<f64>,
+    /// Gradings of the worn profiles.
+    pub profile_gradings: Vec<f64>,
+    /// Amplitude `U/(μ_f d)` of the worn profiles.
+    pub profile_amplitude_ratio: f64,
+    /// Number of radii of the worn profiles, at least 2.
+    pub profile_points: usize,
+    /// The TOML text as it was read.
+    pub text: String,
+}
+
+impl Default for MapScene {
+    /// The paraboloid under elastic similarity, as in the paper.
+    fn default() -> Self {
+        Self::from_toml("", "the built-in map").expect("an empty file is valid")
+    }
+}
+
+impl MapScene {
+    /// Reads the TOML text.
+    ///
+    /// # Errors
+    /// As [`Scene::from_toml`](super::Scene::from_toml).
+    pub fn from_toml(text: &str, name: &str) -> Result<Self> {
+        let source = Source { name, text, kind: "a map" };
+        if text.len() as u64 > LARGEST {
+            return Err(source.missing(format_args!("is larger than {LARGEST} bytes, which no map is")));
+        }
+        let document = source.parse()?;
+        map(&Section::root(source, document.get_ref()), text)
+    }
+
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// As [`Scene::read`](super::Scene::read).
+    pub fn read(path: &Path) -> Result<Self> {
+        Self::from_toml(&read_text(path)?, &path.display().to_string())
+    }
+}
+
+fn map(root: &Section, text: &str) -> Result<MapScene> {
+    root.only(&["title", "indenter", "half_space", "map", "optimum", "profiles"], &[])?;
+    let title = root.optional("title").map(|entry| sections::title(&entry)).transpose()?;
+    let table = |key: &str| root.optional(key).map(|entry| entry.section()).transpose();
+
+    let mut exponent = 2.0;
+    if let Some(indenter) = table("indenter")? {
+        indenter.only(&["exponent"], &[])?;
+        let entry = indenter.required("exponent", "2 is a paraboloid, 1 a cone")?;
+        exponent = entry.quantity_in(Dimension::NUMBER, "[0.1, 20]", |n| (0.1..=20.0).contains(&n))?;
+    }
+    let mut poisson = Poisson::Similar;
+    if let Some(half_space) = table("half_space")? {
+        half_space.only(&["poisson_ratio"], &[])?;
+        poisson = sections::poisson(&half_space)?;
+        HalfSpace::from_modulus(0.0, 1.0, 1.0, poisson).map_err(|error| half_space.locate(error))?;
+    }
+
+    let grading = Axis { range: "(-1, 1)", holds: |k| k > -1.0 && k < 1.0, least: f64::NEG_INFINITY };
+    let amplitude = Axis { range: "[1e-12, 1e3]", holds: |u| (1e-12..=1e3).contains(&u), least: 0.0 };
+    let level = Axis { range: "(0, inf)", holds: |level| level > 0.0, least: 0.0 };
+    let depth = Axis { range: "[1e-6, 1e6]", holds: |depth| (1e-6..=1e6).contains(&depth), least: 0.0 };
+
+    let mut gradings: Vec<f64> = (0..190).map(|i| (i as f64 - 90.0) / 100.0).collect();
+    let mut amplitude_ratios: Vec<f64> = geometric(1e-4, 1.0, 161);
+    let mut levels =
+        vec![0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0];
+    if let Some(section) = table("map")? {
+        section.only(&["grading", "amplitude_ratio", "levels"], &[])?;
+        replace(&mut gradings, section.optional("grading"), &grading)?;
+        replace(&mut amplitude_ratios, section.optional("amplitude_ratio"), &amplitude)?;
+        replace(&mut levels, section.optional("levels"), &level)?;
+        bounded(&section, gradings.len(), amplitude_ratios.len())?;
+    }
+    let mut optimum_amplitude_ratios = geometric(1e-6, 1.4, 124);
+    let mut reference_depths = vec![1.0];
+    if let Some(section) = table("optimum")? {
+        section.only(&["amplitude_ratio", "reference_depth"], &[])?;
+        replace(&mut optimum_amplitude_ratios, section.optional("amplitude_ratio"), &amplitude)?;
+        replace(&mut reference_depths, section.optional("reference_depth"), &depth)?;
+    }
+    let mut profile_gradings = vec![-0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 0.9];
+    let (mut profile_amplitude_ratio, mut profile_points) = (0.5, 401);
+    if let Some(section) = table("profiles")? {
+        section.only(&["grading", "amplitude_ratio", "points"], &[])?;
+        replace(&mut profile_gradings, section.optional("grading"), &grading)?;
+        if let Some(entry) = section.optional("amplitude_ratio") {
+            profile_amplitude_ratio =
+                entry.quantity_in(Dimension::NUMBER, amplitude.range, amplitude.holds)?;
+        }
+        if let Some(entry) = section.optional("points") {
+            profile_points = entry.whole(2..=MOST_ALONG_AXIS)?;
+        }
+        bounded(&section, profile_gradings.len(), profile_points)?;
+    }
+    Ok(MapScene {
+        title,
+        exponent,
+        poisson,
+        gradings,
+        amplitude_ratios,
+        levels,
+        optimum_amplitude_ratios,
+        reference_depths,
+        profile_gradings,
+        profile_amplitude_ratio,
+        profile_points,
+        text: text.into(),
+    })
+}
+
+fn bounded(section: &Section, rows: usize, columns: usize) -> Result<()> {
+    if rows * columns <= MOST_POINTS {
+        return Ok(());
+    }
+    Err(section
+        .error(format_args!("{rows} x {columns} points are more than {MOST_POINTS}; make the steps coarser")))
+}
+
+/// What the values along an axis must satisfy.
+struct Axis {
+    range: &'static str,
+    holds: fn(f64) -> bool,
+    /// Above which geometric spacing makes sense.
+    least: f64,
+}
+
+fn geometric(from: f64, to: f64, count: usize) -> Vec<f64> {
+    let step = (to / from).ln() / (count - 1) as f64;
+    (0..count).map(|i| if i + 1 == count { to } else { from * (step * i as f64).exp() }).collect()
+}
+
+fn replace(values: &mut Vec<f64>, entry: Option<Entry>, axis: &Axis) -> Result<()> {
+    if let Some(entry) = entry {
+        *values = axis_values(&entry, axis)?;
+    }
+    Ok(())
+}
+
+/// A list of values, in any order, or `{ from, to, count, spacing }`.
+fn axis_values(entry: &Entry, axis: &Axis) -> Result<Vec<f64>> {
+    let number = |entry: &Entry| entry.quantity_in(Dimension::NUMBER, axis.range, axis.holds);
+    if !entry.is_table() {
+        let entries = entry.array(MOST_ALONG_AXIS)?;
+        if entries.is_empty() {
+            return Err(entry.error("is empty; give at least one value"));
+        }
+        let mut values = entries.iter().map(number).collect::<Result<Vec<_>>>()?;
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        return Ok(values);
+    }
+    let section = entry.section()?;
+    section.only(&["from", "to", "count", "spacing"], &[])?;
+    let cure = "an axis is a list or { from = ..., to = ..., count = ... }";
+    let (from, to) = (section.required("from", cure)?, section.required("to", cure)?);
+    let (low, high) = (number(&from)?, number(&to)?);
+    if low >= high {
+        return Err(to.error(format_args!("is not above {} = {low}", from.path())));
+    }
+    let count = section.required("count", cure)?.whole(2..=MOST_ALONG_AXIS)?;
+    let spacings = ["linear", "geometric"];
+    let is_geometric = match section.optional("spacing") {
+        Some(entry) => {
+            let chosen = entry.word(&spacings)? == 1;
+            if chosen && low <= axis.least.max(0.0) {
+                return Err(entry.error("needs values above zero; use \"linear\""));
+            }
+            chosen
+        }
+        None => axis.least == 0.0,
+    };
+    if is_geometric {
+        return Ok(geometric(low, high, count));
+    }
+    let last = (count - 1) as f64;
+    // Weighted so that a point meant to be zero is zero.
+    Ok((0..count).map(|i| (low * (last - i as f64) + high * i as f64) / last).collect())
+}

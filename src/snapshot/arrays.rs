@@ -1,0 +1,94 @@
+//! A file of labelled arrays over coordinates: what studies write beside their CSV tables.
+
+use std::path::Path;
+
+use hdf5::Result as Hdf5Result;
+
+use super::atomic::AtomicFile;
+use super::labelled::{Dimension, bytes_of, file_in_memory, put_array, put_integer, put_text};
+use super::layout::Label;
+use crate::error::{Error, Result};
+
+/// A coordinate: a dimension and the values along it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coordinate {
+    /// Name, units and meaning; the name is that of the dimension too.
+    pub label: Label,
+    /// Values along the dimension.
+    pub values: Vec<f64>,
+}
+
+/// An array over some of the coordinates of its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Array {
+    /// Name, units and meaning.
+    pub label: Label,
+    /// Names of the coordinates, slowest first.
+    pub axes: Vec<&'static str>,
+    /// Values, the last axis fastest.
+    pub values: Vec<f64>,
+}
+
+/// Everything that a file of arrays holds; valid netCDF-4 in which every array names its coordinates.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ArrayFile {
+    /// Value of the root attribute `format`.
+    pub format: &'static str,
+    /// Further root attributes, all text.
+    pub attributes: Vec<(&'static str, String)>,
+    /// The dimensions.
+    pub coordinates: Vec<Coordinate>,
+    /// The arrays.
+    pub arrays: Vec<Array>,
+}
+
+impl ArrayFile {
+    /// Version of the layout, the root attribute `format_version`.
+    pub const FORMAT_VERSION: i32 = 1;
+
+    /// Writes the file, as a whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::File`] if the file exists and `overwrite` is not given, or cannot be written.
+    ///
+    /// # Panics
+    /// If an array names a coordinate that is not there, or does not have the product of their lengths as its own.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
+        let mut file = AtomicFile::new(path, overwrite)?;
+        let bytes = self.encode().map_err(|error| Error::File {
+            path: path.to_owned(),
+            why: format!("the HDF5 library could not lay out the file: {error}"),
+        })?;
+        file.write(&bytes)
+    }
+
+    fn encode(&self) -> Hdf5Result<Vec<u8>> {
+        // One lock for the whole file, as for that of a run.
+        hdf5::sync::sync(|| {
+            let file = file_in_memory()?;
+            put_text(&file, "format", self.format)?;
+            put_integer(&file, "format_version", Self::FORMAT_VERSION)?;
+            put_text(&file, "program_version", env!("CARGO_PKG_VERSION"))?;
+            for (name, text) in &self.attributes {
+                put_text(&file, name, text)?;
+            }
+            put_integer(&file, "complete", 1)?;
+            let dimensions = self
+                .coordinates
+                .iter()
+                .map(|it| Dimension::coordinate(&file, it.label, &it.values))
+                .collect::<Hdf5Result<Vec<_>>>()?;
+            for array in &self.arrays {
+                let axes: Vec<&Dimension> =
+                    array.axes.iter().map(|axis| &dimensions[self.position(axis)]).collect();
+                put_array(&file, array.label, &axes, &array.values)?;
+            }
+            bytes_of(&file)
+        })
+    }
+
+    fn position(&self, axis: &str) -> usize {
+        let found = self.coordinates.iter().position(|it| it.label.name == axis);
+        found.unwrap_or_else(|| panic!("no coordinate {axis}"))
+    }
+}
