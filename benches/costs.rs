@@ -8,11 +8,13 @@ use fretwear::abel::AbelOperators;
 use fretwear::closed_form::LimitingShape;
 use fretwear::contact::InitialContact;
 use fretwear::grid::{Clustering, slip_annulus};
+use fretwear::half_space::Poisson;
 use fretwear::model::{Fields, Model};
 use fretwear::run::Run;
 use fretwear::scene::Scene;
 use fretwear::simulation::{End, Plan, Simulation};
 use fretwear::stepper::{Implicit, Stepper};
+use fretwear::wear_map::{Control, Medium, OptimumCurve, WearMap};
 
 const SPRINGS: [usize; 5] = [50, 100, 200, 400, 800];
 const SCENE: &str = include_str!("../data/scenes/paraboloid.toml");
@@ -98,6 +100,25 @@ fn closed_form(criterion: &mut Criterion) {
     });
 }
 
+/// Maps in closed form: one thread and all threads in the same run.
+fn maps(criterion: &mut Criterion) {
+    let medium = Medium::new(2.0, Poisson::Similar).expect("a paraboloid");
+    let gradings: Vec<f64> = (0..400).map(|i| -0.9 + 1.89 * f64::from(i) / 399.0).collect();
+    let amplitudes: Vec<f64> = (0..400).map(|i| 1e-4 * 1e4f64.powf(f64::from(i) / 399.0)).collect();
+    let some: Vec<f64> = amplitudes.iter().step_by(4).copied().collect();
+    for threads in [1, 0] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let name = format!("{} threads", pool.current_num_threads());
+        criterion.bench_function(&format!("wear map 400 x 400/{name}"), |bench| {
+            bench.iter(|| pool.install(|| WearMap::new(&medium, black_box(&gradings), &amplitudes)));
+        });
+        criterion.bench_function(&format!("optimal grading at 100 amplitudes/{name}"), |bench| {
+            bench
+                .iter(|| pool.install(|| OptimumCurve::new(&medium, Control::Indentation, black_box(&some))));
+        });
+    }
+}
+
 fn settings() -> Criterion {
     Criterion::default()
         .sample_size(10)
@@ -108,6 +129,6 @@ fn settings() -> Criterion {
 criterion_group! {
     name = costs;
     config = settings();
-    targets = closed_form, parts, whole_scene
+    targets = closed_form, maps, parts, whole_scene
 }
 criterion_main!(costs);

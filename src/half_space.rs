@@ -34,6 +34,20 @@ impl Poisson {
         }
     }
 
+    /// Stiffness ratio `M = c_T/c_N` at grading `k` in (-1, 1]; at the end, the limit along this ratio.
+    ///
+    /// ```
+    /// use fretwear::half_space::Poisson;
+    /// assert_eq!(Poisson::Similar.stiffness_ratio(1.0), 0.25);
+    /// assert_eq!(Poisson::Ratio(0.5).stiffness_ratio(1.0), 0.0); // the Gibson medium, in which nothing slips
+    /// ```
+    pub fn stiffness_ratio(self, grading: f64) -> f64 {
+        match self {
+            Poisson::Ratio(ratio) => stiffness_ratio(grading, ratio),
+            Poisson::Similar => similar_stiffness_ratio(grading),
+        }
+    }
+
     /// Whether the ratio exceeds 0.5, which no stable isotropic solid has: similarity at `k < 0` is a formal limit.
     ///
     /// ```
@@ -99,17 +113,18 @@ impl HalfSpace {
         check_grading(grading)?;
         check_positive("half_space.modulus", modulus)?;
         check_positive("half_space.reference_depth", reference_depth)?;
-        let (shape, stiffness_ratio) = match poisson {
-            Poisson::Similar => (similar_normal_stiffness(grading), similar_stiffness_ratio(grading)),
+        let shape = match poisson {
+            Poisson::Similar => similar_normal_stiffness(grading),
             Poisson::Ratio(ratio) => {
                 if !(ratio > -1.0 && ratio <= 0.5) {
                     let range = "(-1, 0.5], the range of isotropic solids";
                     return Err(Error::OutOfRange { name: "half_space.poisson_ratio", value: ratio, range });
                 }
-                (unit_normal_stiffness(grading, ratio), stiffness_ratio(grading, ratio))
+                unit_normal_stiffness(grading, ratio)
             }
         };
-        Self::from_stiffness(grading, shape * modulus / reference_depth.powf(grading), stiffness_ratio)
+        let normal_stiffness = shape * modulus / reference_depth.powf(grading);
+        Self::from_stiffness(grading, normal_stiffness, poisson.stiffness_ratio(grading))
     }
 
     /// The contact of two elastic bodies with the same grading: their springs act in series.

@@ -10,7 +10,7 @@ use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, Ru
 use fretwear::run::{Resumed, RunResult};
 use fretwear::scene::{MapScene, Scene};
 use fretwear::simulation::Observer;
-use fretwear::snapshot::StopReason;
+use fretwear::snapshot::{ArraySummary, StopReason};
 use fretwear::{Error, Result};
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
@@ -110,7 +110,7 @@ struct Check {
 
 #[derive(Args)]
 struct Info {
-    /// A result file that `fretwear run` wrote
+    /// A result file that `fretwear run` or `fretwear map` wrote
     #[arg(value_name = "FILE.h5")]
     file: PathBuf,
     /// Print one JSON object in SI units
@@ -207,6 +207,9 @@ fn check(arguments: &Check) -> Result<String> {
 }
 
 fn info(arguments: &Info) -> Result<String> {
+    if let Some(summary) = ArraySummary::read(&arguments.file)? {
+        return Ok(if arguments.json { report::json(&summary) } else { report::arrays_text(&summary) });
+    }
     let report = InfoReport::read(&arguments.file)?;
     Ok(if arguments.json { report::json(&report) } else { report.text() })
 }

@@ -10,7 +10,7 @@ mod run;
 mod text;
 
 pub use check::CheckReport;
-pub use info::InfoReport;
+pub use info::{InfoReport, arrays_text};
 pub use limit::{LimitReport, ProfileTable, parse_radii};
 pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;

@@ -14,7 +14,7 @@ pub mod layout;
 mod reader;
 mod writer;
 
-pub use arrays::{Array, ArrayFile, Coordinate};
+pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate};
 pub(crate) use atomic::AtomicFile;
 pub use reader::RunFile;
 pub use writer::RunWriter;

@@ -95,10 +95,7 @@ impl WearMap {
         Ok(Self {
             gradings: gradings.to_vec(),
             amplitude_ratios: amplitude_ratios.to_vec(),
-            full_sliding: gradings
-                .iter()
-                .map(|&grading| Ok(1.0 / medium.stiffness_ratio(grading)?))
-                .collect::<Result<_>>()?,
+            full_sliding: gradings.iter().map(|&grading| 1.0 / medium.stiffness_ratio(grading)).collect(),
             volume: joined(0).collect(),
             ratio: ratio(0),
             small_amplitude_ratio: ratio(1),

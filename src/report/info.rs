@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::text::{Rows, Scale, number};
 use crate::error::Result;
-use crate::snapshot::{Checkpoint, LimitDistance, RunFile, Snapshot, largest};
+use crate::snapshot::{ArraySummary, Checkpoint, LimitDistance, RunFile, Snapshot, largest};
 
 /// The content of a result file in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -178,4 +178,19 @@ fn present(rows: &mut Rows, heading: &str, values: &[(&str, Option<String>)]) {
             rows.row(&format!("  {name}"), value);
         }
     }
+}
+
+/// What is in a file of arrays, a table for people.
+pub fn arrays_text(summary: &ArraySummary) -> String {
+    let mut rows = Rows::titled(Some(&summary.title).filter(|title| !title.is_empty()).map(String::as_str));
+    rows.row("format", &summary.format);
+    rows.row("complete", if summary.complete { "yes" } else { "no" });
+    rows.row("written by version", &summary.program_version);
+    rows.gap();
+    for array in &summary.arrays {
+        let shape: Vec<String> = array.shape.iter().map(usize::to_string).collect();
+        let unit = if array.units == "1" { String::new() } else { format!(", {}", array.units) };
+        rows.row(&array.name, format!("{}{unit}: {}", shape.join(" x "), array.long_name));
+    }
+    rows.finish()
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::text::{Rows, number};
 use crate::error::Result;
 use crate::scene::MapScene;
-use crate::wear_map::{self, Control, End, MapStudy, Optimum};
+use crate::wear_map::{self, Control, MapStudy, Optimum};
 
 /// Summary of a wear map; the serialised fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -42,8 +42,10 @@ pub struct MapReport {
 pub struct OptimumRow {
     /// `U/(μ_f d)`.
     pub amplitude_ratio: f64,
-    /// `k*`.
+    /// `k*`; 1 and -1 where the least is a limit, null where there is none.
     pub grading: f64,
+    /// Where it is: `interior`, `k->1`, `k->-1`, `full-sliding` or `nowhere`.
+    pub least_at: &'static str,
     /// Least worn volume over that of the homogeneous medium.
     pub wear_volume_ratio: f64,
 }
@@ -64,7 +66,8 @@ impl MapReport {
         let at_indentation = study.optimum.iter().find(|curve| curve.control == Control::Indentation);
         let row = |it: &Optimum| OptimumRow {
             amplitude_ratio: it.amplitude_ratio,
-            grading: if it.end == End::MinusOne { -1.0 } else { it.grading },
+            grading: it.grading,
+            least_at: it.end.name(),
             wear_volume_ratio: it.volume_ratio,
         };
         Ok(Self {
@@ -105,7 +108,13 @@ impl MapReport {
         let stride = self.optimum.len().div_ceil(MOST_ROWS).max(1);
         for row in self.optimum.iter().step_by(stride) {
             let name = format!("best k at U/(μ_f d) = {}", number(row.amplitude_ratio));
-            rows.row(&name, format!("{}, wears {}", number(row.grading), number(row.wear_volume_ratio)));
+            let part = |value: f64, words: &str| match value.is_nan() {
+                true => String::new(),
+                false => format!("{words}{}", number(value)),
+            };
+            let place = if row.least_at == "interior" { "" } else { row.least_at };
+            let shown = [part(row.grading, ""), part(row.wear_volume_ratio, "wears "), place.to_string()];
+            rows.row(&name, shown.iter().filter(|it| !it.is_empty()).cloned().collect::<Vec<_>>().join(", "));
         }
         rows.gap();
         for file in &self.files {

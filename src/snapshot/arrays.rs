@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use hdf5::Result as Hdf5Result;
+use serde::Serialize;
 
 use super::atomic::AtomicFile;
 use super::labelled::{Dimension, bytes_of, file_in_memory, put_array, put_integer, put_text};
 use super::layout::Label;
+use super::reader;
 use crate::error::{Error, Result};
 
 /// A coordinate: a dimension and the values along it.
@@ -43,6 +45,9 @@ pub struct ArrayFile {
 }
 
 impl ArrayFile {
+    /// The formats there are.
+    pub const FORMATS: [&str; 1] = ["fretwear-map"];
+
     /// Version of the layout, the root attribute `format_version`.
     pub const FORMAT_VERSION: i32 = 1;
 
@@ -90,5 +95,66 @@ impl ArrayFile {
     fn position(&self, axis: &str) -> usize {
         let found = self.coordinates.iter().position(|it| it.label.name == axis);
         found.unwrap_or_else(|| panic!("no coordinate {axis}"))
+    }
+}
+
+/// What a file of arrays holds, without the values.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ArraySummary {
+    /// The root attribute `format`.
+    pub format: String,
+    /// Title of the study.
+    pub title: String,
+    /// Version of the program that wrote the file.
+    pub program_version: String,
+    /// Whether everything is in it.
+    pub complete: bool,
+    /// The datasets, by name.
+    pub arrays: Vec<ArrayShape>,
+}
+
+/// Name, meaning and shape of a dataset.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ArrayShape {
+    /// Name.
+    pub name: String,
+    /// Lengths along its dimensions, slowest first.
+    pub shape: Vec<usize>,
+    /// Units.
+    pub units: String,
+    /// Meaning.
+    pub long_name: String,
+}
+
+impl ArraySummary {
+    /// Reads what is in a file of arrays; none if it is not one of this program's.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it is no HDF5 file or damaged.
+    pub fn read(path: &Path) -> Result<Option<Self>> {
+        let (source, file) = reader::open(path)?;
+        let known = file.attr("format").is_ok();
+        let format = if known { source.text(&file, "format")? } else { String::new() };
+        if !ArrayFile::FORMATS.contains(&format.as_str()) {
+            return Ok(None);
+        }
+        let mut names = file.member_names().map_err(|error| source.damaged("its members", &error))?;
+        names.sort();
+        let shape = |name: String| {
+            let dataset = file.dataset(&name).map_err(|error| source.damaged(&name, &error))?;
+            Ok(ArrayShape {
+                shape: dataset.shape(),
+                units: source.text(&dataset, "units")?,
+                long_name: source.text(&dataset, "long_name")?,
+                name,
+            })
+        };
+        Ok(Some(Self {
+            format,
+            title: source.text(&file, "title")?,
+            program_version: source.text(&file, "program_version")?,
+            complete: source.integer(&file, "complete")? != 0,
+            arrays: names.into_iter().map(shape).collect::<Result<_>>()?,
+        }))
     }
 }

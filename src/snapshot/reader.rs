@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use hdf5::types::VarLenUnicode;
-use hdf5::{Dataset, File, Group, H5Type};
+use hdf5::{Dataset, File, Group, H5Type, Location};
 
 use super::atomic::failure;
 use super::layout::*;
@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 const NOT_A_RUN: &str = "give a file that `fretwear run` wrote";
-const WRITE_AGAIN: &str = "the file is damaged or was edited, write it again with `fretwear run`";
+const WRITE_AGAIN: &str = "the file is damaged or was edited, write it again with the command that wrote it";
 
 /// Deflate cannot do better than this, so a dataset that claims more values than this per stored byte is not genuine.
 const LARGEST_COMPRESSION: u64 = 1032;
@@ -42,13 +42,7 @@ impl RunFile {
     /// # Errors
     /// [`Error::File`] names the file, the dataset or attribute that cannot be used, and the cure.
     pub fn open(path: &Path) -> Result<Self> {
-        check_signature(path)?;
-        let source = Source { path: path.to_owned() };
-        // No lock is needed: a run replaces its file as a whole, so what is opened here never changes.
-        let file = File::with_options()
-            .with_fapl(|access| access.file_locking(false))
-            .open(path)
-            .map_err(|error| source.error(format!("is damaged or cut short ({error}); {WRITE_AGAIN}")))?;
+        let (source, file) = open(path)?;
         source.check_format(&file)?;
         let header = source.header(&file)?;
         let snapshots = source.snapshots(&file, header.radius.len())?;
@@ -70,6 +64,18 @@ impl RunFile {
     }
 }
 
+/// Opens an HDF5 file for reading.
+pub(super) fn open(path: &Path) -> Result<(Source, File)> {
+    check_signature(path)?;
+    let source = Source { path: path.to_owned() };
+    // No lock is needed: a file is replaced as a whole, so what is opened here never changes.
+    let file = File::with_options()
+        .with_fapl(|access| access.file_locking(false))
+        .open(path)
+        .map_err(|error| source.error(format!("is damaged or cut short ({error}); {WRITE_AGAIN}")))?;
+    Ok((source, file))
+}
+
 /// Tells missing and foreign files apart before the HDF5 library sees them.
 fn check_signature(path: &Path) -> Result<()> {
     let refuse = |why: &str| Err(Error::File { path: path.to_owned(), why: format!("{why}; {NOT_A_RUN}") });
@@ -88,16 +94,16 @@ fn check_signature(path: &Path) -> Result<()> {
 }
 
 /// The file that is read, for its name in errors.
-struct Source {
+pub(super) struct Source {
     path: PathBuf,
 }
 
 impl Source {
-    fn error(&self, why: String) -> Error {
+    pub(super) fn error(&self, why: String) -> Error {
         Error::File { path: self.path.clone(), why }
     }
 
-    fn damaged(&self, what: &str, why: &dyn std::fmt::Display) -> Error {
+    pub(super) fn damaged(&self, what: &str, why: &dyn std::fmt::Display) -> Error {
         self.error(format!("{what}: {why}; {WRITE_AGAIN}"))
     }
 
@@ -185,7 +191,7 @@ impl Source {
         if values.len() == count { Ok(values) } else { Err(self.damaged(&name, &"has no values")) }
     }
 
-    fn text(&self, file: &Group, name: &str) -> Result<String> {
+    pub(super) fn text(&self, file: &Location, name: &str) -> Result<String> {
         let what = format!("attribute {name}");
         let attribute = file.attr(name).map_err(|error| self.damaged(&what, &error))?;
         if !attribute.dtype().is_ok_and(|kind| kind.is::<VarLenUnicode>()) {
@@ -195,7 +201,7 @@ impl Source {
         String::from_utf8(text.as_bytes().to_vec()).map_err(|error| self.damaged(&what, &error))
     }
 
-    fn integer(&self, file: &Group, name: &str) -> Result<i32> {
+    pub(super) fn integer(&self, file: &Group, name: &str) -> Result<i32> {
         let what = format!("attribute {name}");
         let attribute = file.attr(name).map_err(|error| self.damaged(&what, &error))?;
         attribute.read_scalar().map_err(|error| self.damaged(&what, &error))

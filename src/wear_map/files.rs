@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::{Control, End, Isoline, MapStudy, OptimumCurve};
+use super::{Control, Isoline, MapStudy, OptimumCurve};
 use crate::error::{Error, Result};
 use crate::scene::MapScene;
 use crate::snapshot::layout::{Label, label};
@@ -23,8 +23,11 @@ const PROFILE_GRADING: Label = label("profile_grading", "1", "grading of the wor
 const PROFILE_RADIUS: Label =
     label("profile_radius", "1", "radius over (d/(n A))^(1/n), which is sqrt(R d) for a paraboloid");
 
+/// Name of a file and how its text is made.
+type Table = (&'static str, fn(&MapStudy) -> String);
+
 /// Tables written beside `map.h5`.
-const TABLES: [(&str, fn(&MapStudy) -> String); 5] = [
+const TABLES: [Table; 5] = [
     ("map.csv", map_table),
     ("full_sliding.csv", full_sliding_table),
     ("isolines.csv", isoline_table),
@@ -285,17 +288,13 @@ fn optimum_table(study: &MapStudy) -> String {
             }
         };
         for point in &curve.points {
-            let place = match point.end {
-                End::Interior => "interior",
-                End::One => "k->1",
-                End::MinusOne => "k->-1",
-            };
             let _ = write!(
                 table,
-                "{},{},{},{place},",
+                "{},{},{},{},",
                 control_name(curve.control),
                 cell(depth),
-                cell(point.amplitude_ratio)
+                cell(point.amplitude_ratio),
+                point.end.name()
             );
             line(&mut table, &[point.grading, point.volume_ratio, point.indentation_ratio]);
         }

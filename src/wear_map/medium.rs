@@ -43,8 +43,8 @@ impl Medium {
     }
 
     /// `M(k)`; the limit at `k = 1`.
-    pub fn stiffness_ratio(&self, grading: f64) -> Result<f64> {
-        Ok(self.half_space(grading.min(1.0 - f64::EPSILON))?.stiffness_ratio())
+    pub fn stiffness_ratio(&self, grading: f64) -> f64 {
+        self.poisson.stiffness_ratio(grading)
     }
 
     /// `c_N(k) z0^k/c_N(0)`.
@@ -63,7 +63,7 @@ impl Medium {
     /// [`Error::OutOfRange`] names the grading.
     pub(super) fn at(&self, grading: f64) -> Result<Column> {
         Ok(Column {
-            stiffness_ratio: self.stiffness_ratio(grading)?,
+            stiffness_ratio: self.stiffness_ratio(grading),
             area: self.relative_factor(grading).powf(-2.0 / self.exponent),
             volume: Some(PowerLawVolume::new(self.exponent, grading)?),
             exponent: self.exponent,
@@ -71,16 +71,20 @@ impl Medium {
     }
 
     /// The limit `k → 1` of the worn volume at the same indentation.
-    pub(super) fn gibson(&self) -> Result<Column> {
-        Ok(Column {
-            stiffness_ratio: self.stiffness_ratio(1.0)?,
+    pub(super) fn gibson(&self) -> Column {
+        Column {
+            stiffness_ratio: self.stiffness_ratio(1.0),
             // κ → 1
             area: power_law_factor(self.exponent, 0.0).powf(2.0 / self.exponent),
             volume: None,
             exponent: self.exponent,
-        })
+        }
     }
 }
+
+/// Amplitudes closer to that of full sliding than this, relatively, count as full sliding: for small exponents the stick radius is next
+/// to nothing there (`c/a0 = 1e-100` at `n = 0.1`).
+const NEXT_TO_SLIDING: f64 = 1e-10;
 
 /// The worn volume of one grading over the amplitude.
 #[derive(Debug, Clone)]
@@ -94,12 +98,17 @@ pub(super) struct Column {
 }
 
 impl Column {
+    /// Whether the whole contact slides.
+    pub(super) fn slides(&self, amplitude_ratio: f64) -> bool {
+        self.stiffness_ratio * amplitude_ratio > 1.0 - NEXT_TO_SLIDING
+    }
+
     /// `ΔV/(π a0² d)`; not a number under full sliding.
     pub(super) fn own_volume(&self, form: Form, amplitude_ratio: f64) -> Result<f64> {
-        let compression = self.stiffness_ratio * amplitude_ratio;
-        if compression >= 1.0 {
+        if self.slides(amplitude_ratio) {
             return Ok(f64::NAN);
         }
+        let compression = self.stiffness_ratio * amplitude_ratio;
         match (&self.volume, form) {
             (Some(volume), Form::Exact) => volume.at(compression),
             (Some(volume), Form::SmallAmplitude) => Ok(volume.small_amplitude(compression)),

@@ -34,6 +34,23 @@ pub enum End {
     One,
     /// In the limit `k → -1`.
     MinusOne,
+    /// At the border to full sliding, where the stick zone vanishes.
+    FullSliding,
+    /// Nowhere: every grading slides as a whole.
+    Nowhere,
+}
+
+impl End {
+    /// Name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Interior => "interior",
+            Self::One => "k->1",
+            Self::MinusOne => "k->-1",
+            Self::FullSliding => "full-sliding",
+            Self::Nowhere => "nowhere",
+        }
+    }
 }
 
 /// The grading that wears least at one amplitude.
@@ -41,11 +58,11 @@ pub enum End {
 pub struct Optimum {
     /// Amplitude `U/(μ_f d_h)`, `d_h` the indentation of the homogeneous contact.
     pub amplitude_ratio: f64,
-    /// `k*`; 1 or -1 where the least is a limit.
+    /// `k*`; 1 or -1 where the least is a limit, not a number where there is none.
     pub grading: f64,
     /// Least worn volume over that of the homogeneous contact; not a number as `k → -1`, and where that contact slides as a whole.
     pub volume_ratio: f64,
-    /// Indentation over that of the homogeneous contact; not a number as `k → -1`.
+    /// Indentation over that of the homogeneous contact; not a number as `k → -1`, and where there is no optimum.
     pub indentation_ratio: f64,
     /// Where it is.
     pub end: End,
@@ -109,8 +126,8 @@ impl Thresholds {
     /// Those of the closed form and of the root search.
     pub fn new(medium: &Medium) -> Result<Self> {
         const SMALLEST: f64 = 1e-6;
-        let largest = 1.0 / medium.stiffness_ratio(0.0)? * (1.0 - 1e-9);
-        let (homogeneous, gibson) = (medium.at(0.0)?, medium.gibson()?);
+        let largest = 1.0 / medium.stiffness_ratio(0.0) * (1.0 - 1e-9);
+        let (homogeneous, gibson) = (medium.at(0.0)?, medium.gibson());
         // In the logarithm of the amplitude, where the function changes sign.
         let threshold = |function: &dyn Fn(f64) -> f64, largest: f64| -> Result<Option<f64>> {
             let of_logarithm = |logarithm: f64| function(logarithm.exp());
@@ -130,13 +147,38 @@ impl Thresholds {
         let search = Search { medium, control: Control::Indentation, scan: vec![] };
         let slope_at_zero = |amplitude: f64| search.slope(amplitude, -0.1, 0.1, 0.0).unwrap_or(f64::NAN);
         let slope_at_one = |amplitude: f64| search.slope(amplitude, 0.9, 1.0, 1.0).unwrap_or(f64::NAN);
-        let slidable = largest.min((1.0 - 1e-9) / medium.stiffness_ratio(-0.1)?);
+        let slidable = largest.min((1.0 - 1e-9) / medium.stiffness_ratio(-0.1));
         Ok(Self {
             optimum_crosses_zero: threshold(&slope_at_zero, slidable)?,
             limit_beats_homogeneous: threshold(&ratio_of_limit, largest)?,
-            limit_is_best: threshold(&slope_at_one, largest)?,
+            limit_is_best: best_above(medium, threshold(&slope_at_one, largest)?, largest)?,
         })
     }
+}
+
+/// The amplitude from which on the limit `k → 1` is the best of all gradings.
+///
+/// As a rule the optimum moves there continuously, at the amplitude `turning` where the slope at `k = 1` changes sign; otherwise it jumps
+/// from another grading, and the amplitude is found by bisection.
+fn best_above(medium: &Medium, turning: Option<f64>, largest: f64) -> Result<Option<f64>> {
+    let search = Search::new(medium, Control::Indentation)?;
+    let is_best = |amplitude: f64| search.optimum(amplitude).map(|it| it.end == End::One);
+    if let Some(turning) = turning
+        && turning * 1.001 < largest
+        && is_best(turning * 1.001)?
+        && !is_best(turning * 0.999)?
+    {
+        return Ok(Some(turning));
+    }
+    let (mut low, mut high) = (1e-6, largest);
+    if is_best(low)? || !is_best(high)? {
+        return Ok(None);
+    }
+    while high / low > 1.0 + 1e-10 {
+        let middle = (low * high).sqrt();
+        *(if is_best(middle)? { &mut high } else { &mut low }) = middle;
+    }
+    Ok(Some(high))
 }
 
 /// A search over the gradings at any amplitude.
@@ -166,7 +208,7 @@ impl Loaded {
     fn limit(medium: &Medium, control: Control) -> Result<Option<Self>> {
         match control {
             Control::Force { .. } => Ok(None),
-            _ => Self::with_column(medium, control, 1.0, medium.gibson()?).map(Some),
+            _ => Self::with_column(medium, control, 1.0, medium.gibson()).map(Some),
         }
     }
 
@@ -186,6 +228,10 @@ impl Loaded {
             }
         };
         Ok(Self { grading, column, area: radius * radius, depth: factor * radius.powf(n) })
+    }
+
+    fn slides(&self, amplitude_ratio: f64) -> bool {
+        self.column.slides(amplitude_ratio / self.depth)
     }
 
     /// `ΔV/(π a_h² d_h)`; not a number under full sliding.
@@ -227,24 +273,20 @@ impl<'a> Search<'a> {
     fn optimum(&self, amplitude_ratio: f64) -> Result<Optimum> {
         let volumes = self.scan.iter().map(|it| it.volume(amplitude_ratio)).collect::<Result<Vec<f64>>>()?;
         let reference = Loaded::new(self.medium, self.control, 0.0)?.volume(amplitude_ratio)?;
+        let nothing = |grading: f64, end: End| {
+            let (volume_ratio, indentation_ratio) = (f64::NAN, f64::NAN);
+            Ok(Optimum { amplitude_ratio, grading, volume_ratio, indentation_ratio, end })
+        };
         let slipping = volumes.iter().enumerate().filter(|(_, volume)| volume.is_finite());
         let Some((least, _)) = slipping.min_by(|a, b| a.1.total_cmp(b.1)) else {
-            return Err(not_found(format!("no grading is in partial slip at U/(μ_f d) = {amplitude_ratio}")));
+            return nothing(f64::NAN, End::Nowhere);
         };
         let at = |loaded: &Loaded, grading: f64, end: End| -> Result<Optimum> {
             let volume_ratio = loaded.volume(amplitude_ratio)? / reference;
             Ok(Optimum { amplitude_ratio, grading, volume_ratio, indentation_ratio: loaded.depth, end })
         };
         if least == 0 {
-            let none = f64::NAN;
-            let (volume_ratio, indentation_ratio) = (none, none);
-            return Ok(Optimum {
-                amplitude_ratio,
-                grading: -1.0,
-                volume_ratio,
-                indentation_ratio,
-                end: End::MinusOne,
-            });
+            return nothing(-1.0, End::MinusOne);
         }
         let limit = Loaded::limit(self.medium, self.control)?;
         match &limit {
@@ -254,14 +296,30 @@ impl<'a> Search<'a> {
             None if least == STEPS => return at(&self.scan[STEPS], 1.0, End::One),
             _ => {}
         }
-        // Next to full sliding there is no neighbour below.
-        let low = if volumes[least - 1].is_finite() { least - 1 } else { least };
+        let own = self.scan[least].grading;
         let high = if least < STEPS { self.scan[least + 1].grading } else { 1.0 };
-        let low = self.scan[low].grading;
+        // Next to full sliding there is no neighbour below.
+        let sliding_below = !volumes[least - 1].is_finite();
+        let low = if sliding_below { own } else { self.scan[least - 1].grading };
         let series = self.series(amplitude_ratio, low, high);
-        let below = bracketed(|below| series.value_and_derivative(below).1, 0.0, high - low, 0.0)?;
+        let slope = |below: f64| series.value_and_derivative(below).1;
+        if sliding_below && slope(high - low) < 0.0 {
+            let border = self.border(amplitude_ratio, self.scan[least - 1].grading, own)?;
+            return at(&Loaded::new(self.medium, self.control, border)?, border, End::FullSliding);
+        }
+        let below = bracketed(slope, 0.0, high - low, 0.0)?;
         let found = Loaded::new(self.medium, self.control, high - below)?;
         at(&found, high - below, End::Interior)
+    }
+
+    /// The smallest grading in partial slip, between one that slides and one that does not.
+    fn border(&self, amplitude_ratio: f64, mut sliding: f64, mut slipping: f64) -> Result<f64> {
+        while slipping - sliding > 4.0 * f64::EPSILON {
+            let middle = 0.5 * (sliding + slipping);
+            let slips = !Loaded::new(self.medium, self.control, middle)?.slides(amplitude_ratio);
+            *(if slips { &mut slipping } else { &mut sliding }) = middle;
+        }
+        Ok(slipping)
     }
 }
 

@@ -41,7 +41,7 @@ impl WornProfiles {
         let mut shapes = vec![];
         let mut contact_radius_initial = vec![];
         for &grading in gradings {
-            let compression = medium.stiffness_ratio(grading)? * amplitude_ratio;
+            let compression = medium.stiffness_ratio(grading) * amplitude_ratio;
             contact_radius_initial.push(indenter.equivalent_profile(grading)?.radius_at(1.0)?);
             shapes.push(match compression < 1.0 {
                 true => Some(LimitingShape::new(&indenter, grading, 1.0, compression)?),
