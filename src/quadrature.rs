@@ -281,7 +281,8 @@ impl Jacobi {
             let curvature = -((constant - linear * position) + eigenvalue * newton) / room;
             let step = newton / (1.0 - 0.5 * newton * curvature);
             position -= step;
-            if !((position - guess).abs() < reach) {
+            let astray = (position - guess).abs();
+            if astray.is_nan() || astray >= reach {
                 return None;
             }
             // The error left is of the order of the cube of the step over the spacing; Newton's method takes it below the last bit.
