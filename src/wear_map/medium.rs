@@ -21,7 +21,7 @@ impl Medium {
     ///
     /// # Arguments
     /// * `exponent` -- `n` of `f = A r^n`, from 0.1 to 20
-    /// * `poisson` -- Poisson's ratio, or elastic similarity as in [S]
+    /// * `poisson` -- Poisson's ratio, or elastic similarity as in \[S\]
     ///
     /// # Errors
     /// [`Error::OutOfRange`] names the argument.
