@@ -43,10 +43,13 @@ use crate::wear::Archard;
 mod document;
 mod map;
 pub mod quantity;
+pub mod sampling;
 mod sections;
+mod study;
 mod unit;
 
 pub use map::MapScene;
+pub use study::{Input, KeptSnapshots, Study, Task};
 
 /// Most snapshots a scene may ask for.
 pub const MOST_SNAPSHOTS: usize = 100_000;

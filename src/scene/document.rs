@@ -274,6 +274,18 @@ impl<'a> Entry<'a> {
         matches!(self.value, DeValue::Table(_))
     }
 
+    /// Whether the value is an array.
+    pub(super) fn is_array(&self) -> bool {
+        matches!(self.value, DeValue::Array(_))
+    }
+
+    /// The value as it stands.
+    pub(super) fn literal(&self) -> Result<toml::Value> {
+        let text = self.source.text.get(self.place.clone()).unwrap_or_default();
+        let mut table: toml::Table = format!("value = {text}").parse().map_err(|_| self.error("is no value"))?;
+        table.remove("value").ok_or_else(|| self.error("is no value"))
+    }
+
     /// The value as a table.
     pub(super) fn section(&self) -> Result<Section<'a>> {
         match self.value {

@@ -172,7 +172,7 @@ fn si_unit(dimension: Dimension) -> String {
 }
 
 /// Splits `"5.0e-3 mm"` into the digits `5.0`, the power of ten -3 and the rest; None without a number.
-fn split_number(text: &str) -> Option<(&str, i64, &str)> {
+pub(super) fn split_number(text: &str) -> Option<(&str, i64, &str)> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
     let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
