@@ -93,7 +93,7 @@ impl InitialContact {
         let what = "dimensionless time per cycle 4 k_w c_N a0^(k-1) μ_f d/M";
         representable(what, tau_per_cycle, "wear.archard.coefficient, half_space and loading")?;
         Ok(Self {
-            indenter: *indenter,
+            indenter: indenter.clone(),
             half_space: *half_space,
             friction: *friction,
             wear: *wear,

@@ -526,7 +526,7 @@ fn numerics_and_output_have_defaults_that_serve() {
 #[test]
 fn every_alternative_is_read() {
     let indenter =
-        |table: &str| *read(&edited("[indenter.paraboloid]\nradius = \"10 mm\"", table)).indenter();
+        |table: &str| read(&edited("[indenter.paraboloid]\nradius = \"10 mm\"", table)).indenter().clone();
     assert_eq!(indenter("[indenter.sphere]\nradius = 0.02"), Indenter::Sphere { radius: 0.02 });
     assert_eq!(indenter("[indenter.cone]\nslope = 0.1"), Indenter::Cone { slope: 0.1 });
     assert_eq!(

@@ -136,7 +136,7 @@ impl LimitingShape {
             false => 0.0,
         };
         let mut shape = Self {
-            indenter: *indenter,
+            indenter: indenter.clone(),
             slip_compression,
             stick_logarithm,
             growth_logarithm,
