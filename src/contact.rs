@@ -216,6 +216,10 @@ impl Press {
         let (Load::Indentation(value) | Load::InitialForce(value)) = load;
         positive(key, value)?;
         let too_large = |error: Error| match error {
+            // That of a table has its own cure.
+            Error::Inconsistent { why, .. } if profile.end_of_table().is_some() => {
+                Error::Inconsistent { what: key, why }
+            }
             Error::Inconsistent { why, .. } => Error::Inconsistent {
                 what: key,
                 why: format!("{value} is too large: {why}; make it smaller, or the indenter larger"),
@@ -292,6 +296,17 @@ impl Slip {
             Amplitude::StickRatio(ratio) => {
                 if !(ratio > 0.0 && ratio <= 1.0) {
                     return Err(Error::OutOfRange { name: amplitude.key(), value: ratio, range: "(0, 1]" });
+                }
+                if contact_radius * ratio < profile.flat_radius() {
+                    return Err(Error::Inconsistent {
+                        what: amplitude.key(),
+                        why: format!(
+                            "{ratio} puts the edge of stick at {} m, but the profile is flat up to {} m, where all springs slip at once; \
+                             ask for a larger ratio",
+                            contact_radius * ratio,
+                            profile.flat_radius()
+                        ),
+                    });
                 }
                 // Zero minus: a ratio of 1 gives +0 throughout.
                 let logarithm = 0.0 - ratio.ln();
@@ -473,43 +488,43 @@ mod tests {
         let sphere = Indenter::Sphere { radius: 1e-4 };
         let ratio = Amplitude::StickRatio(0.7);
         let cases = [
-            (paraboloid, Load::Indentation(0.0), ratio, "loading.indentation = 0 is outside"),
-            (paraboloid, Load::Indentation(f64::NAN), ratio, "loading.indentation = NaN is outside"),
-            (paraboloid, Load::InitialForce(-1.0), ratio, "loading.initial_force = -1 is outside"),
-            (paraboloid, Load::Indentation(1e308), ratio, "volume π a0² d, m³: inf is too large"),
-            (paraboloid, Load::Indentation(1e-308), ratio, "indentation, m: 1e-308 is too small"),
-            (paraboloid, Load::InitialForce(1e-310), ratio, "unit of loading.initial_force and half_space"),
-            (sphere, Load::Indentation(1e-3), ratio, "loading.indentation: 0.001 is too large: a sphere"),
-            (sphere, Load::InitialForce(1e6), ratio, "loading.initial_force: 1000000 is too large: F_N"),
-            (paraboloid, Load::Indentation(1e-6), Amplitude::StickRatio(0.0), "loading.stick_ratio = 0 is"),
+            (&paraboloid, Load::Indentation(0.0), ratio, "loading.indentation = 0 is outside"),
+            (&paraboloid, Load::Indentation(f64::NAN), ratio, "loading.indentation = NaN is outside"),
+            (&paraboloid, Load::InitialForce(-1.0), ratio, "loading.initial_force = -1 is outside"),
+            (&paraboloid, Load::Indentation(1e308), ratio, "volume π a0² d, m³: inf is too large"),
+            (&paraboloid, Load::Indentation(1e-308), ratio, "indentation, m: 1e-308 is too small"),
+            (&paraboloid, Load::InitialForce(1e-310), ratio, "unit of loading.initial_force and half_space"),
+            (&sphere, Load::Indentation(1e-3), ratio, "loading.indentation: 0.001 is too large: a sphere"),
+            (&sphere, Load::InitialForce(1e6), ratio, "loading.initial_force: 1000000 is too large: F_N"),
+            (&paraboloid, Load::Indentation(1e-6), Amplitude::StickRatio(0.0), "loading.stick_ratio = 0 is"),
             (
-                paraboloid,
+                &paraboloid,
                 Load::Indentation(1e-6),
                 Amplitude::StickRatio(1e-320),
                 "unit of loading.stick_ratio",
             ),
             (
-                paraboloid,
+                &paraboloid,
                 Load::Indentation(1e-6),
                 Amplitude::Ratio(-0.1),
                 "loading.amplitude_ratio = -0.1 is",
             ),
-            (paraboloid, Load::Indentation(1e9), Amplitude::Ratio(1e308), "amplitude, m: inf is too large"),
+            (&paraboloid, Load::Indentation(1e9), Amplitude::Ratio(1e308), "amplitude, m: inf is too large"),
             (
-                paraboloid,
+                &paraboloid,
                 Load::Indentation(1e-6),
                 Amplitude::Displacement(1e-300),
                 "unit of loading.amplitude",
             ),
             (
-                paraboloid,
+                &paraboloid,
                 Load::Indentation(1e-6),
                 Amplitude::Displacement(f64::INFINITY),
                 "loading.amplitude =",
             ),
         ];
         for (indenter, load, amplitude, words) in cases {
-            let found = contact(&indenter, 0.0, load, amplitude).map(drop).unwrap_err().to_string();
+            let found = contact(indenter, 0.0, load, amplitude).map(drop).unwrap_err().to_string();
             assert!(found.contains(words), "{load:?}, {amplitude:?}: {found}");
         }
     }

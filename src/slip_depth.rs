@@ -67,7 +67,7 @@ impl UnwornSlip {
     ///
     /// # Errors
     /// [`Error::NotConverged`] if no contact edge is found at which wear ends; [`Error::Inconsistent`] if a sphere would have to wear
-    /// beyond its equator.
+    /// beyond its equator, or a table beyond its end.
     pub fn new(
         profile: &EquivalentProfile,
         stick_radius: f64,
@@ -79,18 +79,21 @@ impl UnwornSlip {
         let squared = stick_radius * stick_radius;
         let depth_left = |l: f64| slip_compression * transform.uniform(l) / l - transform.slip(l);
         let low = (initial_edge / squared).ln_1p();
+        let largest = (2.0 * (profile.largest_radius() / stick_radius).ln()).min(700.0);
         let mut high = low;
         while depth_left(high) > 0.0 {
-            high *= 1.5;
-            if !(high < 700.0 && squared * high.exp() < profile.largest_radius().powi(2)) {
+            if high >= largest {
+                let cure = profile.end_of_table();
                 return Err(Error::Inconsistent {
                     what: "limiting contact radius",
                     why: format!(
-                        "none below {} m; reduce the indentation or the amplitude",
-                        stick_radius * (0.5 * high).exp()
+                        "none below {} m; {}",
+                        stick_radius * (0.5 * high).exp(),
+                        cure.as_deref().unwrap_or("reduce the indentation or the amplitude")
                     ),
                 });
             }
+            high = (1.5 * high).min(largest);
         }
         let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
         let limit_edge = squared * logarithm.exp_m1();

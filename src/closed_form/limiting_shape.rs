@@ -51,7 +51,7 @@ impl LimitingShape {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] names an argument; [`Error::Inconsistent`] under full sliding, `q_c >= d`, and where a sphere would touch
-    /// beyond 0.999 of its radius; [`Error::NotConverged`] next to that, and for power-law exponents in the thousands.
+    /// beyond 0.999 of its radius, or a table beyond its end; [`Error::NotConverged`] next to that, and for power-law exponents in the thousands.
     pub fn new(indenter: &Indenter, grading: f64, indentation: f64, slip_compression: f64) -> Result<Self> {
         let (profile, contact_radius) = first_contact(indenter, grading, indentation)?;
         if !(slip_compression >= 0.0 && slip_compression.is_finite()) {
@@ -100,7 +100,7 @@ impl LimitingShape {
     /// Limiting shape of the contact that a scene describes; none under full sliding.
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] where a worn sphere would touch beyond 0.999 of its radius; [`Error::NotConverged`] next to that, and for
+    /// [`Error::Inconsistent`] where a worn sphere would touch beyond 0.999 of its radius, or a table beyond its end; [`Error::NotConverged`] next to that, and for
     /// power-law exponents in the thousands.
     pub fn from_contact(contact: &InitialContact) -> Result<Option<Self>> {
         let Some(stick_logarithm) = contact.stick_logarithm() else { return Ok(None) };

@@ -35,7 +35,7 @@ impl TabulatedProfile {
     pub const FEWEST_ROWS: usize = 4;
 
     /// Most rows of a table.
-    pub const MOST_ROWS: usize = 20_000;
+    pub const MOST_ROWS: usize = 50_000;
 
     /// Profile through rows.
     ///
