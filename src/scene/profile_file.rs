@@ -158,7 +158,7 @@ fn row(line: &str, fields: &[&str]) -> std::result::Result<[f64; 2], String> {
     let number = |what: &str, field: &str| match field.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         Ok(_) => Err(format!("has {what} = {}, which is not finite; remove the row or measure it again", printable(field))),
-        Err(_) => Err(format!("has {what} = \"{}\", which is no number; a row is two numbers, r and f", printable(field))),
+        Err(_) => Err(format!("has {what} = \"{}\", which is no number; a row is two numbers, r and f, and a comment begins with #", printable(field))),
     };
     let row = [number("r", radius)?, number("f", height)?];
     if row[0] < 0.0 {
