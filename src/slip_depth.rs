@@ -13,12 +13,16 @@ use crate::abel::profile_factor;
 use crate::chebyshev::Chebyshev;
 use crate::error::{Error, Result};
 use crate::indenter::EquivalentProfile;
-use crate::quadrature::Rule;
+use crate::quadrature::{MAX_NODES, Rule};
 use crate::roots::bracketed;
 
 /// Nodes of the Gauss-Jacobi rule for `F`; in the variable used, the integrand is entire for a power law but for the kernel's
 /// own singularity at `ℓ v = 2πi`.
 const NODES: usize = 40;
+
+/// To what the slip depth is resolved where the profile is a table, whose kinks leave no series that ends at round-off. Against 1e-4 of the
+/// default accuracy of a run it is nothing; a smooth table takes some 60 to 130 terms, a rough one all there can be.
+const TABLE_ACCURACY: f64 = 1e-9;
 
 /// How far beyond the limiting contact edge the slip is tabulated, as a factor of `Z`.
 const MARGIN: f64 = 1.1;
@@ -98,12 +102,14 @@ impl UnwornSlip {
         let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
         let limit_edge = squared * logarithm.exp_m1();
         let end = (MARGIN * limit_edge / squared).ln_1p();
+        let slip = |l: f64| transform.slip(l);
+        let tabulated = profile.end_of_table().is_some();
         Ok(Self {
             stick_radius_squared: squared,
             slip_compression,
             mu,
             uniform: Chebyshev::fit(|l| transform.uniform(l), end),
-            slip: Chebyshev::fit(|l| transform.slip(l), end),
+            slip: if tabulated { Chebyshev::fit_to(slip, end, TABLE_ACCURACY) } else { Chebyshev::fit(slip, end) },
             limit_edge,
         })
     }
@@ -154,7 +160,8 @@ struct Transform<'a> {
 impl<'a> Transform<'a> {
     fn new(profile: &'a EquivalentProfile, stick_radius: f64) -> Result<Self> {
         let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
-        let rule = Rule::jacobi(NODES, 0.0, -nu)?;
+        let nodes = if profile.end_of_table().is_some() { MAX_NODES } else { NODES };
+        let rule = Rule::jacobi(nodes, 0.0, -nu)?;
         Ok(Self { profile, stick_radius, nu, factor: profile_factor(nu, mu), rule })
     }
 
