@@ -109,7 +109,11 @@ impl UnwornSlip {
             slip_compression,
             mu,
             uniform: Chebyshev::fit(|l| transform.uniform(l), end),
-            slip: if tabulated { Chebyshev::fit_to(slip, end, TABLE_ACCURACY) } else { Chebyshev::fit(slip, end) },
+            slip: if tabulated {
+                Chebyshev::fit_to(slip, end, TABLE_ACCURACY)
+            } else {
+                Chebyshev::fit(slip, end)
+            },
             limit_edge,
         })
     }

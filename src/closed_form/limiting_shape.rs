@@ -146,7 +146,33 @@ impl LimitingShape {
         if slip_compression > 0.0 {
             shape.deepest = shape.find_deepest()?;
         }
+        shape.check_rings()?;
         Ok(shape)
+    }
+
+    /// Refuses a table that would touch again beyond `a∞`: at rows that lie above the surface which the springs leave, `Δf > 0`.
+    ///
+    /// Where `g` rises throughout, `Δf` has no other zero. The unworn contact leaves a lower surface than the limit and touches less.
+    fn check_rings(&self) -> Result<()> {
+        let Indenter::Table(table) = &self.indenter else { return Ok(()) };
+        if self.integral.profile.largest_radius() >= table.largest_radius() {
+            return Ok(());
+        }
+        let (edge, contact_radius) = (self.contact_radius_limit(), self.contact_radius_initial());
+        let rows = table.radii().iter().zip(table.heights());
+        let near = rows.filter(|(r, height)| **r > edge * (1.0 + 1e-6) && **height < self.indentation());
+        for (r, _) in near {
+            let growth = (r / contact_radius).ln();
+            if self.integral.mean_compression(self.stick_logarithm + growth, growth) > 0.0 {
+                let why = format!(
+                    "at an indentation of {:e} m the indenter, worn to the contact radius {edge:e} m, would touch again at r = {r:e} m: the \
+                     contact would split into rings; smooth the profile there, or press less deep",
+                    self.indentation()
+                );
+                return Err(Error::Inconsistent { what: "limiting shape", why });
+            }
+        }
+        Ok(())
     }
 
     /// Radius and depth of the deepest wear.

@@ -64,7 +64,7 @@ impl Cubic {
     pub(super) fn value(&self, x: f64) -> f64 {
         let i = self.index(x);
         let ([constant, ..], t) = (self.pieces[i], x - self.knots[i]);
-        constant + t * self.mean_slope(i, 0.0, t)
+        constant + self.rise_within(i, t)
     }
 
     /// Slope at `x >= 0`.
@@ -111,10 +111,15 @@ impl Cubic {
         if offset < 0.0 { -rise } else { rise }
     }
 
+    /// Rise over the knot of a piece at the distance `t` from it.
+    pub(super) fn rise_within(&self, index: usize, t: f64) -> f64 {
+        t * self.mean_slope(index, 0.0, t)
+    }
+
     /// Distance from the knot of a rising piece at which it has risen by `rise` over the knot's value; at most its width.
     pub(super) fn climb(&self, index: usize, rise: f64) -> f64 {
         let width = self.knots[index + 1] - self.knots[index];
-        let missing = |t: f64| (t * self.mean_slope(index, 0.0, t) - rise, self.mean_slope(index, t, t));
+        let missing = |t: f64| (self.rise_within(index, t) - rise, self.mean_slope(index, t, t));
         if missing(width).0 <= 0.0 { width } else { root(missing, width) }
     }
 
@@ -134,7 +139,11 @@ fn root(function: impl Fn(f64) -> (f64, f64), width: f64) -> f64 {
     let (mut low, mut high, mut x) = (0.0, width, 0.0);
     for _ in 0..MOST_STEPS {
         let (value, slope) = function(x);
-        if value < 0.0 { low = x } else { high = x }
+        if value < 0.0 {
+            low = x
+        } else {
+            high = x
+        }
         let newton = x - value / slope;
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         if value == 0.0 || (next - x).abs() <= 2.0 * f64::EPSILON * next {

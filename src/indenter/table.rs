@@ -52,7 +52,9 @@ impl TabulatedProfile {
         let curve = Cubic::new(radius, &height, slopes);
         let finite = (0..height.len()).all(|i| curve.piece(i).iter().all(|it| it.is_finite()));
         if !finite {
-            return Err(refused("its rows are too close or too large to compute with; check the units".into()));
+            return Err(refused(
+                "its rows are too close or too large to compute with; check the units".into(),
+            ));
         }
         Ok(Self { source: source.into(), heights: height, curve })
     }
@@ -122,20 +124,29 @@ fn check(radius: &[f64], height: &[f64]) -> std::result::Result<(), String> {
     }
     if radius[0] != 0.0 || height[0] != 0.0 {
         let (r, f) = (radius[0], height[0]);
-        return Err(format!("it begins at r = {r} m with f = {f} m; the first row is the tip, r = 0 and f = 0"));
+        return Err(format!(
+            "it begins at r = {r:e} m with f = {f:e} m; the first row is the tip, r = 0 and f = 0"
+        ));
     }
     if let Some(row) = (1..rows).find(|&i| radius[i] <= radius[i - 1]) {
-        return Err(format!("radius {} m follows {} m; they must increase", radius[row], radius[row - 1]));
+        return Err(format!(
+            "radius {:e} m follows {:e} m; they must increase",
+            radius[row],
+            radius[row - 1]
+        ));
     }
     if let Some(row) = (0..rows).find(|&i| height[i] < 0.0) {
         return Err(format!(
-            "at r = {} m it lies {} m below the tip at r = 0; measure from the lowest point",
+            "at r = {:e} m it lies {:e} m below the tip at r = 0; measure from the lowest point",
             radius[row], -height[row]
         ));
     }
     let (largest, highest) = (radius[rows - 1], height.iter().fold(0.0, |m: f64, f| m.max(*f)));
     if highest == 0.0 {
-        return Err("every f is zero: a flat punch, whose contact radius is its own; give a profile that rises".into());
+        return Err(
+            "every f is zero: a flat punch, whose contact radius is its own; give a profile that rises"
+                .into(),
+        );
     }
     // What is formed from them must not overflow.
     if !(largest < 1e100 && highest < 1e100 && radius[1] > 1e-100) {

@@ -1,9 +1,9 @@
 //! The equivalent profile of a measured profile.
 
 use super::cubic::Cubic;
+use super::power_law_factor;
 use super::table::TabulatedProfile;
 use super::table_transform::Transform;
-use super::power_law_factor;
 use crate::error::{Error, Result};
 use crate::quadrature::Rule;
 use crate::roots;
@@ -28,8 +28,8 @@ pub(super) struct TabulatedEquivalent {
     rule: Rule,
     /// Knot up to which `g` rises.
     rising: usize,
-    /// Knot beyond that where `g` is lowest.
-    lowest: Option<usize>,
+    /// Knot beyond that up to which it falls; the same where the table ends.
+    falling: usize,
 }
 
 impl TabulatedEquivalent {
@@ -65,14 +65,14 @@ impl TabulatedEquivalent {
         }
         let rises = |i: &usize| values[i + 1] > values[*i] || values[i + 1] == 0.0;
         let rising = (0..last).take_while(rises).count();
-        let lowest = (rising + 1..=last).min_by(|a, b| values[*a].total_cmp(&values[*b]));
+        let falling = rising + (rising..last).take_while(|&i| values[i + 1] <= values[i]).count();
         let mut equivalent = Self {
             exponent: 1.0 + grading,
             curve,
             loads: vec![0.0],
             rule: Rule::legendre(LOAD_NODES)?,
             rising,
-            lowest,
+            falling,
         };
         for i in 0..rising {
             let width = equivalent.curve.knots()[i + 1] - equivalent.curve.knots()[i];
@@ -107,12 +107,7 @@ impl TabulatedEquivalent {
     /// See [`EquivalentProfile::radius_at`](super::EquivalentProfile::radius_at).
     pub(super) fn radius_at(&self, depth: f64) -> Result<f64> {
         if depth > self.curve.at_knot(self.rising) {
-            return Err(self.unreachable(&format!("an indentation of {depth} m")));
-        }
-        if let Some(lowest) = self.lowest
-            && self.curve.at_knot(lowest) <= depth
-        {
-            return Err(self.unreachable(&format!("an indentation of {depth} m")));
+            return Err(self.unreachable(&format!("an indentation of {depth:e} m")));
         }
         let below = self.last_at_most(depth, |i| self.curve.at_knot(i));
         Ok(self.curve.knots()[below] + self.curve.climb(below, depth - self.curve.at_knot(below)))
@@ -142,8 +137,7 @@ impl TabulatedEquivalent {
                 back = radius;
                 break;
             }
-            let [start, ..] = self.curve.piece(piece);
-            left -= self.curve.value(self.curve.knots()[piece] + t).max(start) - start;
+            left -= self.curve.rise_within(piece, t);
             back += t;
             piece -= 1;
             t = self.curve.knots()[piece + 1] - self.curve.knots()[piece];
@@ -193,7 +187,7 @@ impl TabulatedEquivalent {
     /// See [`EquivalentProfile::depth_for_load`](super::EquivalentProfile::depth_for_load).
     pub(super) fn depth_for_load(&self, load: f64) -> Result<f64> {
         if load > self.loads[self.rising] {
-            return Err(self.unreachable(&format!("F_N/c_N = {load} m^(2+k)")));
+            return Err(self.unreachable(&format!("F_N/c_N = {load:e} m^(2+k)")));
         }
         let below = self.last_at_most(load, |i| self.loads[i]);
         let (missing, left) = (load - self.loads[below], self.curve.knots()[below]);
@@ -203,20 +197,19 @@ impl TabulatedEquivalent {
         Ok(self.value(left + t))
     }
 
-    /// Why the contact cannot be wider than the largest radius, or have its depth.
+    /// Why the contact cannot be wider than the largest radius, and the cure.
     pub(super) fn end(&self) -> String {
         let (radius, depth) = (self.largest_radius(), self.curve.at_knot(self.rising));
-        let Some(lowest) = self.lowest else {
+        if self.falling == self.rising {
             return format!(
-                "the table ends at {radius} m, where the equivalent profile g is {depth} m; measure further out, or press less deep"
+                "the table ends at {radius:e} m, where the equivalent profile g is {depth:e} m; measure further out, or press less deep"
             );
-        };
-        let low = self.curve.at_knot(lowest);
+        }
         format!(
-            "between {radius} m and {} m the equivalent profile g falls from {depth} m to {low} m, so that the contact would split into \
-             rings; smooth the profile there, or press less deep than {} m",
-            self.curve.knots()[lowest],
-            low.max(0.0)
+            "between {radius:e} m and {:e} m the equivalent profile g falls from {depth:e} m to {:e} m, so that the contact would split \
+             into rings; smooth the profile there, or press less deep",
+            self.curve.knots()[self.falling],
+            self.curve.at_knot(self.falling),
         )
     }
 

@@ -51,8 +51,7 @@ impl Transform {
         let density = |i: usize| {
             let ([_, slope, square, cube], left) = (curve.piece(i), knots[i]);
             let (linear, quadratic) = (2.0 * square * size, 3.0 * cube * size * size);
-            let second =
-                [slope + left * linear, 2.0 * (linear + left * quadratic), 3.0 * quadratic];
+            let second = [slope + left * linear, 2.0 * (linear + left * quadratic), 3.0 * quadratic];
             [[slope, linear, quadratic], second]
         };
         let densities = (0..count).map(density).collect();
@@ -138,8 +137,7 @@ impl Transform {
     fn add_block(&mut self, first: usize, last: usize) -> usize {
         let (left, right) = (self.knots[first], self.knots[last]);
         let angle = |j: usize| std::f64::consts::PI * (j as f64 + 0.5) / INTERPOLATED as f64;
-        let points =
-            std::array::from_fn(|j| left + (right - left) * (0.5 * angle(j)).sin().powi(2));
+        let points = std::array::from_fn(|j| left + (right - left) * (0.5 * angle(j)).sin().powi(2));
         let mut block = Block { first, last, halves: None, points, moments: [[0.0; 2]; INTERPOLATED] };
         let mut polynomials = [0.0; INTERPOLATED];
         if last - first <= LEAF {

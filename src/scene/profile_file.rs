@@ -73,7 +73,9 @@ fn text_of(path: &Path) -> std::result::Result<String, String> {
     // One byte past the limit tells a file that is too large from one that just fits.
     File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes)).map_err(reason)?;
     if bytes.len() as u64 > LARGEST {
-        return Err(format!("is larger than {LARGEST} bytes; a profile has two columns, and fewer rows will do"));
+        return Err(format!(
+            "is larger than {LARGEST} bytes; a profile has two columns, and fewer rows will do"
+        ));
     }
     if bytes.contains(&0) {
         return Err("is not text; save the profile as plain text in UTF-8 with two columns, r and f".into());
@@ -146,10 +148,14 @@ fn row(line: &str, fields: &[&str]) -> std::result::Result<[f64; 2], String> {
     let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
     let decimal_comma = |field: &str| {
         let field = field.trim_start_matches(['+', '-']);
-        field.split_once(',').is_some_and(|(whole, part)| digits(whole) && part.starts_with(|c: char| c.is_ascii_digit()))
+        field
+            .split_once(',')
+            .is_some_and(|(whole, part)| digits(whole) && part.starts_with(|c: char| c.is_ascii_digit()))
     };
     let blanks: Vec<&str> = line.split_whitespace().collect();
-    if fields.iter().any(|field| decimal_comma(field)) || (blanks.len() == 2 && blanks.iter().all(|it| decimal_comma(it))) {
+    if fields.iter().any(|field| decimal_comma(field))
+        || (blanks.len() == 2 && blanks.iter().all(|it| decimal_comma(it)))
+    {
         return Err("has a decimal comma; write points, as in 0.5".into());
     }
     let [radius, height] = fields else {
@@ -157,8 +163,14 @@ fn row(line: &str, fields: &[&str]) -> std::result::Result<[f64; 2], String> {
     };
     let number = |what: &str, field: &str| match field.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("has {what} = {}, which is not finite; remove the row or measure it again", printable(field))),
-        Err(_) => Err(format!("has {what} = \"{}\", which is no number; a row is two numbers, r and f, and a comment begins with #", printable(field))),
+        Ok(_) => Err(format!(
+            "has {what} = {}, which is not finite; remove the row or measure it again",
+            printable(field)
+        )),
+        Err(_) => Err(format!(
+            "has {what} = \"{}\", which is no number; a row is two numbers, r and f, and a comment begins with #",
+            printable(field)
+        )),
     };
     let row = [number("r", radius)?, number("f", height)?];
     if row[0] < 0.0 {
@@ -173,7 +185,8 @@ fn from_the_tip(mut rows: Vec<Row>, units: [f64; 2]) -> std::result::Result<(Vec
     let twice = |pair: &&[Row]| pair[0].radius == pair[1].radius && pair[0].height != pair[1].height;
     if let Some(pair) = rows.windows(2).find(twice) {
         let (first, second) = (pair[0].line.min(pair[1].line), pair[0].line.max(pair[1].line));
-        let of = |line: usize| pair.iter().find(|row| row.line == line).map_or(0.0, |row| row.height / units[1]);
+        let of =
+            |line: usize| pair.iter().find(|row| row.line == line).map_or(0.0, |row| row.height / units[1]);
         return Err(format!(
             "lines {first} and {second} give the radius {} twice, with f = {} and f = {}; remove one",
             pair[0].radius / units[0],

@@ -126,7 +126,9 @@ fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result
     match rows {
         Rows::In(folder) => profile_file::read(&folder.join(name), name, units, warnings).map(Arc::new),
         Rows::Stored(Some(table)) => Ok(Arc::clone(table)),
-        Rows::Stored(None) => Err(section.error("its rows are not stored in the result; run the scene again")),
+        Rows::Stored(None) => {
+            Err(section.error("its rows are not stored in the result; run the scene again"))
+        }
     }
 }
 
