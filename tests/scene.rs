@@ -316,12 +316,6 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
         ),
         // Of the contract, but not of this version.
         (
-            "[indenter.paraboloid]\nradius = \"10 mm\"",
-            "[indenter.table]\nfile = \"a.csv\"",
-            "[indenter.table]",
-            &["this version does not offer indenter.table"],
-        ),
-        (
             FORCE,
             "normal_force = 50",
             "normal_force",

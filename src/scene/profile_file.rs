@@ -159,7 +159,11 @@ fn row(line: &str, fields: &[&str]) -> std::result::Result<[f64; 2], String> {
         return Err("has a decimal comma; write points, as in 0.5".into());
     }
     let [radius, height] = fields else {
-        return Err(format!("has {} columns; a row is two numbers, r and f", fields.len()));
+        return Err(format!(
+            "has {} column{}; a row is two numbers, r and f",
+            fields.len(),
+            if fields.len() == 1 { "" } else { "s" }
+        ));
     };
     let number = |what: &str, field: &str| match field.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),

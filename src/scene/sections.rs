@@ -115,11 +115,8 @@ fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result
         None => Ok(1.0),
         Some(entry) => {
             let unit = entry.string()?;
-            let wrong = |why: String| entry.explained(why + "; give a unit of length alone, such as \"um\"");
-            let size = parse(&format!("1 {unit}"), Dimension::LENGTH).map_err(wrong)?;
-            // "e3 m" or ".5 m" would read as a part of the number.
-            let letter = unit.trim().starts_with(|c: char| c.is_alphabetic() && c != 'e' && c != 'E');
-            if letter && size > 0.0 { Ok(size) } else { Err(wrong(format!("{unit:?} is no unit"))) }
+            parse(&format!("1 {unit}"), Dimension::LENGTH)
+                .map_err(|why| entry.explained(why + "; give a unit of length alone, such as \"um\""))
         }
     };
     let units = [unit(UNITS[0])?, unit(UNITS[1])?];
