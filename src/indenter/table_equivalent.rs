@@ -207,7 +207,7 @@ impl TabulatedEquivalent {
         }
         format!(
             "between {radius:e} m and {:e} m the equivalent profile g falls from {depth:e} m to {:e} m, so that the contact would split \
-             into rings; smooth the profile there, or press less deep",
+             into rings; smooth the profile there, take fewer rows, or press less deep",
             self.curve.knots()[self.falling],
             self.curve.at_knot(self.falling),
         )
