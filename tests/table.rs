@@ -125,7 +125,7 @@ fn tables_of_spheres_and_power_laws_converge_with_the_spacing() {
             // A tip that is no smooth one costs the force h^(n+1+k): an error h^n of the profile on springs of x^k dx.
             let force = exact.as_power_law().map_or(3.4, |(_, n)| (n + 0.8 + grading).min(3.0));
             // Where the depth is taken between the rows changes most from one spacing to the next.
-            let depth_order = smooth.min(2.4);
+            let depth_order = f64::min(smooth, 2.4);
             for (quantity, least) in
                 [smooth, force, smooth, smooth, depth_order, depth_order].into_iter().enumerate()
             {
