@@ -17,6 +17,9 @@ use std::f64::consts::PI;
 /// of `M U/μ_f` next to full sliding is what is seen. Against two hundred nodes it is 3e-13 for
 /// c/a0 down to 1e-9, and 4e-12 at n = 60.
 ///
+/// The rows of a cone or a paraboloid give their limit to 2e-13. For other tables the integrals take two hundred nodes across the kinks: against
+/// Eq. (3) by brute force the depth is good to 8e-10 of the largest for a hundred smooth rows, to 2e-5 for the roughest tried (k = -0.9).
+///
 /// # Examples
 /// ```
 /// use fretwear::closed_form::LimitingShape;

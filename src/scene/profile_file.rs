@@ -5,16 +5,18 @@ use std::io::Read;
 use std::path::Path;
 
 use super::document::printable;
+use super::quantity::{Dimension, parse};
 use crate::error::{Error, Result};
 use crate::indenter::TabulatedProfile;
 
 /// Size of the largest file read, bytes: [`TabulatedProfile::MOST_ROWS`] rows of 400 characters.
 const LARGEST: u64 = 20_000_000;
 
-/// A row in SI, and its line.
+/// A row as written in a line, and in SI.
 #[derive(Clone, Copy)]
 struct Row {
     line: usize,
+    written: [f64; 2],
     radius: f64,
     height: f64,
 }
@@ -27,24 +29,23 @@ struct Row {
 /// # Arguments
 /// * `path` -- the file
 /// * `name` -- what the profile is called
-/// * `units` -- metres of one unit of radius and of height
+/// * `units` -- of radius and of height, of lengths
 ///
 /// # Errors
 /// [`Error::File`] names the file, the line, what stands there and the cure.
 pub(super) fn read(
     path: &Path,
     name: &str,
-    units: [f64; 2],
+    units: [&str; 2],
     warnings: &mut Vec<String>,
 ) -> Result<TabulatedProfile> {
     let failed = |why: String| Error::File { path: path.to_owned(), why };
     let text = text_of(path).map_err(failed)?;
     let rows = rows(&text, units).map_err(failed)?;
-    let (rows, tip) = from_the_tip(rows, units).map_err(failed)?;
+    let (rows, tip) = from_the_tip(rows).map_err(failed)?;
     if tip != 0.0 {
-        let height = tip / units[1];
         warnings.push(format!(
-            "{}: f is {height} at r = 0; that height is subtracted from every row, so that f(0) = 0",
+            "{}: f is {tip} at r = 0; that height is subtracted from every row, so that f(0) = 0",
             path.display()
         ));
     }
@@ -87,7 +88,7 @@ fn text_of(path: &Path) -> std::result::Result<String, String> {
     })
 }
 
-fn rows(text: &str, units: [f64; 2]) -> std::result::Result<Vec<Row>, String> {
+fn rows(text: &str, units: [&str; 2]) -> std::result::Result<Vec<Row>, String> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut rows: Vec<Row> = Vec::new();
     let mut header = None;
@@ -103,9 +104,14 @@ fn rows(text: &str, units: [f64; 2]) -> std::result::Result<Vec<Row>, String> {
             let most = TabulatedProfile::MOST_ROWS;
             return Err(format!("line {number}: there are more than {most} rows; give fewer, evenly spread"));
         }
-        let [radius, height] = row(line, &fields)
-            .map_err(|why| format!("line {number}: \"{}\" {why}", printable(full.trim())))?;
-        rows.push(Row { line: number, radius: radius * units[0] + 0.0, height: height * units[1] });
+        let shown = |why| format!("line {number}: \"{}\" {why}", printable(full.trim()));
+        let written = row(line, &fields).map_err(shown)?;
+        // Exactly: the power of ten of the unit is added before the number is read.
+        let metres =
+            |column: usize| parse(&format!("{} {}", fields[column], units[column]), Dimension::LENGTH);
+        let [radius, height] = [metres(0), metres(1)];
+        let (radius, height) = (radius.map_err(shown)? + 0.0, height.map_err(shown)?);
+        rows.push(Row { line: number, written, radius, height });
     }
     match (rows.is_empty(), header) {
         (true, Some((line, text))) => Err(format!(
@@ -183,19 +189,16 @@ fn row(line: &str, fields: &[&str]) -> std::result::Result<[f64; 2], String> {
     Ok(row)
 }
 
-/// The rows in order of the radius, each once, with heights from the tip; and the height of the tip.
-fn from_the_tip(mut rows: Vec<Row>, units: [f64; 2]) -> std::result::Result<(Vec<Row>, f64), String> {
+/// The rows in order of the radius, each once, with heights from the tip; and the height of the tip as written.
+fn from_the_tip(mut rows: Vec<Row>) -> std::result::Result<(Vec<Row>, f64), String> {
     rows.sort_by(|a, b| a.radius.total_cmp(&b.radius));
     let twice = |pair: &&[Row]| pair[0].radius == pair[1].radius && pair[0].height != pair[1].height;
     if let Some(pair) = rows.windows(2).find(twice) {
-        let (first, second) = (pair[0].line.min(pair[1].line), pair[0].line.max(pair[1].line));
-        let of =
-            |line: usize| pair.iter().find(|row| row.line == line).map_or(0.0, |row| row.height / units[1]);
+        let (first, second) =
+            if pair[0].line < pair[1].line { (pair[0], pair[1]) } else { (pair[1], pair[0]) };
         return Err(format!(
-            "lines {first} and {second} give the radius {} twice, with f = {} and f = {}; remove one",
-            pair[0].radius / units[0],
-            of(first),
-            of(second)
+            "lines {} and {} give the radius {} twice, with f = {} and f = {}; remove one",
+            first.line, second.line, first.written[0], first.written[1], second.written[1]
         ));
     }
     rows.dedup_by(|a, b| a.radius == b.radius);
@@ -203,19 +206,16 @@ fn from_the_tip(mut rows: Vec<Row>, units: [f64; 2]) -> std::result::Result<(Vec
     if tip.radius > 0.0 {
         return Err(format!(
             "begins at the radius {} (line {}); add a row for the tip, r = 0, from which f is measured",
-            tip.radius / units[0],
-            tip.line
+            tip.written[0], tip.line
         ));
     }
     rows.iter_mut().for_each(|row| row.height -= tip.height);
     if let Some(row) = rows.iter().find(|row| row.height < 0.0) {
         return Err(format!(
-            "line {}: at r = {} the profile lies {} below its tip at r = 0 (line {}); put r = 0 at the lowest point, with f growing outwards",
-            row.line,
-            row.radius / units[0],
-            -row.height / units[1],
-            tip.line
+            "line {}: at r = {} the profile has f = {}, below its tip at r = 0 with f = {} (line {}); put r = 0 at the lowest point, with f \
+             growing outwards",
+            row.line, row.written[0], row.written[1], tip.written[1], tip.line
         ));
     }
-    Ok((rows, tip.height))
+    Ok((rows, tip.written[1]))
 }

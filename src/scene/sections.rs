@@ -111,13 +111,12 @@ fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result
     if name.is_empty() {
         return Err(file.error("is no name of a file"));
     }
-    let unit = |key: &str| match section.optional(key) {
-        None => Ok(1.0),
-        Some(entry) => {
-            let unit = entry.string()?;
-            parse(&format!("1 {unit}"), Dimension::LENGTH)
-                .map_err(|why| entry.explained(why + "; give a unit of length alone, such as \"um\""))
-        }
+    let unit = |key: &str| {
+        let Some(entry) = section.optional(key) else { return Ok("m") };
+        let unit = entry.string()?;
+        parse(&format!("1 {unit}"), Dimension::LENGTH)
+            .map_err(|why| entry.explained(why + "; give a unit of length alone, such as \"um\""))?;
+        Ok(unit)
     };
     let units = [unit(UNITS[0])?, unit(UNITS[1])?];
     match rows {
