@@ -358,6 +358,7 @@ fn representable(what: &'static str, value: f64, keys: &str) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::indenter::TabulatedProfile;
     use crate::loading::Duration;
 
     const FRICTION: f64 = 0.6;
@@ -378,8 +379,12 @@ mod tests {
         )
     }
 
-    fn indenters() -> [Indenter; 4] {
+    fn indenters() -> [Indenter; 5] {
+        let radius: Vec<f64> = (0..160).map(|i| 2e-6 * f64::from(i)).collect();
+        let height = radius.iter().map(|r| 30.0 * r * r + 1e-1 * r).collect();
+        let table = TabulatedProfile::new("rows", radius, height).unwrap();
         [
+            Indenter::Table(std::sync::Arc::new(table)),
             Indenter::Paraboloid { radius: 0.01 },
             Indenter::Cone { slope: 0.05 },
             Indenter::PowerLaw { coefficient: 1e3, exponent: 4.0 },

@@ -121,6 +121,23 @@ fn a_tip_that_is_not_at_zero_is_subtracted_with_a_warning() {
 }
 
 #[test]
+fn few_rows_within_the_contact_are_doubted() {
+    let folder = folder_with(&table("tau = 1"), csv(","));
+    let json = object(folder.path(), &["check", "scene.toml", "--json"]);
+    assert_eq!(json["indenter"], "table rows.csv, 7 rows, radius 0 to 300 µm, f to 4.5 µm");
+    let warnings = json["warnings"].as_array().unwrap();
+    assert!(
+        warnings.iter().any(|it| it.as_str().unwrap().contains("only 3 rows of the table lie within")),
+        "{warnings:?}"
+    );
+    let many =
+        (0..=60).map(|i| format!("{},{}\n", 0.005 * f64::from(i), 50.0 * (0.005 * f64::from(i)).powi(2)));
+    let folder = folder_with(&table("tau = 1"), many.collect::<String>());
+    let json = object(folder.path(), &["check", "scene.toml", "--json"]);
+    assert_eq!(json["warnings"].as_array().unwrap().len(), 0, "{json}");
+}
+
+#[test]
 fn a_bad_file_is_refused_with_its_line_what_stands_there_and_the_cure() {
     let replaced = |old: &str, new: &str| csv(",").replacen(old, new, 1).into_bytes();
     let cases: Vec<(Vec<u8>, &str)> = vec![
