@@ -93,7 +93,7 @@ impl InitialContact {
         let what = "dimensionless time per cycle 4 k_w c_N a0^(k-1) μ_f d/M";
         representable(what, tau_per_cycle, "wear.archard.coefficient, half_space and loading")?;
         Ok(Self {
-            indenter: *indenter,
+            indenter: indenter.clone(),
             half_space: *half_space,
             friction: *friction,
             wear: *wear,
@@ -216,6 +216,10 @@ impl Press {
         let (Load::Indentation(value) | Load::InitialForce(value)) = load;
         positive(key, value)?;
         let too_large = |error: Error| match error {
+            // That of a table has its own cure.
+            Error::Inconsistent { why, .. } if profile.end_of_table().is_some() => {
+                Error::Inconsistent { what: key, why }
+            }
             Error::Inconsistent { why, .. } => Error::Inconsistent {
                 what: key,
                 why: format!("{value} is too large: {why}; make it smaller, or the indenter larger"),
@@ -293,6 +297,17 @@ impl Slip {
                 if !(ratio > 0.0 && ratio <= 1.0) {
                     return Err(Error::OutOfRange { name: amplitude.key(), value: ratio, range: "(0, 1]" });
                 }
+                if contact_radius * ratio < profile.flat_radius() {
+                    return Err(Error::Inconsistent {
+                        what: amplitude.key(),
+                        why: format!(
+                            "{ratio} puts the edge of stick at {} m, but the profile is flat up to {} m, where all springs slip at once; \
+                             ask for a larger ratio",
+                            contact_radius * ratio,
+                            profile.flat_radius()
+                        ),
+                    });
+                }
                 // Zero minus: a ratio of 1 gives +0 throughout.
                 let logarithm = 0.0 - ratio.ln();
                 let compression = 0.0 - profile.at(contact_radius).rise(-logarithm);
@@ -343,6 +358,7 @@ fn representable(what: &'static str, value: f64, keys: &str) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::indenter::TabulatedProfile;
     use crate::loading::Duration;
 
     const FRICTION: f64 = 0.6;
@@ -363,8 +379,12 @@ mod tests {
         )
     }
 
-    fn indenters() -> [Indenter; 4] {
+    fn indenters() -> [Indenter; 5] {
+        let radius: Vec<f64> = (0..160).map(|i| 2e-6 * f64::from(i)).collect();
+        let height = radius.iter().map(|r| 30.0 * r * r + 1e-1 * r).collect();
+        let table = TabulatedProfile::new("rows", radius, height).unwrap();
         [
+            Indenter::Table(std::sync::Arc::new(table)),
             Indenter::Paraboloid { radius: 0.01 },
             Indenter::Cone { slope: 0.05 },
             Indenter::PowerLaw { coefficient: 1e3, exponent: 4.0 },
@@ -473,43 +493,43 @@ mod tests {
         let sphere = Indenter::Sphere { radius: 1e-4 };
         let ratio = Amplitude::StickRatio(0.7);
         let cases = [
-            (paraboloid, Load::Indentation(0.0), ratio, "loading.indentation = 0 is outside"),
-            (paraboloid, Load::Indentation(f64::NAN), ratio, "loading.indentation = NaN is outside"),
-            (paraboloid, Load::InitialForce(-1.0), ratio, "loading.initial_force = -1 is outside"),
-            (paraboloid, Load::Indentation(1e308), ratio, "volume π a0² d, m³: inf is too large"),
-            (paraboloid, Load::Indentation(1e-308), ratio, "indentation, m: 1e-308 is too small"),
-            (paraboloid, Load::InitialForce(1e-310), ratio, "unit of loading.initial_force and half_space"),
-            (sphere, Load::Indentation(1e-3), ratio, "loading.indentation: 0.001 is too large: a sphere"),
-            (sphere, Load::InitialForce(1e6), ratio, "loading.initial_force: 1000000 is too large: F_N"),
-            (paraboloid, Load::Indentation(1e-6), Amplitude::StickRatio(0.0), "loading.stick_ratio = 0 is"),
+            (&paraboloid, Load::Indentation(0.0), ratio, "loading.indentation = 0 is outside"),
+            (&paraboloid, Load::Indentation(f64::NAN), ratio, "loading.indentation = NaN is outside"),
+            (&paraboloid, Load::InitialForce(-1.0), ratio, "loading.initial_force = -1 is outside"),
+            (&paraboloid, Load::Indentation(1e308), ratio, "volume π a0² d, m³: inf is too large"),
+            (&paraboloid, Load::Indentation(1e-308), ratio, "indentation, m: 1e-308 is too small"),
+            (&paraboloid, Load::InitialForce(1e-310), ratio, "unit of loading.initial_force and half_space"),
+            (&sphere, Load::Indentation(1e-3), ratio, "loading.indentation: 0.001 is too large: a sphere"),
+            (&sphere, Load::InitialForce(1e6), ratio, "loading.initial_force: 1000000 is too large: F_N"),
+            (&paraboloid, Load::Indentation(1e-6), Amplitude::StickRatio(0.0), "loading.stick_ratio = 0 is"),
             (
-                paraboloid,
+                &paraboloid,
                 Load::Indentation(1e-6),
                 Amplitude::StickRatio(1e-320),
                 "unit of loading.stick_ratio",
             ),
             (
-                paraboloid,
+                &paraboloid,
                 Load::Indentation(1e-6),
                 Amplitude::Ratio(-0.1),
                 "loading.amplitude_ratio = -0.1 is",
             ),
-            (paraboloid, Load::Indentation(1e9), Amplitude::Ratio(1e308), "amplitude, m: inf is too large"),
+            (&paraboloid, Load::Indentation(1e9), Amplitude::Ratio(1e308), "amplitude, m: inf is too large"),
             (
-                paraboloid,
+                &paraboloid,
                 Load::Indentation(1e-6),
                 Amplitude::Displacement(1e-300),
                 "unit of loading.amplitude",
             ),
             (
-                paraboloid,
+                &paraboloid,
                 Load::Indentation(1e-6),
                 Amplitude::Displacement(f64::INFINITY),
                 "loading.amplitude =",
             ),
         ];
         for (indenter, load, amplitude, words) in cases {
-            let found = contact(&indenter, 0.0, load, amplitude).map(drop).unwrap_err().to_string();
+            let found = contact(indenter, 0.0, load, amplitude).map(drop).unwrap_err().to_string();
             assert!(found.contains(words), "{load:?}, {amplitude:?}: {found}");
         }
     }

@@ -1,14 +1,21 @@
 //! Rigid axisymmetric indenters: profile `f(r)` and its one-dimensional equivalent `g(x)`.
 
+mod cubic;
 mod equivalent;
 mod sphere;
+mod table;
+mod table_equivalent;
+mod table_transform;
+
+use std::sync::Arc;
 
 pub use equivalent::{EquivalentProfile, power_law_factor};
+pub use table::TabulatedProfile;
 
 use crate::error::{Error, Result};
 
-/// Profile `f(r)` of a rigid indenter, `f(0) = 0`, increasing; every parameter positive and finite.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Profile `f(r)` of a rigid indenter, `f(0) = 0`, increasing but for what a table may hold; every parameter positive and finite.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Indenter {
     /// `f = r²/(2R)`.
     Paraboloid {
@@ -32,6 +39,8 @@ pub enum Indenter {
         /// Exponent `n`.
         exponent: f64,
     },
+    /// `f` by a measured profile.
+    Table(Arc<TabulatedProfile>),
 }
 
 impl Indenter {
@@ -72,13 +81,14 @@ impl Indenter {
     /// # Errors
     /// [`Error::OutOfRange`] names the parameter as in the scene.
     pub fn validated(self) -> Result<Self> {
-        let parameters = match self {
-            Self::Paraboloid { radius } => [("indenter.paraboloid.radius", radius), ("", 1.0)],
-            Self::Sphere { radius } => [("indenter.sphere.radius", radius), ("", 1.0)],
-            Self::Cone { slope } => [("indenter.cone.slope", slope), ("", 1.0)],
-            Self::PowerLaw { coefficient, exponent } => {
+        let parameters = match &self {
+            &Self::Paraboloid { radius } => [("indenter.paraboloid.radius", radius), ("", 1.0)],
+            &Self::Sphere { radius } => [("indenter.sphere.radius", radius), ("", 1.0)],
+            &Self::Cone { slope } => [("indenter.cone.slope", slope), ("", 1.0)],
+            &Self::PowerLaw { coefficient, exponent } => {
                 [("indenter.power-law.coefficient", coefficient), ("indenter.power-law.exponent", exponent)]
             }
+            Self::Table(_) => [("", 1.0), ("", 1.0)],
         };
         match parameters.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
             Some((name, value)) => Err(Error::OutOfRange { name, value, range: "(0, inf)" }),
@@ -86,7 +96,7 @@ impl Indenter {
         }
     }
 
-    /// Profile `f(r)`, m, at radius `r >= 0`, m; not a number beyond the equator of a sphere.
+    /// Profile `f(r)`, m, at radius `r >= 0`, m; not a number beyond the equator of a sphere or the end of a table.
     ///
     /// # Examples
     /// ```
@@ -102,6 +112,7 @@ impl Indenter {
             Self::Sphere { radius } => r * r / (radius + ((radius - r) * (radius + r)).sqrt()),
             Self::Cone { slope } => slope * r,
             Self::PowerLaw { coefficient, exponent } => coefficient * r.powf(exponent),
+            Self::Table(ref table) => table.profile(r),
         }
     }
 
@@ -112,20 +123,22 @@ impl Indenter {
             Self::Sphere { radius } => r / ((radius - r) * (radius + r)).sqrt(),
             Self::Cone { slope } => slope,
             Self::PowerLaw { coefficient, exponent } => exponent * coefficient * r.powf(exponent - 1.0),
+            Self::Table(ref table) => table.profile_derivative(r),
         }
     }
 
-    /// Coefficient `A` and exponent `n` where the profile is a power law `A r^n`; none for the sphere.
+    /// Coefficient `A` and exponent `n` where the profile is a power law `A r^n`; none for the sphere and the table.
     pub fn as_power_law(&self) -> Option<(f64, f64)> {
         match *self {
             Self::Paraboloid { radius } => Some((0.5 / radius, 2.0)),
-            Self::Sphere { .. } => None,
+            Self::Sphere { .. } | Self::Table(_) => None,
             Self::Cone { slope } => Some((slope, 1.0)),
             Self::PowerLaw { coefficient, exponent } => Some((coefficient, exponent)),
         }
     }
 
-    /// Radius, m, at which the profile has risen to `height`, m: the inverse of `f`. At most the radius of a sphere.
+    /// Radius, m, at which the profile has risen to `height`, m: the inverse of `f`. At most the radius of a sphere
+    /// or the last one of a table, of which it is the smallest such radius.
     pub fn radius_at_height(&self, height: f64) -> f64 {
         match *self {
             Self::Sphere { radius } if height < radius => (height * (2.0 * radius - height)).sqrt(),
@@ -133,6 +146,7 @@ impl Indenter {
             Self::Paraboloid { radius } => (2.0 * radius * height).sqrt(),
             Self::Cone { slope } => height / slope,
             Self::PowerLaw { coefficient, exponent } => (height / coefficient).powf(exponent.recip()),
+            Self::Table(ref table) => table.radius_at_height(height),
         }
     }
 

@@ -76,6 +76,7 @@ impl Run {
             scene: scene.text().to_owned(),
             radius: simulation.model().radii(),
             limit: Some(limit_curves(simulation.model(), &parts.limit)),
+            table: scene.table().cloned(),
         };
         let writer = RunWriter::create(output, header, overwrite)?;
         Ok(Self { simulation, recorder: Recorder::new(scene, writer, 0.0)?, limit: parts.limit })
@@ -90,7 +91,8 @@ impl Run {
         let unusable = |why: &str| Error::File { path: path.to_owned(), why: why.to_owned() };
         let checkpoint =
             file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
-        let scene = Scene::from_toml(&file.header.scene, &format!("{} (its scene)", path.display()))?;
+        let name = format!("{} (its scene)", path.display());
+        let scene = Scene::from_stored(&file.header.scene, &name, file.header.table.clone())?;
         let parts = Parts::new(&scene)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()

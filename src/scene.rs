@@ -31,17 +31,19 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::friction::Coulomb;
 use crate::half_space::HalfSpace;
-use crate::indenter::Indenter;
+use crate::indenter::{Indenter, TabulatedProfile};
 use crate::loading::Loading;
 use crate::wear::Archard;
 
 mod document;
 mod map;
+mod profile_file;
 pub mod quantity;
 pub mod sampling;
 mod sections;
@@ -126,6 +128,14 @@ impl Default for Output {
     }
 }
 
+/// Where the rows of a measured profile are.
+enum Rows<'a> {
+    /// In a file, relative to this folder.
+    In(&'a Path),
+    /// In memory, if at all.
+    Stored(Option<Arc<TabulatedProfile>>),
+}
+
 /// A valid description of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -142,29 +152,43 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads a scene from its TOML text.
+    /// Reads a scene from its TOML text; the file of a measured profile is taken relative to the current directory.
     ///
     /// # Arguments
     /// * `text` -- the TOML
     /// * `name` -- what messages call it, the path of the file as a rule
     ///
     /// # Errors
-    /// [`Error::Scene`], whose message shows file, line and column, the line with the bad place marked, the key, and the cure.
+    /// [`Error::Scene`], whose message shows file, line and column, the line with the bad place marked, the key, and the cure;
+    /// [`Error::File`] where the file of a measured profile cannot be used.
     pub fn from_toml(text: &str, name: &str) -> Result<Self> {
+        Self::with_rows(text, name, &Rows::In(Path::new("")))
+    }
+
+    /// Reads a scene as [`Scene::from_toml`] does, but takes the rows of a measured profile as they were stored with it.
+    ///
+    /// # Errors
+    /// As [`Scene::from_toml`]; also if the scene asks for rows and there are none.
+    pub fn from_stored(text: &str, name: &str, table: Option<Arc<TabulatedProfile>>) -> Result<Self> {
+        Self::with_rows(text, name, &Rows::Stored(table))
+    }
+
+    fn with_rows(text: &str, name: &str, rows: &Rows) -> Result<Self> {
         let source = document::Source { name, text, kind: "a scene" };
         if text.len() as u64 > LARGEST {
             return Err(source.missing(format_args!("is larger than {LARGEST} bytes, which no scene is")));
         }
         let document = source.parse()?;
-        sections::scene(&document::Section::root(source, document.get_ref()), text)
+        sections::scene(&document::Section::root(source, document.get_ref()), text, rows)
     }
 
-    /// Reads a scene from a file.
+    /// Reads a scene from a file; that of a measured profile is taken relative to its folder.
     ///
     /// # Errors
     /// [`Error::File`] if it cannot be read as text, else as [`Scene::from_toml`].
     pub fn read(path: &Path) -> Result<Self> {
-        Self::from_toml(&read_text(path)?, &path.display().to_string())
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::with_rows(&read_text(path)?, &path.display().to_string(), &Rows::In(folder))
     }
 
     /// Title, one line.
@@ -175,6 +199,14 @@ impl Scene {
     /// Shape of the indenter.
     pub fn indenter(&self) -> &Indenter {
         &self.indenter
+    }
+
+    /// The rows of a measured profile, if the indenter is one.
+    pub fn table(&self) -> Option<&Arc<TabulatedProfile>> {
+        match &self.indenter {
+            Indenter::Table(table) => Some(table),
+            _ => None,
+        }
     }
 
     /// Spring stiffnesses; those of two elastic bodies are already in series.

@@ -13,12 +13,16 @@ use crate::abel::profile_factor;
 use crate::chebyshev::Chebyshev;
 use crate::error::{Error, Result};
 use crate::indenter::EquivalentProfile;
-use crate::quadrature::Rule;
+use crate::quadrature::{MAX_NODES, Rule};
 use crate::roots::bracketed;
 
 /// Nodes of the Gauss-Jacobi rule for `F`; in the variable used, the integrand is entire for a power law but for the kernel's
 /// own singularity at `ℓ v = 2πi`.
 const NODES: usize = 40;
+
+/// To what the slip depth is resolved where the profile is a table, whose kinks leave no series that ends at round-off. Against 1e-4 of the
+/// default accuracy of a run it is nothing; a smooth table takes some 60 to 130 terms, a rough one all there can be.
+const TABLE_ACCURACY: f64 = 1e-9;
 
 /// How far beyond the limiting contact edge the slip is tabulated, as a factor of `Z`.
 const MARGIN: f64 = 1.1;
@@ -67,7 +71,7 @@ impl UnwornSlip {
     ///
     /// # Errors
     /// [`Error::NotConverged`] if no contact edge is found at which wear ends; [`Error::Inconsistent`] if a sphere would have to wear
-    /// beyond its equator.
+    /// beyond its equator, or a table beyond its end.
     pub fn new(
         profile: &EquivalentProfile,
         stick_radius: f64,
@@ -79,28 +83,37 @@ impl UnwornSlip {
         let squared = stick_radius * stick_radius;
         let depth_left = |l: f64| slip_compression * transform.uniform(l) / l - transform.slip(l);
         let low = (initial_edge / squared).ln_1p();
+        let largest = (2.0 * (profile.largest_radius() / stick_radius).ln()).min(700.0);
         let mut high = low;
         while depth_left(high) > 0.0 {
-            high *= 1.5;
-            if !(high < 700.0 && squared * high.exp() < profile.largest_radius().powi(2)) {
+            if high >= largest {
+                let cure = profile.end_of_table();
                 return Err(Error::Inconsistent {
                     what: "limiting contact radius",
                     why: format!(
-                        "none below {} m; reduce the indentation or the amplitude",
-                        stick_radius * (0.5 * high).exp()
+                        "none below {} m; {}",
+                        stick_radius * (0.5 * high).exp(),
+                        cure.as_deref().unwrap_or("reduce the indentation or the amplitude")
                     ),
                 });
             }
+            high = (1.5 * high).min(largest);
         }
         let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
         let limit_edge = squared * logarithm.exp_m1();
         let end = (MARGIN * limit_edge / squared).ln_1p();
+        let slip = |l: f64| transform.slip(l);
+        let tabulated = profile.end_of_table().is_some();
         Ok(Self {
             stick_radius_squared: squared,
             slip_compression,
             mu,
             uniform: Chebyshev::fit(|l| transform.uniform(l), end),
-            slip: Chebyshev::fit(|l| transform.slip(l), end),
+            slip: if tabulated {
+                Chebyshev::fit_to(slip, end, TABLE_ACCURACY)
+            } else {
+                Chebyshev::fit(slip, end)
+            },
             limit_edge,
         })
     }
@@ -151,7 +164,8 @@ struct Transform<'a> {
 impl<'a> Transform<'a> {
     fn new(profile: &'a EquivalentProfile, stick_radius: f64) -> Result<Self> {
         let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
-        let rule = Rule::jacobi(NODES, 0.0, -nu)?;
+        let nodes = if profile.end_of_table().is_some() { MAX_NODES } else { NODES };
+        let rule = Rule::jacobi(nodes, 0.0, -nu)?;
         Ok(Self { profile, stick_radius, nu, factor: profile_factor(nu, mu), rule })
     }
 

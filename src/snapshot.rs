@@ -19,8 +19,11 @@ pub(crate) use atomic::AtomicFile;
 pub use reader::RunFile;
 pub use writer::RunWriter;
 
+use std::sync::Arc;
+
 use serde::Serialize;
 
+use crate::indenter::TabulatedProfile;
 use crate::model::State;
 use crate::simulation::Progress;
 
@@ -29,12 +32,14 @@ use crate::simulation::Progress;
 pub struct RunHeader {
     /// Title of the scene.
     pub title: Option<String>,
-    /// The scene as TOML text, complete: a restart needs nothing else.
+    /// The scene as TOML text, complete: a restart needs nothing else but the rows of a measured profile.
     pub scene: String,
     /// Radius of the nodes, m, shape `(node,)`, increasing.
     pub radius: Vec<f64>,
     /// The limiting shape, where it has a closed form.
     pub limit: Option<LimitCurves>,
+    /// The rows of a measured profile, if the indenter is one.
+    pub table: Option<Arc<TabulatedProfile>>,
 }
 
 /// The limiting shape on the nodes of a run [S, Eqs. (3) and (9)].

@@ -43,7 +43,8 @@ const WORN: [&str; 5] = [
     "wear_depth_max",
 ];
 
-const SCENES: [&str; 3] = ["paraboloid.toml", "graded_ceramic.toml", "cone_negative_grading.toml"];
+const SCENES: [&str; 4] =
+    ["paraboloid.toml", "graded_ceramic.toml", "cone_negative_grading.toml", "measured_profile.toml"];
 
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
@@ -143,17 +144,18 @@ fn json_has_every_key_in_each_regime_and_nulls_only_under_full_sliding() {
 }
 
 #[test]
-fn the_three_scenes_give_the_closed_form_and_what_their_comments_say() {
+fn the_scenes_give_the_closed_form_and_what_their_comments_say() {
     let folder = folder();
     // Indentation, contact radius, mean pressure, stiffness ratio, stick ratio: as printed in the files, and the time if it is given.
     let comments = [
         (0.75e-6, 87e-6, 0.42e9, 0.824, 0.700, Some(34.0)),
         (2.5e-6, 0.19e-3, 0.43e9, 0.541, 0.716, None),
         (20e-6, 0.11e-3, 0.33e6, 1.15, 0.495, Some(30.0)),
+        (0.65e-6, 91e-6, 0.38e9, 0.824, 0.713, Some(28.0)),
     ];
     for (name, comment) in SCENES.into_iter().zip(comments) {
         let path = data("scenes").join(name);
-        let arguments = ["limit", path.to_str().unwrap(), "--json", "--at", "0,60 um,0.15mm,1e-3"];
+        let arguments = ["limit", path.to_str().unwrap(), "--json", "--at", "0,60 um,0.15mm,0.3mm"];
         let json = object(folder.path(), &arguments);
         let number =
             |key: &str| json[key].as_f64().unwrap_or_else(|| panic!("{name}: {key} = {}", json[key]));
@@ -165,9 +167,9 @@ fn the_three_scenes_give_the_closed_form_and_what_their_comments_say() {
         assert_eq!(number("wear_volume_limit"), shape.wear_volume(), "{name}");
         assert_eq!(number("wear_depth_max"), shape.wear_depth_max(), "{name}");
         assert_eq!(number("wear_volume_asymptotic"), shape.wear_volume_asymptotic(), "{name}");
-        assert_eq!(list(&json["profile"]["radius"]), [0.0, 60e-6, 0.15e-3, 1e-3], "{name}");
+        assert_eq!(list(&json["profile"]["radius"]), [0.0, 60e-6, 0.15e-3, 0.3e-3], "{name}");
         let limit = list(&json["profile"]["limit"]);
-        assert_eq!(limit, [0.0, 60e-6, 0.15e-3, 1e-3].map(|r| shape.profile(r)), "{name}");
+        assert_eq!(limit, [0.0, 60e-6, 0.15e-3, 0.3e-3].map(|r| shape.profile(r)), "{name}");
 
         let check = CheckReport::new(&scene).unwrap();
         let (d, a0, p, m, c, tau) = comment;
@@ -344,6 +346,7 @@ fn info_tells_what_a_result_file_holds_and_whether_it_is_complete() {
         scene: "title = \"Three nodes\"\n".into(),
         radius: vec![1e-5, 2e-5, 3e-5],
         limit: Some(LimitCurves { profile: vec![1e-8, 5e-8, 1e-7], wear_depth: vec![0.0, 2e-8, 1e-8] }),
+        table: None,
     };
     let snapshot = Snapshot {
         cycles: 2000.0,

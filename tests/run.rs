@@ -32,7 +32,7 @@ const KEYS: [&str; 18] = [
     "dissipated_energy",
 ];
 
-const SCENES: [&str; 3] = ["paraboloid", "graded_ceramic", "cone_negative_grading"];
+const SCENES: [&str; 4] = ["paraboloid", "graded_ceramic", "cone_negative_grading", "measured_profile"];
 
 fn program(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fretwear"));

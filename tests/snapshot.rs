@@ -36,6 +36,7 @@ fn header(nodes: usize) -> RunHeader {
         scene: "[indenter.paraboloid]\nradius = \"10 mm\"\n".into(),
         radius: (0..nodes).map(|node| 1e-3 + 1e-5 * node as f64).collect(),
         limit: Some(LimitCurves { profile: curve(nodes, 1), wear_depth: curve(nodes, 2) }),
+        table: None,
     }
 }
 

@@ -61,7 +61,9 @@ impl WearIntegral {
         rules: Arc<RuleFamily>,
     ) -> Self {
         let (mu, nu) = (0.5 * (1.0 - profile.grading()), 0.5 * (1.0 + profile.grading()));
-        Self { profile, indentation, contact_radius, rules, nodes: 1, mu, nu }
+        // Rings of a table are looked for even where nothing slips.
+        let nodes = if profile.end_of_table().is_some() { MAX_NODES } else { 1 };
+        Self { profile, indentation, contact_radius, rules, nodes, mu, nu }
     }
 
     /// The limit `b = ln(a∞/a0)`, the root of `Δf(a∞) = 0`; chooses the number of nodes for radii up to there.
@@ -109,9 +111,10 @@ impl WearIntegral {
             None => Err(Error::Inconsistent {
                 what: "limiting shape",
                 why: format!(
-                    "at an indentation of {} m the worn indenter would touch beyond {} m",
+                    "at an indentation of {} m the worn indenter would touch beyond {} m{}",
                     self.indentation,
-                    self.contact_radius * largest.exp()
+                    self.contact_radius * largest.exp(),
+                    self.profile.end_of_table().map_or(String::new(), |end| format!(": {end}"))
                 ),
             }),
         }
@@ -128,8 +131,11 @@ impl WearIntegral {
     ///
     /// The integrands have the zeros of `φ`, `v = ±iπ/L`, and for the sphere its equator, `v = -ln(R/r)/L`, as nearest singularities;
     /// the error falls as `ρ^(-2n)` with the sum `ρ` of the semi-axes of the ellipse through them. Steep power laws and long spans add a
-    /// boundary layer of relative width `1/(nL)`.
+    /// boundary layer of relative width `1/(nL)`. The kinks of a table call for as many as there can be.
     fn node_count(&self, span: f64, growth: f64) -> usize {
+        if self.profile.end_of_table().is_some() {
+            return MAX_NODES;
+        }
         const DIGITS: f64 = 18.5; // half of -ln(1e-16)
         // Of the ellipse with foci 0 and 1 at these distances, in units of half the distance of the foci.
         let ellipse = |to_zero: f64, to_one: f64| {

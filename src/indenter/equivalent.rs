@@ -1,7 +1,10 @@
 //! The equivalent one-dimensional profile `g(x)`, in forms in which nothing cancels.
 
+use std::sync::Arc;
+
 use super::Indenter;
 use super::sphere::SphereIntegral;
+use super::table_equivalent::TabulatedEquivalent;
 use crate::error::{Error, Result};
 use crate::roots;
 
@@ -33,6 +36,8 @@ enum Shape {
     PowerLaw { coefficient: f64, exponent: f64 },
     /// `g = R/(1+k) h(x²/R²)`.
     Sphere { radius: f64, integral: Box<SphereIntegral> },
+    /// Cubics.
+    Table(Arc<TabulatedEquivalent>),
 }
 
 impl EquivalentProfile {
@@ -41,12 +46,15 @@ impl EquivalentProfile {
         if !(grading > -1.0 && grading < 1.0) {
             return Err(Error::OutOfRange { name: "half_space.grading", value: grading, range: "(-1, 1)" });
         }
-        let shape = match (indenter.validated()?.as_power_law(), *indenter) {
+        let shape = match (indenter.clone().validated()?.as_power_law(), indenter) {
             (Some((coefficient, exponent)), _) => {
                 Shape::PowerLaw { coefficient: coefficient * power_law_factor(exponent, grading), exponent }
             }
-            (None, Indenter::Sphere { radius }) => {
+            (None, &Indenter::Sphere { radius }) => {
                 Shape::Sphere { radius, integral: Box::new(SphereIntegral::new(grading)?) }
+            }
+            (None, Indenter::Table(table)) => {
+                Shape::Table(Arc::new(TabulatedEquivalent::new(table, grading)?))
             }
             (None, _) => unreachable!("every other indenter is a power law"),
         };
@@ -58,28 +66,45 @@ impl EquivalentProfile {
         self.grading
     }
 
-    /// Exponent `n` where `g` is a power law, as `f` then is; none for the sphere.
+    /// Exponent `n` where `g` is a power law, as `f` then is; none for the sphere and the table.
     pub fn exponent(&self) -> Option<f64> {
         match self.shape {
             Shape::PowerLaw { exponent, .. } => Some(exponent),
-            Shape::Sphere { .. } => None,
+            Shape::Sphere { .. } | Shape::Table(_) => None,
         }
     }
 
     /// Largest argument, m, up to which `g` has full accuracy: infinite for power laws, 0.999 of the radius of a sphere, at whose
-    /// equator the flank is vertical.
+    /// equator the flank is vertical; for a table the last radius up to which `g` rises.
     pub fn largest_radius(&self) -> f64 {
-        match self.shape {
+        match &self.shape {
             Shape::PowerLaw { .. } => f64::INFINITY,
             Shape::Sphere { radius, .. } => radius * SphereIntegral::LARGEST_ARGUMENT.sqrt(),
+            Shape::Table(table) => table.largest_radius(),
         }
     }
 
     /// Radius, m, at which `g` is singular: that of a sphere.
     pub(crate) fn singular_radius(&self) -> Option<f64> {
         match self.shape {
-            Shape::PowerLaw { .. } => None,
             Shape::Sphere { radius, .. } => Some(radius),
+            Shape::PowerLaw { .. } | Shape::Table(_) => None,
+        }
+    }
+
+    /// Why a contact ends at [`EquivalentProfile::largest_radius`], and the cure, where `g` is that of a table.
+    pub(crate) fn end_of_table(&self) -> Option<String> {
+        match &self.shape {
+            Shape::Table(table) => Some(table.end()),
+            _ => None,
+        }
+    }
+
+    /// Radius, m, of the flat in the middle: zero but for some tables.
+    pub(crate) fn flat_radius(&self) -> f64 {
+        match &self.shape {
+            Shape::Table(table) => table.flat_radius(),
+            _ => 0.0,
         }
     }
 
@@ -89,6 +114,7 @@ impl EquivalentProfile {
         match &self.shape {
             Shape::PowerLaw { coefficient, exponent } => coefficient * x.powf(*exponent),
             Shape::Sphere { radius, .. } => self.rise(0.0, x.min(2.0 * radius).powi(2)),
+            Shape::Table(table) => table.value(x),
         }
     }
 
@@ -100,6 +126,7 @@ impl EquivalentProfile {
                 let argument = (x / radius).powi(2);
                 2.0 * x / (radius * (1.0 + self.grading)) * integral.mean_slope(argument, argument)
             }
+            Shape::Table(table) => table.derivative(x),
         }
     }
 
@@ -122,13 +149,15 @@ impl EquivalentProfile {
                 let increase = offset / (radius * radius);
                 radius / (1.0 + self.grading) * increase * integral.mean_slope(first, first + increase)
             }
+            Shape::Table(table) => table.rise(start, offset),
         }
     }
 
     /// Contact radius, m, at which `g` has risen to `depth >= 0`, m: the inverse of `g`.
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] if a sphere would have to sink in to its equator.
+    /// [`Error::Inconsistent`] if a sphere would have to sink in to its equator, a table ends before that depth, or its contact would split
+    /// into rings.
     pub fn radius_at(&self, depth: f64) -> Result<f64> {
         match &self.shape {
             Shape::PowerLaw { coefficient, exponent } => Ok((depth / coefficient).powf(exponent.recip())),
@@ -140,6 +169,7 @@ impl EquivalentProfile {
                 })?;
                 Ok(radius * argument.sqrt())
             }
+            Shape::Table(table) => table.radius_at(depth),
         }
     }
 
@@ -162,6 +192,7 @@ impl EquivalentProfile {
                     * sphere_radius
                     * integral.argument_drop((radius / sphere_radius).powi(2), scaled)
             }
+            Shape::Table(table) => table.radius_squared_drop(radius, depth_drop),
         }
     }
 
@@ -190,6 +221,7 @@ impl EquivalentProfile {
                 let argument = (radius / sphere_radius).powi(2);
                 radius.powf(q + 2.0) / (sphere_radius * q) * integral.load(argument)
             }
+            Shape::Table(table) => table.load_integral(radius),
         }
     }
 
@@ -197,7 +229,7 @@ impl EquivalentProfile {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] if the load is not positive and finite; [`Error::Inconsistent`] if it is more than a sphere carries
-    /// before it sinks in to its equator.
+    /// before it sinks in to its equator, or a table before it ends.
     pub fn depth_for_load(&self, load: f64) -> Result<f64> {
         if !(load > 0.0 && load.is_finite()) {
             return Err(Error::OutOfRange {
@@ -231,6 +263,7 @@ impl EquivalentProfile {
                 )?;
                 Ok(self.value(contact))
             }
+            Shape::Table(table) => table.depth_for_load(load),
         }
     }
 
@@ -239,6 +272,7 @@ impl EquivalentProfile {
         let scale = match &self.shape {
             Shape::PowerLaw { .. } => self.value(radius),
             Shape::Sphere { radius: sphere_radius, .. } => (radius / sphere_radius).powi(2),
+            Shape::Table(_) => radius,
         };
         Origin { profile: self, scale }
     }
@@ -247,7 +281,7 @@ impl EquivalentProfile {
 /// A point `x0` of an equivalent profile; its neighbours are named by the logarithm `l` of `x/x0`.
 pub(crate) struct Origin<'a> {
     profile: &'a EquivalentProfile,
-    /// `g(x0)` for power laws, `x0²/R²` for the sphere.
+    /// `g(x0)` for power laws, `x0²/R²` for the sphere, `x0` for a table.
     scale: f64,
 }
 
@@ -262,6 +296,9 @@ impl Origin<'_> {
                     * increase
                     * integral.mean_slope(self.scale, self.scale + increase)
             }
+            Shape::Table(table) => {
+                table.rise(self.scale, self.scale * self.scale * (2.0 * logarithm).exp_m1())
+            }
         }
     }
 
@@ -274,6 +311,10 @@ impl Origin<'_> {
                 2.0 * radius / (1.0 + self.profile.grading)
                     * argument
                     * integral.mean_slope(argument, argument)
+            }
+            Shape::Table(table) => {
+                let x = self.scale * logarithm.exp();
+                x * table.derivative(x)
             }
         }
     }

@@ -7,12 +7,16 @@ use super::unsigned_zero;
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
+use crate::indenter::Indenter;
 use crate::loading::Duration;
 use crate::scene::Scene;
 use crate::stick_slip::Regime;
 
 /// Steepest flank at the edge of contact that is not worth a word.
 const STEEP: f64 = 0.3;
+
+/// Rows within the contact that describe a profile.
+const FEW_ROWS: usize = 10;
 
 /// Dimensionless time of one cycle up to which the shape hardly changes within it.
 const LONG_CYCLE: f64 = 0.01;
@@ -220,6 +224,15 @@ fn doubts(contact: &InitialContact, limit: Option<&LimitingShape>) -> Vec<String
             "the flank rises by {} per metre at the edge of contact; the model takes slopes as small against 1",
             number(slope)
         ));
+    }
+    if let Indenter::Table(table) = contact.indenter() {
+        let within = table.radii().iter().filter(|r| **r <= contact.contact_radius()).count();
+        if within < FEW_ROWS {
+            doubts.push(format!(
+                "only {within} rows of the table lie within the contact radius of {}: what is between them decides; measure closer",
+                Scale::LENGTH.show(contact.contact_radius())
+            ));
+        }
     }
     if contact.tau_per_cycle() > LONG_CYCLE {
         doubts.push(format!(

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::text::{Rows, Scale, number};
+use super::text::{Rows, Scale, number, table};
 use crate::error::Result;
 use crate::snapshot::{ArraySummary, Checkpoint, LimitDistance, RunFile, Snapshot, largest};
 
@@ -21,6 +21,9 @@ pub struct InfoReport {
     pub stop_reason: &'static str,
     /// Version of the program that wrote the file.
     pub program_version: String,
+    /// The measured profile of the indenter in words, where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub table: Option<String>,
     /// Number of radial nodes.
     pub nodes: usize,
     /// Innermost node, m.
@@ -86,6 +89,7 @@ impl InfoReport {
             complete: run.complete,
             stop_reason: run.stop_reason.name(),
             program_version: run.program_version.clone(),
+            table: run.header.table.as_deref().map(table),
             nodes: run.header.radius.len(),
             radius_first: run.header.radius.first().copied(),
             radius_last: run.header.radius.last().copied(),
@@ -123,6 +127,9 @@ impl InfoReport {
         rows.row("file", &self.file);
         rows.row("complete", stopped);
         rows.row("written by fretwear", &self.program_version);
+        if let Some(table) = &self.table {
+            rows.row("indenter", table);
+        }
         let length = |value: f64| Scale::LENGTH.show(value);
         if let Some((first, last)) = self.radius_first.zip(self.radius_last) {
             rows.row("nodes", format!("{} from {} to {}", self.nodes, length(first), length(last)));

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::text::{Rows, Scale, number};
+use super::text::{Rows, Scale, indenter, number};
+use crate::indenter::Indenter;
 use crate::run::RunResult;
 
 /// The outcome of a run in SI; the fields are the keys of the JSON.
@@ -46,6 +47,8 @@ pub struct RunReport {
     pub dissipated_energy: f64,
     #[serde(skip)]
     contact_radius_limit: f64,
+    #[serde(skip)]
+    table: Option<String>,
 }
 
 impl RunReport {
@@ -72,12 +75,16 @@ impl RunReport {
             limit_distance_relative: distance.distance_relative,
             dissipated_energy: last.dissipated_energy,
             contact_radius_limit: limit.contact_radius_limit(),
+            table: matches!(limit.indenter(), Indenter::Table(_)).then(|| indenter(limit.indenter())),
         }
     }
 
     /// A table for people.
     pub fn text(&self) -> String {
         let mut rows = Rows::default();
+        if let Some(table) = &self.table {
+            rows.row("indenter", table);
+        }
         let stopped = match self.stop_reason {
             "end" => "at its end".to_owned(),
             "rate" => "when the rate of worn volume had fallen as asked".to_owned(),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::indenter::Indenter;
+use crate::indenter::{Indenter, TabulatedProfile};
 
 /// A kind of quantity and the units it is shown in, by growing size in SI.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +67,19 @@ pub(super) fn indenter(indenter: &Indenter) -> String {
         Indenter::PowerLaw { coefficient, exponent } => {
             format!("power law, {} r^{} (m)", number(coefficient), number(exponent))
         }
+        Indenter::Table(ref table) => self::table(table),
     }
+}
+
+/// `table ball.csv, 201 rows, radius 0 to 0.5 mm, f to 12 µm`.
+pub(super) fn table(table: &TabulatedProfile) -> String {
+    format!(
+        "table {}, {} rows, radius 0 to {}, f to {}",
+        table.source(),
+        table.heights().len(),
+        Scale::LENGTH.show(table.largest_radius()),
+        Scale::LENGTH.show(table.heights().iter().copied().fold(0.0, f64::max)),
+    )
 }
 
 /// Rows of a name and a value.

@@ -79,7 +79,7 @@ fn floor(text: &str, at: usize) -> usize {
 }
 
 /// A key or a value fit for a message: short, without control characters.
-fn printable(text: &str) -> String {
+pub(super) fn printable(text: &str) -> String {
     const LONGEST: usize = 60;
     let mut shown: String =
         text.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
@@ -382,7 +382,8 @@ impl<'a> Entry<'a> {
         Ok(values.iter().enumerate().map(entry).collect())
     }
 
-    fn explained(&self, why: String) -> Error {
+    /// The error `key: why` at the value.
+    pub(super) fn explained(&self, why: String) -> Error {
         self.source.error(self.place.clone(), format_args!("{}: {why}", self.path))
     }
 }

@@ -1,19 +1,20 @@
 //! The tables of a scene, one function each: keys, units, ranges.
 
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 use super::document::{Entry, Section};
-use super::quantity::Dimension;
-use super::{MOST_SNAPSHOTS, Numerics, Output, Scene, Stepper};
+use super::quantity::{Dimension, parse};
+use super::{MOST_SNAPSHOTS, Numerics, Output, Rows, Scene, Stepper, profile_file};
 use crate::error::{Error, Result};
 use crate::friction::Coulomb;
 use crate::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
-use crate::indenter::Indenter;
+use crate::indenter::{Indenter, TabulatedProfile};
 use crate::loading::{Amplitude, Duration, Load, Loading};
 use crate::wear::Archard;
 
 /// Reads the whole document; the text is kept as it is.
-pub(super) fn scene(root: &Section, text: &str) -> Result<Scene> {
+pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     const TABLES: [&str; 9] = [
         "title",
         "indenter",
@@ -28,7 +29,8 @@ pub(super) fn scene(root: &Section, text: &str) -> Result<Scene> {
     root.only(&TABLES, &[])?;
     let mut warnings = Vec::new();
     let title = root.optional("title").map(|entry| title(&entry)).transpose()?;
-    let indenter = indenter(&table(root, "indenter", "add for example [indenter.paraboloid] with radius")?)?;
+    let shape = table(root, "indenter", "add for example [indenter.paraboloid] with radius")?;
+    let indenter = indenter(&shape, rows, &mut warnings)?;
     let bodies = table(root, "half_space", "add [half_space] with grading, modulus and poisson_ratio")?;
     let half_space = contact(root, &bodies, &mut warnings)?;
     let friction = friction(&table(root, "friction", "add [friction.coulomb] with coefficient")?)?;
@@ -73,10 +75,10 @@ pub(super) fn title(entry: &Entry) -> Result<String> {
     Ok(title.to_string())
 }
 
-fn indenter(section: &Section) -> Result<Indenter> {
+fn indenter(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Indenter> {
     const SHAPES: [&str; 5] = ["paraboloid", "sphere", "cone", "power-law", "table"];
-    section.only(&SHAPES[..4], &SHAPES[4..])?;
-    let (shape, entry) = section.one_of(&SHAPES[..4])?;
+    section.only(&SHAPES, &[])?;
+    let (shape, entry) = section.one_of(&SHAPES)?;
     let body = entry.section()?;
     match shape {
         "paraboloid" | "sphere" => {
@@ -88,6 +90,7 @@ fn indenter(section: &Section) -> Result<Indenter> {
             body.only(&["slope", "half_angle"], &[])?;
             Ok(Indenter::Cone { slope: slope(body.one_of(&["slope", "half_angle"])?)? })
         }
+        "table" => Ok(Indenter::Table(profile(&body, rows, warnings)?)),
         _ => {
             body.only(&["coefficient", "exponent"], &[])?;
             let exponent = body.required("exponent", "2 is a paraboloid")?.positive(Dimension::NUMBER)?;
@@ -95,6 +98,32 @@ fn indenter(section: &Section) -> Result<Indenter> {
             let coefficient =
                 body.required("coefficient", "in m^(1-n) for f = coefficient r^n")?.positive(unit)?;
             Ok(Indenter::PowerLaw { coefficient, exponent })
+        }
+    }
+}
+
+/// A measured profile, from its file or as it was stored.
+fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Arc<TabulatedProfile>> {
+    const UNITS: [&str; 2] = ["radius_unit", "profile_unit"];
+    section.only(&["file", UNITS[0], UNITS[1]], &[])?;
+    let file = section.required("file", "for example \"profile.csv\", two columns r and f")?;
+    let name = file.string()?;
+    if name.is_empty() {
+        return Err(file.error("is no name of a file"));
+    }
+    let unit = |key: &str| {
+        let Some(entry) = section.optional(key) else { return Ok("m") };
+        let unit = entry.string()?;
+        parse(&format!("1 {unit}"), Dimension::LENGTH)
+            .map_err(|why| entry.explained(why + "; give a unit of length alone, such as \"um\""))?;
+        Ok(unit)
+    };
+    let units = [unit(UNITS[0])?, unit(UNITS[1])?];
+    match rows {
+        Rows::In(folder) => profile_file::read(&folder.join(name), name, units, warnings).map(Arc::new),
+        Rows::Stored(Some(table)) => Ok(Arc::clone(table)),
+        Rows::Stored(None) => {
+            Err(section.error("its rows are not stored in the result; run the scene again"))
         }
     }
 }

@@ -27,6 +27,7 @@ impl Run<'_> {
             self.put_series(&file, &time)?;
             self.put_node_curves(&file, &node)?;
             self.put_curves(&file, &time, &node)?;
+            self.put_table(&file)?;
             self.put_checkpoint(&file)?;
             bytes_of(&file)
         })
@@ -72,6 +73,15 @@ impl Run<'_> {
             put_text(&dataset, "coordinates", "cycles tau radius")?;
         }
         Ok(())
+    }
+
+    fn put_table(&self, file: &Group) -> Result<()> {
+        let Some(table) = &self.header.table else { return Ok(()) };
+        let row = Dimension::create(file, TABLE_ROW, table.heights().len(), false)?;
+        put_array(file, TABLE_RADIUS, &[&row], table.radii())?;
+        let profile = put_array(file, TABLE_PROFILE, &[&row], table.heights())?;
+        put_text(&profile, "coordinates", TABLE_RADIUS.name)?;
+        put_text(&profile, TABLE_SOURCE, table.source())
     }
 
     fn put_checkpoint(&self, file: &Group) -> Result<()> {

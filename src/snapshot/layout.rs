@@ -37,6 +37,14 @@ pub const RADIUS: Label = label("radius", "m", "distance from the axis");
 pub const LIMIT_PROFILE: Label = label("limit_profile", "m", "profile in the limit of many cycles");
 /// Depth worn away in the limit, shape `(node,)`.
 pub const LIMIT_WEAR_DEPTH: Label = label("limit_wear_depth", "m", "wear depth in the limit of many cycles");
+/// Index coordinate along the rows of a measured profile, shape `(table_row,)`; absent, as what belongs to it, for other indenters.
+pub const TABLE_ROW: Label = label("table_row", "1", "index of the row of the measured profile");
+/// Radius of the rows, shape `(table_row,)`.
+pub const TABLE_RADIUS: Label = label("table_radius", "m", "radius of the rows of the measured profile");
+/// Height of the rows, shape `(table_row,)`; its attribute `source` names the file that they came from.
+pub const TABLE_PROFILE: Label = label("table_profile", "m", "measured profile of the unworn indenter");
+/// Attribute of the heights of the rows.
+pub const TABLE_SOURCE: &str = "source";
 /// Compression of the springs, shape `(spring,)`, in the group of the checkpoint.
 pub const COMPRESSION: Label = label("compression", "m", "compression of the springs");
 /// Mean rate of the compressions in the last step, shape `(spring,)`, in the group of the checkpoint.

@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File, Group, H5Type, Location};
@@ -11,6 +12,7 @@ use super::atomic::failure;
 use super::layout::*;
 use super::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
+use crate::indenter::TabulatedProfile;
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 const NOT_A_RUN: &str = "give a file that `fretwear run` wrote";
@@ -134,7 +136,18 @@ impl Source {
         } else {
             None
         };
-        Ok(RunHeader { title, scene, radius, limit })
+        let table = if file.link_exists(TABLE_PROFILE.name) { Some(self.table(file)?) } else { None };
+        Ok(RunHeader { title, scene, radius, limit, table })
+    }
+
+    fn table(&self, file: &Group) -> Result<Arc<TabulatedProfile>> {
+        let radius: Vec<f64> = self.values(file, TABLE_RADIUS, &[None])?;
+        let height = self.values(file, TABLE_PROFILE, &[Some(radius.len())])?;
+        let name = format!("/{}", TABLE_PROFILE.name);
+        let dataset = file.dataset(TABLE_PROFILE.name).map_err(|error| self.damaged(&name, &error))?;
+        let source = self.text(&dataset, TABLE_SOURCE)?;
+        let table = TabulatedProfile::new(source, radius, height);
+        table.map(Arc::new).map_err(|error| self.damaged(&name, &error))
     }
 
     fn snapshots(&self, file: &Group, nodes: usize) -> Result<Vec<Snapshot>> {

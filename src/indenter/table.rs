@@ -1,0 +1,169 @@
+//! A measured profile: rows of radius and height, and the curve through them.
+
+use super::cubic::Cubic;
+use crate::error::{Error, Result};
+use crate::grid::lagrange_derivative;
+
+/// Points of the polynomials whose slopes are taken at the rows.
+const POINTS: usize = 5;
+
+/// Profile `f(r)` given by rows, from the tip at `r = 0` outwards.
+///
+/// Between the rows it is a cubic whose slopes at the rows are those of the polynomial of fourth degree through the five nearest rows (third
+/// degree for four rows), cut back where it would fall between rising rows. The slope is continuous; straight lines and
+/// parabolas are reproduced, and a smooth profile with an error of the fourth power of the spacing.
+///
+/// # Examples
+/// ```
+/// use fretwear::indenter::TabulatedProfile;
+///
+/// let radius: Vec<f64> = (0..20).map(f64::from).collect();
+/// let height = radius.iter().map(|r| r * r).collect();
+/// let profile = TabulatedProfile::new("parabola", radius, height)?;
+/// assert!((profile.profile(4.5) - 20.25).abs() < 1e-13);
+/// # Ok::<(), fretwear::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabulatedProfile {
+    source: String,
+    heights: Vec<f64>,
+    curve: Cubic,
+}
+
+impl TabulatedProfile {
+    /// Fewest rows of a table.
+    pub const FEWEST_ROWS: usize = 4;
+
+    /// Most rows of a table.
+    pub const MOST_ROWS: usize = 50_000;
+
+    /// Profile through rows.
+    ///
+    /// # Arguments
+    /// * `source` -- where the rows come from, in words; the name of the file as a rule
+    /// * `radius` -- m, shape `(row,)`, increasing from 0
+    /// * `height` -- `f`, m, shape `(row,)`, 0 at the first row and nowhere below
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] names `indenter.table`, the row and the value.
+    pub fn new(source: impl Into<String>, radius: Vec<f64>, height: Vec<f64>) -> Result<Self> {
+        check(&radius, &height).map_err(refused)?;
+        let slopes = slopes(&radius, &height);
+        let curve = Cubic::new(radius, &height, slopes);
+        let finite = (0..height.len()).all(|i| curve.piece(i).iter().all(|it| it.is_finite()));
+        if !finite {
+            return Err(refused(
+                "its rows are too close or too large to compute with; check the units".into(),
+            ));
+        }
+        Ok(Self { source: source.into(), heights: height, curve })
+    }
+
+    /// Where the rows come from.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// Radii of the rows, m, shape `(row,)`, increasing from 0.
+    pub fn radii(&self) -> &[f64] {
+        self.curve.knots()
+    }
+
+    /// Heights of the rows, m, shape `(row,)`.
+    pub fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+
+    /// Radius of the last row, m.
+    pub fn largest_radius(&self) -> f64 {
+        self.radii()[self.heights.len() - 1]
+    }
+
+    /// Profile `f(r)`, m, at radius `r >= 0`, m; not a number beyond the last row.
+    pub fn profile(&self, r: f64) -> f64 {
+        if r <= self.largest_radius() { self.curve.value(r) } else { f64::NAN }
+    }
+
+    /// Slope `f'(r)`, at radius `r >= 0`, m; not a number beyond the last row.
+    pub fn profile_derivative(&self, r: f64) -> f64 {
+        if r <= self.largest_radius() { self.curve.derivative(r) } else { f64::NAN }
+    }
+
+    /// Smallest radius, m, at which the profile has risen to `height`, m; that of the last row if it never does.
+    pub fn radius_at_height(&self, height: f64) -> f64 {
+        let rows = self.heights.len();
+        let above = (1..rows).find(|&i| self.heights[i] >= height).unwrap_or(rows);
+        if above == rows {
+            return self.largest_radius();
+        }
+        let [low, ..] = self.curve.piece(above - 1);
+        self.radii()[above - 1] + self.curve.climb(above - 1, height - low)
+    }
+
+    /// The curve.
+    pub(super) fn curve(&self) -> &Cubic {
+        &self.curve
+    }
+}
+
+fn refused(why: String) -> Error {
+    Error::Inconsistent { what: "indenter.table", why }
+}
+
+fn check(radius: &[f64], height: &[f64]) -> std::result::Result<(), String> {
+    let (rows, heights) = (radius.len(), height.len());
+    if rows != heights {
+        return Err(format!("it has {rows} radii and {heights} heights"));
+    }
+    let (fewest, most) = (TabulatedProfile::FEWEST_ROWS, TabulatedProfile::MOST_ROWS);
+    if !(fewest..=most).contains(&rows) {
+        return Err(format!("it has {rows} rows of different radius; give from {fewest} to {most}"));
+    }
+    if let Some(row) = (0..rows).find(|&i| !(radius[i].is_finite() && height[i].is_finite())) {
+        return Err(format!("row {} is r = {}, f = {}, not finite", row + 1, radius[row], height[row]));
+    }
+    if radius[0] != 0.0 || height[0] != 0.0 {
+        let (r, f) = (radius[0], height[0]);
+        return Err(format!(
+            "it begins at r = {r:e} m with f = {f:e} m; the first row is the tip, r = 0 and f = 0"
+        ));
+    }
+    if let Some(row) = (1..rows).find(|&i| radius[i] <= radius[i - 1]) {
+        return Err(format!(
+            "radius {:e} m follows {:e} m; they must increase",
+            radius[row],
+            radius[row - 1]
+        ));
+    }
+    if let Some(row) = (0..rows).find(|&i| height[i] < 0.0) {
+        return Err(format!(
+            "at r = {:e} m it lies {:e} m below the tip at r = 0; measure from the lowest point",
+            radius[row], -height[row]
+        ));
+    }
+    let (largest, highest) = (radius[rows - 1], height.iter().fold(0.0, |m: f64, f| m.max(*f)));
+    if highest == 0.0 {
+        return Err(
+            "every f is zero: a flat punch, whose contact radius is its own; give a profile that rises"
+                .into(),
+        );
+    }
+    // What is formed from them must not overflow.
+    if !(largest < 1e100 && highest < 1e100 && radius[1] > 1e-100) {
+        return Err(format!("radii to {largest:e} m and heights to {highest:e} m; check the units"));
+    }
+    Ok(())
+}
+
+/// Slopes at the rows by polynomials through the nearest ones.
+fn slopes(radius: &[f64], height: &[f64]) -> Vec<f64> {
+    let points = POINTS.min(radius.len());
+    let slope = |row: usize| {
+        let start = row.saturating_sub(points / 2).min(radius.len() - points);
+        let mut weights = [0.0; POINTS];
+        lagrange_derivative(&radius[start..start + points], radius[row], &mut weights);
+        // The weights sum to zero: differences from the row keep the digits that heights far from zero would take.
+        (0..points).map(|i| weights[i] * (height[start + i] - height[row])).sum()
+    };
+    (0..radius.len()).map(slope).collect()
+}
