@@ -176,7 +176,10 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
 
 /// The scene's name with `.h5`, in the current directory.
 fn default_output(scene: &Path) -> PathBuf {
-    Path::new(scene.file_stem().unwrap_or_default()).with_extension("h5")
+    // Not with_extension, which would cut the stem of `k0.9.toml` once more.
+    let mut name = scene.file_stem().unwrap_or_default().to_owned();
+    name.push(".h5");
+    name.into()
 }
 
 fn limit(arguments: &Limit) -> Result<String> {

@@ -12,11 +12,13 @@ mod encode;
 mod labelled;
 pub mod layout;
 mod reader;
+mod shard;
 mod writer;
 
 pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate};
 pub(crate) use atomic::AtomicFile;
 pub use reader::RunFile;
+pub use shard::{Column, SweepFile, SweepHeader, Values};
 pub use writer::RunWriter;
 
 use std::sync::Arc;

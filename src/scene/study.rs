@@ -9,7 +9,7 @@ use super::document::{Entry, Section, Source};
 use super::quantity::{Dimension, split_number};
 use super::sampling::{Distribution, Method, UnitCube};
 use super::unit::Unit;
-use super::{LARGEST, Scene, read_text, sections};
+use super::{LARGEST, Rows, Scene, read_text, sections};
 use crate::error::{Error, Result};
 
 /// Most scenes of a study.
@@ -197,14 +197,30 @@ impl Study {
         &self.base_text
     }
 
-    /// SHA-256 of everything that a result depends on: study, base scene and version of the program, in hexadecimal digits.
+    /// SHA-256 of everything that a result depends on, in hexadecimal digits: version of the program, study, base scene, and the files of
+    /// measured profiles that the scenes name.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
-        for part in [env!("CARGO_PKG_VERSION"), &self.text, &self.base_text] {
+        let mut add = |part: &[u8]| {
             hasher.update((part.len() as u64).to_le_bytes());
-            hasher.update(part.as_bytes());
+            hasher.update(part);
+        };
+        [env!("CARGO_PKG_VERSION"), &self.text, &self.base_text].iter().for_each(|part| add(part.as_bytes()));
+        for file in self.profile_files() {
+            // A file that cannot be read is an error of the scenes that name it.
+            add(&std::fs::read(self.folder.join(file)).unwrap_or_default());
         }
         hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// The files of measured profiles, of the base scene and along the axes.
+    fn profile_files(&self) -> Vec<&str> {
+        let table = self.base.get("indenter").and_then(|it| it.get("table")).and_then(|it| it.get("file"));
+        let along = self.axes.iter().flat_map(|axis| {
+            let place = axis.keys.iter().position(|key| key == "indenter.table.file");
+            axis.rows.iter().filter_map(move |row| place.map(|place| &row[place]))
+        });
+        table.into_iter().chain(along).filter_map(Value::as_str).collect()
     }
 
     /// The keys that vary, axes before samples.
@@ -264,7 +280,8 @@ impl Study {
     /// # Panics
     /// If there is no scene of this number.
     pub fn scene(&self, scene: u64) -> Result<Scene> {
-        Scene::from_toml(&self.scene_text(scene)?, &format!("{}, scene {scene}", self.name))
+        let name = format!("{}, scene {scene}", self.name);
+        Scene::with_rows(&self.scene_text(scene)?, &name, &Rows::In(&self.folder))
     }
 }
 

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coordinate {
     /// Name, units and meaning; the name is that of the dimension too.
-    pub label: Label,
+    pub label: Label<'static>,
     /// Values along the dimension.
     pub values: Vec<f64>,
 }
@@ -24,7 +24,7 @@ pub struct Coordinate {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
     /// Name, units and meaning.
-    pub label: Label,
+    pub label: Label<'static>,
     /// Names of the coordinates, slowest first.
     pub axes: Vec<&'static str>,
     /// Values, the last axis fastest.

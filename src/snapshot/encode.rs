@@ -21,16 +21,21 @@ impl Run<'_> {
         // One lock for the whole file: files in memory of two threads must not exist side by side under one name.
         hdf5::sync::sync(|| {
             let file = file_in_memory()?;
-            self.put_attributes(&file)?;
-            let time = Dimension::create(&file, TIME, self.snapshots.len(), true)?;
-            let node = Dimension::create(&file, NODE, self.header.radius.len(), false)?;
-            self.put_series(&file, &time)?;
-            self.put_node_curves(&file, &node)?;
-            self.put_curves(&file, &time, &node)?;
-            self.put_table(&file)?;
-            self.put_checkpoint(&file)?;
+            self.put_into(&file)?;
             bytes_of(&file)
         })
+    }
+
+    /// Writes the run into a group, for the root of a file of its own or one of many in a file.
+    pub(super) fn put_into(&self, group: &Group) -> Result<()> {
+        self.put_attributes(group)?;
+        let time = Dimension::create(group, TIME, self.snapshots.len(), true)?;
+        let node = Dimension::create(group, NODE, self.header.radius.len(), false)?;
+        self.put_series(group, &time)?;
+        self.put_node_curves(group, &node)?;
+        self.put_curves(group, &time, &node)?;
+        self.put_table(group)?;
+        self.put_checkpoint(group)
     }
 
     fn put_attributes(&self, file: &Group) -> Result<()> {

@@ -94,8 +94,8 @@ impl Dimension {
     }
 
     /// Creates a coordinate whose values are more than an index.
-    pub(super) fn coordinate(group: &Group, label: Label, values: &[f64]) -> Result<Self> {
-        let builder = group.new_dataset::<f64>().obj_track_times(false).no_chunk();
+    pub(super) fn coordinate<T: H5Type>(group: &Group, label: Label, values: &[T]) -> Result<Self> {
+        let builder = group.new_dataset::<T>().obj_track_times(false).no_chunk();
         let scale = builder.shape(values.len()).create(label.name)?;
         scale.write_raw(values)?;
         Self::with_scale(scale, label, values.len(), false)

@@ -11,17 +11,17 @@ pub const CHECKPOINT: &str = "checkpoint";
 
 /// Name, units (in the spelling of UDUNITS) and meaning of one dataset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Label {
+pub struct Label<'a> {
     /// Name of the dataset in its group.
-    pub name: &'static str,
+    pub name: &'a str,
     /// Attribute `units`; "1" for a pure number.
-    pub units: &'static str,
+    pub units: &'a str,
     /// Attribute `long_name`.
-    pub long_name: &'static str,
+    pub long_name: &'a str,
 }
 
 /// A label.
-pub const fn label(name: &'static str, units: &'static str, long_name: &'static str) -> Label {
+pub const fn label<'a>(name: &'a str, units: &'a str, long_name: &'a str) -> Label<'a> {
     Label { name, units, long_name }
 }
 
@@ -59,13 +59,13 @@ pub const ERROR_ESTIMATE: Label = label(
 
 /// A dataset, and the place of its values in the record it stores.
 pub(super) struct Field<Record, Value> {
-    pub label: Label,
+    pub label: Label<'static>,
     pub of: fn(&Record) -> &Value,
     pub of_mut: fn(&mut Record) -> &mut Value,
 }
 
 const fn field<Record, Value>(
-    label: Label,
+    label: Label<'static>,
     of: fn(&Record) -> &Value,
     of_mut: fn(&mut Record) -> &mut Value,
 ) -> Field<Record, Value> {

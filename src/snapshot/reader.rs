@@ -45,15 +45,20 @@ impl RunFile {
     /// [`Error::File`] names the file, the dataset or attribute that cannot be used, and the cure.
     pub fn open(path: &Path) -> Result<Self> {
         let (source, file) = open(path)?;
-        source.check_format(&file)?;
-        let header = source.header(&file)?;
-        let snapshots = source.snapshots(&file, header.radius.len())?;
-        let checkpoint = if file.link_exists(CHECKPOINT) { Some(source.checkpoint(&file)?) } else { None };
-        let reason = source.text(&file, "stop_reason")?;
+        Self::from_group(&source, &file)
+    }
+
+    /// Reads a run from a group of a file.
+    pub(super) fn from_group(source: &Source, file: &Group) -> Result<Self> {
+        source.check_format(file)?;
+        let header = source.header(file)?;
+        let snapshots = source.snapshots(file, header.radius.len())?;
+        let checkpoint = if file.link_exists(CHECKPOINT) { Some(source.checkpoint(file)?) } else { None };
+        let reason = source.text(file, "stop_reason")?;
         let stop_reason = StopReason::from_name(&reason)
             .ok_or_else(|| source.error(format!("stop_reason = {reason:?} is not known; {WRITE_AGAIN}")))?;
-        let complete = source.integer(&file, "complete")? != 0;
-        let program_version = source.text(&file, "program_version")?;
+        let complete = source.integer(file, "complete")? != 0;
+        let program_version = source.text(file, "program_version")?;
         Ok(Self { header, snapshots, checkpoint, stop_reason, complete, program_version })
     }
 
@@ -193,7 +198,7 @@ impl Source {
     }
 
     /// All values of a dataset in row-major order; `None` in the shape stands for any length.
-    fn values<T: H5Type>(&self, group: &Group, label: Label, shape: &[Option<usize>]) -> Result<Vec<T>> {
+    pub(super) fn values<T: H5Type>(&self, group: &Group, label: Label, shape: &[Option<usize>]) -> Result<Vec<T>> {
         let name = format!("{}/{}", group.name().trim_end_matches('/'), label.name);
         if !group.link_exists(label.name) {
             return Err(self.error(format!("dataset {name} is missing; {WRITE_AGAIN}")));

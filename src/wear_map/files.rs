@@ -9,18 +9,18 @@ use crate::scene::MapScene;
 use crate::snapshot::layout::{Label, label};
 use crate::snapshot::{Array, ArrayFile, AtomicFile, Coordinate};
 
-const GRADING: Label = label("grading", "1", "grading k of E = E0 (z/z0)^k");
-const AMPLITUDE: Label =
+const GRADING: Label<'static> = label("grading", "1", "grading k of E = E0 (z/z0)^k");
+const AMPLITUDE: Label<'static> =
     label("amplitude_ratio", "1", "tangential amplitude over friction coefficient times indentation");
-const OPTIMUM_AMPLITUDE: Label = label(
+const OPTIMUM_AMPLITUDE: Label<'static> = label(
     "optimum_amplitude_ratio",
     "1",
     "tangential amplitude over friction coefficient times indentation of the homogeneous contact",
 );
-const REFERENCE_DEPTH: Label =
+const REFERENCE_DEPTH: Label<'static> =
     label("reference_depth", "1", "depth z0 over contact radius of the homogeneous contact");
-const PROFILE_GRADING: Label = label("profile_grading", "1", "grading of the worn profiles");
-const PROFILE_RADIUS: Label =
+const PROFILE_GRADING: Label<'static> = label("profile_grading", "1", "grading of the worn profiles");
+const PROFILE_RADIUS: Label<'static> =
     label("profile_radius", "1", "radius over (d/(n A))^(1/n), which is sqrt(R d) for a paraboloid");
 
 /// Name of a file and how its text is made.
@@ -79,7 +79,7 @@ fn array_file(scene: &MapScene, study: &MapStudy) -> ArrayFile {
         ..ArrayFile::default()
     };
     let mut coordinate =
-        |label: Label, values: &[f64]| file.coordinates.push(Coordinate { label, values: values.to_vec() });
+        |label: Label<'static>, values: &[f64]| file.coordinates.push(Coordinate { label, values: values.to_vec() });
     coordinate(GRADING, &map.gradings);
     coordinate(AMPLITUDE, &map.amplitude_ratios);
     coordinate(OPTIMUM_AMPLITUDE, &scene.optimum_amplitude_ratios);

@@ -1,0 +1,254 @@
+//! A file of a sweep: one row per scene, and the whole runs of scenes whose snapshots are kept.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use hdf5::types::VarLenUnicode;
+use hdf5::{File, Group};
+
+use super::atomic::AtomicFile;
+use super::encode::Run;
+use super::labelled::{Dimension, bytes_of, create_group, file_in_memory, put_array, put_integer, put_text};
+use super::layout::{Label, label};
+use super::reader::{self, Source};
+use super::{RunFile, StopReason};
+use crate::error::{Error, Result};
+
+/// Coordinate of the rows.
+const SCENE: Label<'static> = label("scene", "1", "number of the scene in the expanded study");
+
+/// Group of the runs whose snapshots are kept.
+const RUNS: &str = "runs";
+
+/// What a sweep is about; all its files must agree on it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SweepHeader {
+    /// Title of the study.
+    pub title: String,
+    /// What is done with each scene.
+    pub task: String,
+    /// TOML text of the study.
+    pub study: String,
+    /// TOML text of the base scene.
+    pub base_scene: String,
+    /// SHA-256 of all that results depend on.
+    pub study_hash: String,
+    /// Number of scenes of the study.
+    pub scenes: u64,
+    /// Number of shards that the study is cut into; 1 in a merged file.
+    pub shards: u64,
+    /// Number of this shard, from 0.
+    pub shard: u64,
+}
+
+/// A quantity of all rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name of the dataset.
+    pub name: String,
+    /// Units; "1" for a pure number or a word.
+    pub units: String,
+    /// Meaning.
+    pub long_name: String,
+    /// One value for each row.
+    pub values: Values,
+}
+
+/// Values of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Numbers; not a number where the quantity has no meaning.
+    Numbers(Vec<f64>),
+    /// Words.
+    Texts(Vec<String>),
+}
+
+/// Rows of a sweep; the same rows give the same bytes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepFile {
+    /// What the sweep is about.
+    pub header: SweepHeader,
+    /// Whether all rows are there that the file is to have.
+    pub complete: bool,
+    /// Numbers of the scenes, shape `(scene,)`.
+    pub scenes: Vec<u64>,
+    /// Everything about them, each of shape `(scene,)`.
+    pub columns: Vec<Column>,
+    /// Runs of scenes whose snapshots are kept.
+    pub runs: Vec<(u64, RunFile)>,
+}
+
+impl SweepFile {
+    /// Value of the root attribute `format`.
+    pub const FORMAT: &'static str = "fretwear-sweep";
+    const FORMAT_VERSION: i32 = 1;
+
+    /// Writes the file, as a whole or not at all, over one that exists only if `overwrite` is given.
+    ///
+    /// # Errors
+    /// [`Error::File`] names the file and the cure.
+    ///
+    /// # Panics
+    /// If a column does not have one value per scene.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
+        for Column { name, values, .. } in &self.columns {
+            let length = match values {
+                Values::Numbers(values) => values.len(),
+                Values::Texts(values) => values.len(),
+            };
+            assert_eq!(length, self.scenes.len(), "values of {name}, scenes");
+        }
+        let mut file = AtomicFile::new(path, overwrite)?;
+        let bytes = hdf5::sync::sync(|| self.encode()).map_err(|error| Error::File {
+            path: path.to_owned(),
+            why: format!("the HDF5 library could not lay out the file: {error}"),
+        })?;
+        file.write(&bytes)
+    }
+
+    fn encode(&self) -> hdf5::Result<Vec<u8>> {
+        let file = file_in_memory()?;
+        let header = &self.header;
+        put_text(&file, "title", &header.title)?;
+        put_text(&file, "format", Self::FORMAT)?;
+        put_integer(&file, "format_version", Self::FORMAT_VERSION)?;
+        put_text(&file, "program_version", env!("CARGO_PKG_VERSION"))?;
+        for (name, text) in [
+            ("task", &header.task),
+            ("study", &header.study),
+            ("base_scene", &header.base_scene),
+            ("study_hash", &header.study_hash),
+        ] {
+            put_text(&file, name, text)?;
+        }
+        for (name, number) in [("scenes", header.scenes), ("shards", header.shards), ("shard", header.shard)] {
+            file.new_attr::<u64>().create(name)?.write_scalar(&number)?;
+        }
+        put_integer(&file, "complete", self.complete.into())?;
+        let ids: Vec<i64> = self.scenes.iter().map(|scene| scene.cast_signed()).collect();
+        let rows = Dimension::coordinate(&file, SCENE, &ids)?;
+        for Column { name, units, long_name, values } in &self.columns {
+            let label = Label { name, units, long_name };
+            match values {
+                Values::Numbers(values) => put_array(&file, label, &[&rows], values)?,
+                Values::Texts(values) => {
+                    let texts = values.iter().map(|text| unicode(text)).collect::<hdf5::Result<Vec<_>>>()?;
+                    put_array(&file, label, &[&rows], &texts)?
+                }
+            };
+        }
+        if !self.runs.is_empty() {
+            let group = create_group(&file, RUNS)?;
+            for (scene, run) in &self.runs {
+                let RunFile { header, snapshots, checkpoint, stop_reason, complete, .. } = run;
+                let checkpoint = checkpoint.clone().unwrap_or_default();
+                let run =
+                    Run { header, snapshots, checkpoint: &checkpoint, stop_reason: *stop_reason, complete: *complete };
+                run.put_into(&create_group(&group, &scene.to_string())?)?;
+            }
+        }
+        bytes_of(&file)
+    }
+
+    /// Reads a file of a sweep.
+    ///
+    /// # Errors
+    /// [`Error::File`] names the file and what is wrong with it.
+    pub fn read(path: &Path) -> Result<Self> {
+        let (source, file) = reader::open(path)?;
+        let header = header(&source, &file)?;
+        let complete = source.integer(&file, "complete")? != 0;
+        let ids: Vec<i64> = source.values(&file, SCENE, &[None])?;
+        let rows = [Some(ids.len())];
+        let mut names = file.member_names().map_err(|error| source.damaged("its members", &error))?;
+        names.sort();
+        let mut columns = vec![];
+        for name in names.into_iter().filter(|name| name != SCENE.name && name != RUNS) {
+            let dataset = file.dataset(&name).map_err(|error| source.damaged(&name, &error))?;
+            let (units, long_name) = (source.text(&dataset, "units")?, source.text(&dataset, "long_name")?);
+            let label = Label { name: &name, units: &units, long_name: &long_name };
+            let values = if dataset.dtype().is_ok_and(|kind| kind.is::<f64>()) {
+                Values::Numbers(source.values(&file, label, &rows)?)
+            } else {
+                let texts: Vec<VarLenUnicode> = source.values(&file, label, &rows)?;
+                Values::Texts(texts.iter().map(|text| text.as_str().to_owned()).collect())
+            };
+            columns.push(Column { name, units, long_name, values });
+        }
+        let mut runs = vec![];
+        if file.link_exists(RUNS) {
+            let group = file.group(RUNS).map_err(|error| source.damaged(RUNS, &error))?;
+            let mut names = group.member_names().map_err(|error| source.damaged(RUNS, &error))?;
+            names.sort_by_key(|name| name.parse::<u64>().ok());
+            for name in names {
+                let place = format!("/{RUNS}/{name}");
+                let scene = name.parse().map_err(|error| source.damaged(&place, &error))?;
+                let group = group.group(&name).map_err(|error| source.damaged(&place, &error))?;
+                runs.push((scene, RunFile::from_group(&source, &group)?));
+            }
+        }
+        let scenes = ids.into_iter().map(i64::cast_unsigned).collect();
+        Ok(Self { header, complete, scenes, columns, runs })
+    }
+
+    /// Reads only what a file of a sweep is about.
+    ///
+    /// # Errors
+    /// As [`SweepFile::read`].
+    pub fn read_header(path: &Path) -> Result<SweepHeader> {
+        let (source, file) = reader::open(path)?;
+        header(&source, &file)
+    }
+}
+
+impl RunFile {
+    /// A finished run as it would be read from its file.
+    pub fn finished(
+        header: super::RunHeader,
+        snapshots: Vec<super::Snapshot>,
+        checkpoint: super::Checkpoint,
+        stop_reason: StopReason,
+    ) -> Self {
+        let program_version = env!("CARGO_PKG_VERSION").into();
+        Self { header, snapshots, checkpoint: Some(checkpoint), stop_reason, complete: true, program_version }
+    }
+}
+
+fn header(source: &Source, file: &File) -> Result<SweepHeader> {
+    let group: &Group = file;
+    let format = if group.attr("format").is_ok() { source.text(group, "format")? } else { String::new() };
+    if format != SweepFile::FORMAT {
+        return Err(source.error(format!(
+            "is an HDF5 file, but has no attribute format = \"{}\"; give the directory of a `fretwear sweep` only",
+            SweepFile::FORMAT
+        )));
+    }
+    match source.integer(group, "format_version")? {
+        SweepFile::FORMAT_VERSION => {}
+        other => {
+            return Err(source.error(format!(
+                "has format_version {other}, this program reads {}; use the fretwear that wrote it",
+                SweepFile::FORMAT_VERSION
+            )));
+        }
+    }
+    let whole = |name: &str| -> Result<u64> {
+        let attribute = group.attr(name).and_then(|attribute| attribute.read_scalar::<u64>());
+        attribute.map_err(|error| source.damaged(&format!("attribute {name}"), &error))
+    };
+    Ok(SweepHeader {
+        title: source.text(group, "title")?,
+        task: source.text(group, "task")?,
+        study: source.text(group, "study")?,
+        base_scene: source.text(group, "base_scene")?,
+        study_hash: source.text(group, "study_hash")?,
+        scenes: whole("scenes")?,
+        shards: whole("shards")?,
+        shard: whole("shard")?,
+    })
+}
+
+/// Text without NUL, which HDF5 would end it at.
+fn unicode(text: &str) -> hdf5::Result<VarLenUnicode> {
+    VarLenUnicode::from_str(&text.replace('\0', "\u{fffd}")).map_err(|error| error.to_string().into())
+}
