@@ -81,7 +81,7 @@
 //! | storey | modules |
 //! |---|---|
 //! | entry | the binary; this page |
-//! | jobs | [`report`], [`progress`], [`run`], [`wear_map`] |
+//! | jobs | [`sweep`], [`report`], [`progress`], [`run`], [`wear_map`] |
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
 //! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`wear`], [`friction`], [`loading`], [`indenter`], [`half_space`] |
@@ -112,6 +112,7 @@ pub mod slip_depth;
 pub mod snapshot;
 pub mod stepper;
 pub mod stick_slip;
+pub mod sweep;
 pub mod wear;
 pub mod wear_map;
 

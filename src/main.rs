@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-use fretwear::progress::Progress;
+use fretwear::progress::{Progress, SceneProgress};
 use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile};
 use fretwear::run::{Resumed, RunResult};
-use fretwear::scene::{MapScene, Scene};
+use fretwear::scene::{MapScene, Scene, Study};
 use fretwear::simulation::Observer;
 use fretwear::snapshot::{ArraySummary, StopReason};
+use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result};
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
@@ -33,6 +34,10 @@ enum Command {
     Run(Run),
     /// Evaluate the limiting shape of a scene in closed form, without stepping in time
     Limit(Limit),
+    /// Run the scenes of a study, or one shard of them, in parallel; only what is missing is run
+    Sweep(Sweep),
+    /// Merge the shards of a sweep into one table
+    Merge(Merge),
     /// Compare gradings: wear maps, the optimal grading and worn profiles in closed form
     Map(Map),
     /// Validate a scene and show what follows from it, without running anything
@@ -83,6 +88,50 @@ struct Limit {
 }
 
 #[derive(Args)]
+struct Sweep {
+    /// The study, a TOML file
+    #[arg(value_name = "STUDY.toml")]
+    study: PathBuf,
+    /// Directory of the results, made if it is missing
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Do shard I of N only, I from 0; all shards need the same N
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    shard: Option<(u64, u64)>,
+    /// Threads, each of which runs one scene at a time; by default all cores
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Failed scenes up to which the exit code is 0
+    #[arg(long, value_name = "M", default_value_t = 0)]
+    max_failed: u64,
+    /// Seconds between checkpoints
+    #[arg(long, value_name = "S", default_value_t = 30.0, value_parser = seconds)]
+    checkpoint_interval: f64,
+    /// Print the summary as one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Show no progress and no summary
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[derive(Args)]
+struct Merge {
+    /// Directory of a sweep
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// The merged file
+    #[arg(short, long, value_name = "FILE.h5")]
+    output: PathBuf,
+    /// Print the summary as one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Overwrite the merged file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Args)]
 struct Map {
     /// What to compare, a TOML file; by default a paraboloid under elastic similarity
     #[arg(value_name = "MAP.toml")]
@@ -122,6 +171,8 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Run(arguments) => run(&arguments),
         Command::Limit(arguments) => limit(&arguments).map(done),
+        Command::Sweep(arguments) => sweep(&arguments),
+        Command::Merge(arguments) => merge(&arguments),
         Command::Map(arguments) => map(&arguments).map(done),
         Command::Check(arguments) => check(&arguments).map(done),
         Command::Info(arguments) => info(&arguments).map(done),
@@ -195,6 +246,62 @@ fn limit(arguments: &Limit) -> Result<String> {
         (false, Some(_)) => report.text() + "\n" + &report.profile_text(),
         (false, None) => report.text(),
     })
+}
+
+/// `I/N` of `--shard`.
+fn shard(text: &str) -> std::result::Result<(u64, u64), String> {
+    let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    match numbers {
+        Some((shard, shards)) if shard < shards => Ok((shard, shards)),
+        _ => Err("write I/N with 0 <= I < N, for example 0/4".into()),
+    }
+}
+
+fn seconds(text: &str) -> std::result::Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
+        _ => Err("write seconds from 0 to 1e9".into()),
+    }
+}
+
+fn sweep(arguments: &Sweep) -> Result<(String, ExitCode)> {
+    let study = Study::read(&arguments.study)?;
+    let (shard, shards) = arguments.shard.unwrap_or((0, 1));
+    let options = SweepOptions {
+        shard,
+        shards,
+        threads: arguments.threads.map(usize::from),
+        checkpoint_interval: arguments.checkpoint_interval,
+    };
+    let shown = !arguments.quiet && !arguments.json;
+    if shown {
+        complain("note", &format!("{} scenes in {shards} shards", study.count()));
+    }
+    let progress = shown.then(SceneProgress::default);
+    let outcome = fretwear::sweep::sweep(&study, &arguments.output, &options, progress.as_ref())?;
+    drop(progress);
+    let report = SweepReport::new(&options, &outcome);
+    let code = match &outcome.file {
+        None => ExitCode::from(INTERRUPTED),
+        Some(_) if outcome.failed > arguments.max_failed => {
+            complain("error", &format!("{} scenes failed; their rows say why", outcome.failed));
+            ExitCode::FAILURE
+        }
+        Some(_) => ExitCode::SUCCESS,
+    };
+    let text = match (arguments.json, arguments.quiet) {
+        (true, _) => report::json(&report),
+        (false, true) => String::new(),
+        (false, false) => report.text(),
+    };
+    Ok((text, code))
+}
+
+fn merge(arguments: &Merge) -> Result<(String, ExitCode)> {
+    let merged = fretwear::sweep::merge(&arguments.folder, &arguments.output, arguments.force)?;
+    let report = MergeReport::new(&merged, &arguments.output);
+    let code = if merged.missing_shards.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    Ok((if arguments.json { report::json(&report) } else { report.text() }, code))
 }
 
 fn map(arguments: &Map) -> Result<String> {

@@ -11,18 +11,21 @@
 //! Compressions and edge are what is stored ([`State`]); everything else is recomputed from them ([`Fields`]).
 
 mod derivatives;
+mod operators;
 mod output;
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use crate::abel::AbelOperators;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::grid::{Clustering, slip_annulus};
-use crate::linear::{Factors, multiply};
+use crate::grid::Clustering;
+use crate::linear::multiply;
 use crate::roots::bracketed;
 use crate::slip_depth::{UnwornSlip, UnwornValues};
-use derivatives::{Stencil, derivative_stencils};
+pub use operators::OperatorStore;
+use operators::Operators;
 pub use output::RadialFields;
 
 /// Degree of the local polynomials of the transforms, of the derivative along the annulus and of output between the springs.
@@ -84,12 +87,7 @@ impl Fields {
 pub struct Model {
     contact: InitialContact,
     unworn: UnwornSlip,
-    operators: AbelOperators,
-    /// LU factors of `F` without the edge.
-    profile_factors: Factors,
-    /// Row of `F` at the edge times the inverse of the rest.
-    edge_row: Vec<f64>,
-    derivative: Vec<Stencil>,
+    operators: Arc<Operators>,
     radial_unworn: Vec<UnwornValues>,
     stick_radius_squared: f64,
     /// `c^(k-1)`.
@@ -105,6 +103,19 @@ impl Model {
     /// # Errors
     /// [`Error::Inconsistent`] if the contact does not slip in part; [`Error::OutOfRange`] for too few springs; those of the transforms.
     pub fn new(contact: &InitialContact, springs: usize, clustering: Clustering) -> Result<Self> {
+        Self::with_operators(contact, springs, clustering, &OperatorStore::default())
+    }
+
+    /// The same with operators from a store that other models share.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn with_operators(
+        contact: &InitialContact,
+        springs: usize,
+        clustering: Clustering,
+        store: &OperatorStore,
+    ) -> Result<Self> {
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
         let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
             what: "slip annulus",
@@ -126,13 +137,9 @@ impl Model {
             UnwornSlip::new(profile, stick_radius, contact.slip_compression(), contact.slip_area_offset())?;
         let stick_radius_squared = stick_radius * stick_radius;
         let stretch = (unworn.limit_edge() / stick_radius_squared).ln_1p();
-        let operators = AbelOperators::new(grading, slip_annulus(springs, stretch, clustering), DEGREE)?;
-        let inner = springs - 1;
-        let profile_factors = Factors::new(operators.profile().submatrix(0, 0, inner, inner).to_owned());
-        let mut edge_row: Vec<f64> = (0..inner).map(|j| operators.profile()[(inner, j)]).collect();
-        profile_factors.solve_transposed(&mut edge_row);
+        let operators = store.get(grading, stretch, springs, clustering)?;
         let radial_unworn: Vec<_> =
-            operators.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
+            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
         let half_space = contact.half_space();
         let compression = contact.slip_compression();
         let stick_force = half_space.normal_stiffness()
@@ -143,11 +150,8 @@ impl Model {
             4.0 * contact.wear().coefficient * contact.friction().coefficient / half_space.stiffness_ratio();
         Ok(Self {
             contact: contact.clone(),
-            derivative: derivative_stencils(operators.nodes()),
             unworn,
             operators,
-            profile_factors,
-            edge_row,
             radial_unworn,
             stick_radius_squared,
             stick_density_factor: stick_radius_squared.powf(-0.5 * (1.0 - grading)),
@@ -164,7 +168,7 @@ impl Model {
 
     /// The transforms.
     pub fn operators(&self) -> &AbelOperators {
-        &self.operators
+        &self.operators.abel
     }
 
     /// The unworn slip.
@@ -174,7 +178,7 @@ impl Model {
 
     /// Number of springs, the contact edge included.
     pub fn springs(&self) -> usize {
-        self.operators.len()
+        self.operators.abel.len()
     }
 
     /// Largest depth of the limit on the springs, m: what tolerances are relative to.
@@ -190,12 +194,15 @@ impl Model {
     /// Radii of the output, m, shape `(springs,)`, increasing from just outside the stick radius to the limiting contact radius.
     pub fn radii(&self) -> Vec<f64> {
         let limit = self.unworn.limit_edge();
-        self.operators.nodes()[1..].iter().map(|x| (self.stick_radius_squared + limit * x).sqrt()).collect()
+        self.operators.abel.nodes()[1..]
+            .iter()
+            .map(|x| (self.stick_radius_squared + limit * x).sqrt())
+            .collect()
     }
 
     /// `r² - c²`, m², at [`Model::radii`], without the rounding of the radii.
     pub fn offsets(&self) -> Vec<f64> {
-        self.operators.nodes()[1..].iter().map(|x| self.unworn.limit_edge() * x).collect()
+        self.operators.abel.nodes()[1..].iter().map(|x| self.unworn.limit_edge() * x).collect()
     }
 
     /// The unworn state: the edge and the compressions whose wear depth is zero at every spring.
@@ -229,8 +236,9 @@ impl Model {
     pub fn edge_mismatch(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> f64 {
         let inner = self.springs() - 1;
         let last = self.unworn.at(edge);
-        let elastic =
-            |(i, values): (usize, UnwornValues)| self.edge_row[i] * (values.limit_slip - slip(i, &values));
+        let elastic = |(i, values): (usize, UnwornValues)| {
+            self.operators.edge_row[i] * (values.limit_slip - slip(i, &values))
+        };
         let carried: f64 = self.unworn_on_springs(edge).take(inner).enumerate().map(elastic).sum();
         last.limit_slip - last.slip - carried
     }
@@ -241,7 +249,7 @@ impl Model {
         let values: Vec<_> = self.unworn_on_springs(edge).take(inner).collect();
         let mut solution: Vec<f64> =
             values.iter().enumerate().map(|(i, v)| v.limit_slip - slip(i, v)).collect();
-        self.profile_factors.solve(&mut solution);
+        self.operators.profile_factors.solve(&mut solution);
         let scale = edge.powf(-self.mu());
         for (q, v) in solution.iter_mut().zip(&values) {
             *q *= scale / self.density_factor(v);
@@ -271,8 +279,8 @@ impl Model {
         }
         fields.density.clear();
         fields.density.extend(compression.iter().zip(&fields.density_factor).map(|(q, factor)| q * factor));
-        multiply(self.operators.profile().as_ref(), &fields.density, &mut fields.elastic_depth);
-        multiply(self.operators.pressure().as_ref(), compression, &mut fields.pressure);
+        multiply(self.operators.abel.profile().as_ref(), &fields.density, &mut fields.elastic_depth);
+        multiply(self.operators.abel.pressure().as_ref(), compression, &mut fields.pressure);
         let (profile_scale, pressure_scale) = (edge.powf(mu), stiffness / PI * edge.powf(-mu));
         for (i, values) in fields.unworn.iter().enumerate() {
             fields.elastic_depth[i] *= profile_scale;
@@ -302,7 +310,7 @@ impl Model {
 
     /// The unworn slip on every spring, with the contact edge at `edge`.
     fn unworn_on_springs(&self, edge: f64) -> impl Iterator<Item = UnwornValues> {
-        self.operators.nodes()[1..].iter().map(move |x| self.unworn.at(edge * x))
+        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn.at(edge * x))
     }
 
     /// `μ = (1-k)/2`, the exponent with which the transforms scale with the edge.

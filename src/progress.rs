@@ -1,5 +1,6 @@
 //! A progress bar on a terminal.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -9,6 +10,46 @@ use crate::simulation::{End, Flow, Observer, Simulation};
 
 /// Parts into which the bar is divided.
 const PARTS: u64 = 1000;
+
+/// Shows how many scenes are done, how fast and how long the rest will take; draws nothing unless stderr is a terminal.
+#[derive(Debug)]
+pub struct SceneProgress {
+    bar: ProgressBar,
+    failed: AtomicU64,
+}
+
+impl Default for SceneProgress {
+    fn default() -> Self {
+        let bar = ProgressBar::new(0);
+        let template = "{bar:30} {pos}/{len} scenes  {per_sec}  {eta} left  {msg}";
+        bar.set_style(ProgressStyle::with_template(template).expect("the template is well formed"));
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar, failed: AtomicU64::new(0) }
+    }
+}
+
+impl SceneProgress {
+    /// So many scenes are to be done.
+    pub fn begin(&self, scenes: u64) {
+        self.bar.set_length(scenes);
+        self.bar.reset_eta();
+    }
+
+    /// One is done.
+    pub fn done(&self, failed: bool) {
+        self.bar.inc(1);
+        if failed {
+            let count = self.failed.fetch_add(1, Ordering::Relaxed) + 1;
+            self.bar.set_message(format!("{count} failed"));
+        }
+    }
+}
+
+impl Drop for SceneProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
 
 /// Shows cycles, τ, worn volume and the distance to the limit on stderr while a simulation runs; draws nothing unless that is a terminal.
 pub struct Progress {

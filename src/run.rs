@@ -12,7 +12,7 @@ use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::loading;
-use crate::model::Model;
+use crate::model::{Model, OperatorStore};
 use crate::scene::{Output, Scene, Stepper as StepperChoice};
 use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
@@ -54,6 +54,33 @@ pub struct Run {
     limit: LimitingShape,
 }
 
+/// What runs of many scenes in one process share.
+#[derive(Debug, Default)]
+pub struct Shared {
+    /// The transforms.
+    pub operators: OperatorStore,
+    /// Set when all runs are to stop at their next step.
+    pub stop: Arc<AtomicBool>,
+    /// Wall time between checkpoints, s, instead of the scene's.
+    pub checkpoint_interval: Option<f64>,
+}
+
+impl Shared {
+    /// As the default, with `stop` set by SIGTERM, SIGINT and SIGUSR1.
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] if the system takes no handler.
+    pub fn with_signals() -> Result<Self> {
+        let shared = Self::default();
+        for signal in [SIGTERM, SIGINT, SIGUSR1] {
+            signal_hook::flag::register(signal, Arc::clone(&shared.stop)).map_err(|error| {
+                Error::Inconsistent { what: "signal handler", why: format!("signal {signal}: {error}") }
+            })?;
+        }
+        Ok(shared)
+    }
+}
+
 /// What `--resume` finds.
 pub enum Resumed {
     /// A run that goes on.
@@ -69,7 +96,26 @@ impl Run {
     /// [`Error::File`] if `output` exists and `overwrite` is not given, or cannot be written; those of the physics where the scene has
     /// no partial slip or needs more memory than there is.
     pub fn new(scene: &Scene, output: &Path, overwrite: bool) -> Result<Self> {
-        let parts = Parts::new(scene)?;
+        let shared = Shared::with_signals()?;
+        Self::begin(scene, &shared, |header| RunWriter::create(output, header, overwrite))
+    }
+
+    /// Prepares the run of one scene of many, which writes a file only when it takes longer than its checkpoint interval or is stopped.
+    ///
+    /// # Errors
+    /// As [`Run::new`].
+    pub fn one_of_many(scene: &Scene, checkpoint: &Path, shared: &Shared) -> Result<Self> {
+        let mut run = Self::begin(scene, shared, |header| Ok(RunWriter::deferred(checkpoint, header)))?;
+        run.recorder.saves_result = false;
+        Ok(run)
+    }
+
+    fn begin(
+        scene: &Scene,
+        shared: &Shared,
+        writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
+    ) -> Result<Self> {
+        let parts = Parts::new(scene, shared)?;
         let simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
         let header = RunHeader {
             title: scene.title().map(str::to_owned),
@@ -78,8 +124,8 @@ impl Run {
             limit: Some(limit_curves(simulation.model(), &parts.limit)),
             table: scene.table().cloned(),
         };
-        let writer = RunWriter::create(output, header, overwrite)?;
-        Ok(Self { simulation, recorder: Recorder::new(scene, writer, 0.0)?, limit: parts.limit })
+        let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
+        Ok(Self { simulation, recorder, limit: parts.limit })
     }
 
     /// Prepares a run that goes on from the last checkpoint in its file.
@@ -87,13 +133,36 @@ impl Run {
     /// # Errors
     /// [`Error::File`] if the file is none of a run, or holds no checkpoint that fits its scene.
     pub fn resume(path: &Path) -> Result<Resumed> {
+        Self::go_on(path, &Shared::with_signals()?, |file| file.into_writer(path))
+    }
+
+    /// Prepares a run as [`Run::one_of_many`] that goes on from the checkpoint in `from`, and writes its own to `checkpoint`.
+    ///
+    /// # Errors
+    /// As [`Run::resume`].
+    pub fn resume_one_of_many(from: &Path, checkpoint: &Path, shared: &Shared) -> Result<Resumed> {
+        let resumed = Self::go_on(from, shared, |file| Ok(file.into_deferred_writer(checkpoint)))?;
+        Ok(match resumed {
+            Resumed::Run(mut run) => {
+                run.recorder.saves_result = false;
+                Resumed::Run(run)
+            }
+            complete => complete,
+        })
+    }
+
+    fn go_on(
+        path: &Path,
+        shared: &Shared,
+        writer: impl FnOnce(RunFile) -> Result<RunWriter>,
+    ) -> Result<Resumed> {
         let file = RunFile::open(path)?;
         let unusable = |why: &str| Error::File { path: path.to_owned(), why: why.to_owned() };
         let checkpoint =
             file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
         let name = format!("{} (its scene)", path.display());
         let scene = Scene::from_stored(&file.header.scene, &name, file.header.table.clone())?;
-        let parts = Parts::new(&scene)?;
+        let parts = Parts::new(&scene, shared)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
             || !checkpoint
@@ -125,7 +194,7 @@ impl Run {
         let Checkpoint { state, progress, wall_seconds, .. } = checkpoint;
         let simulation =
             Simulation::resume(parts.model, parts.stepper, parts.tolerance, parts.plan, state, progress);
-        let recorder = Recorder::new(&scene, file.into_writer(path)?, wall_seconds)?;
+        let recorder = Recorder::new(&scene, writer(file)?, wall_seconds, shared);
         Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit: parts.limit })))
     }
 
@@ -139,6 +208,14 @@ impl Run {
     /// # Errors
     /// Those of the simulation, after what was reached is written; [`Error::File`] if it cannot be.
     pub fn execute(self, progress: Option<&mut dyn Observer>) -> Result<RunResult> {
+        self.execute_keeping(progress).map(|(result, _)| result)
+    }
+
+    /// Runs as [`Run::execute`] does, and gives what is or would be in the result file as well.
+    ///
+    /// # Errors
+    /// As [`Run::execute`].
+    pub fn execute_keeping(self, progress: Option<&mut dyn Observer>) -> Result<(RunResult, RunFile)> {
         let Self { mut simulation, mut recorder, limit } = self;
         let outcome = match progress {
             Some(progress) => simulation.run(&mut [&mut recorder, progress]),
@@ -152,18 +229,16 @@ impl Run {
         };
         let complete = stop_reason != StopReason::Interrupted;
         let checkpoint = recorder.checkpoint(&simulation);
-        recorder.writer.save(&checkpoint, stop_reason, complete)?;
+        if recorder.saves(complete, outcome.is_err()) {
+            recorder.writer.save(&checkpoint, stop_reason, complete)?;
+        }
         outcome?;
         let last = snapshot(&simulation);
         let distance = LimitDistance::new(&limit_curves(simulation.model(), &limit), &last);
-        Ok(RunResult {
-            output: recorder.writer.path().to_owned(),
-            stop_reason,
-            last,
-            checkpoint,
-            limit,
-            distance,
-        })
+        let output = recorder.writer.path().to_owned();
+        let (header, snapshots) = recorder.writer.into_parts();
+        let file = RunFile::finished(header, snapshots, checkpoint.clone(), stop_reason);
+        Ok((RunResult { output, stop_reason, last, checkpoint, limit, distance }, file))
     }
 }
 
@@ -177,7 +252,7 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(scene: &Scene) -> Result<Self> {
+    fn new(scene: &Scene, shared: &Shared) -> Result<Self> {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
         let numerics = scene.numerics();
@@ -187,7 +262,7 @@ impl Parts {
             StepperChoice::Implicit => Clustering::Cubic,
             StepperChoice::EveryCycle | StepperChoice::CycleJump => Clustering::Quadratic,
         };
-        let model = Model::new(&contact, springs, clustering)?;
+        let model = Model::with_operators(&contact, springs, clustering, &shared.operators)?;
         let limit = LimitingShape::from_contact(&contact)?.ok_or_else(|| Error::Inconsistent {
             what: "limiting shape",
             why: "there is none under full sliding".into(),
@@ -337,20 +412,25 @@ struct Recorder {
     saved: Instant,
     wall_seconds_before: f64,
     stop: Arc<AtomicBool>,
+    /// Whether a file is to hold the result; else only checkpoints are written.
+    saves_result: bool,
 }
 
 impl Recorder {
-    fn new(scene: &Scene, writer: RunWriter, wall_seconds_before: f64) -> Result<Self> {
-        let stop = Arc::new(AtomicBool::new(false));
-        for signal in [SIGTERM, SIGINT, SIGUSR1] {
-            signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(|error| Error::Inconsistent {
-                what: "signal handler",
-                why: format!("signal {signal}: {error}"),
-            })?;
-        }
-        let interval = Duration::from_secs_f64(scene.numerics().checkpoint_interval);
-        let now = Instant::now();
-        Ok(Self { writer, interval, started: now, saved: now, wall_seconds_before, stop })
+    /// A run stopped before it took so long, s, is begun anew rather than kept.
+    const WORTH_KEEPING: f64 = 0.2;
+
+    fn new(scene: &Scene, writer: RunWriter, wall_seconds_before: f64, shared: &Shared) -> Self {
+        let interval = shared.checkpoint_interval.unwrap_or(scene.numerics().checkpoint_interval);
+        let interval = Duration::from_secs_f64(interval);
+        let (now, stop) = (Instant::now(), Arc::clone(&shared.stop));
+        Self { writer, interval, started: now, saved: now, wall_seconds_before, stop, saves_result: true }
+    }
+
+    /// Whether the file is written where the run ends.
+    fn saves(&self, complete: bool, failed: bool) -> bool {
+        let long = self.wall_seconds_before + self.started.elapsed().as_secs_f64() > Self::WORTH_KEEPING;
+        self.saves_result || (!complete && !failed && long)
     }
 
     fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {

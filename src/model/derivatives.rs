@@ -30,13 +30,17 @@ pub(super) fn derivative_stencils(nodes: &[f64]) -> Vec<Stencil> {
 impl Model {
     /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
     pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
-        self.derivative.iter().map(|s| dot(&s.weights, &values[s.first..s.first + POINTS])).collect()
+        self.operators
+            .derivative
+            .iter()
+            .map(|s| dot(&s.weights, &values[s.first..s.first + POINTS]))
+            .collect()
     }
 
     /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.
     pub fn elastic_depth_by_edge(&self, fields: &Fields) -> Vec<f64> {
         let mu = self.mu();
-        let nodes = &self.operators.nodes()[1..];
+        let nodes = &self.operators.abel.nodes()[1..];
         let moved: Vec<f64> = fields
             .density
             .iter()
@@ -44,7 +48,7 @@ impl Model {
             .map(|(u, x)| -mu * u * x / (self.stick_radius_squared + fields.edge * x))
             .collect();
         let mut change = vec![0.0; self.springs()];
-        multiply(self.operators.profile().as_ref(), &moved, &mut change);
+        multiply(self.operators.abel.profile().as_ref(), &moved, &mut change);
         let scale = fields.edge.powf(mu);
         change
             .iter()
@@ -56,7 +60,7 @@ impl Model {
     /// Derivative of `λ` by the edge at constant compressions, 1/m², shape `(springs,)`.
     pub fn log_slip_by_edge(&self, fields: &Fields) -> Vec<f64> {
         let elastic = self.elastic_depth_by_edge(fields);
-        let nodes = &self.operators.nodes()[1..];
+        let nodes = &self.operators.abel.nodes()[1..];
         let rate = |i: usize| {
             let slopes = self.unworn.slopes(&fields.unworn[i]);
             (nodes[i] * slopes.limit_slip - elastic[i]) / fields.slip_depth[i] - nodes[i] * slopes.log_slip
@@ -66,7 +70,7 @@ impl Model {
 
     /// Derivative of the elastic depth at spring `i` by the compression of spring `j`, over `Z^(1-ν)`: `F_ij x_j^(k-1)`.
     pub fn elastic_depth_by_compression(&self, fields: &Fields, i: usize, j: usize) -> f64 {
-        self.operators.profile()[(i, j)] * fields.density_factor[j]
+        self.operators.abel.profile()[(i, j)] * fields.density_factor[j]
     }
 
     /// Rates per cycle of the edge, m², and of the compressions, m, under Archard's law: the closed-form cycle as an explicit
@@ -82,9 +86,10 @@ impl Model {
             (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
         // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.
         let edge_slope = slip[inner] * by_edge[inner];
-        let edge_rate = -dot(&self.edge_row, &worn) / (dot(&self.edge_row, &moved) - edge_slope);
-        self.profile_factors.solve(&mut worn);
-        self.profile_factors.solve(&mut moved);
+        let edge_rate =
+            -dot(&self.operators.edge_row, &worn) / (dot(&self.operators.edge_row, &moved) - edge_slope);
+        self.operators.profile_factors.solve(&mut worn);
+        self.operators.profile_factors.solve(&mut moved);
         let scale = fields.edge.powf(-self.mu());
         let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * edge_rate);
         (edge_rate, (0..inner).map(rate).collect())
@@ -126,11 +131,11 @@ impl Model {
             // Cells inside a radius add nothing to it but through the stencils that reach one node back and two ahead.
             let first = j.saturating_sub(POINTS);
             let factor = fields.density_factor[j];
-            let column = self.operators.profile().col_as_slice(j);
+            let column = self.operators.abel.profile().col_as_slice(j);
             for ((change, column), slip) in changed.iter_mut().zip(column).zip(&per_slip).skip(first) {
                 *change = factor * column * slip;
             }
-            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.derivative);
+            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.operators.derivative);
             for (i, (entry, stencil)) in rows.enumerate().take(n - 1).skip(first) {
                 let along = dot(&stencil.weights, &changed[stencil.first..stencil.first + POINTS]);
                 *entry += changed[i] - theta * along;

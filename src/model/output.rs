@@ -29,7 +29,7 @@ impl Model {
     }
 
     fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
-        PI * edge * dot(self.operators.depth_sum(), wear_depth)
+        PI * edge * dot(self.operators.abel.depth_sum(), wear_depth)
     }
 
     /// Normal force, N [S, Eq. (22)].
@@ -37,7 +37,7 @@ impl Model {
         self.stick_force
             + self.contact.half_space().normal_stiffness()
                 * fields.edge
-                * dot(&self.operators.spring_sum()[..fields.density.len()], &fields.density)
+                * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density)
     }
 
     /// Energy that friction dissipates in one cycle, J.
@@ -52,7 +52,7 @@ impl Model {
         let sum: f64 = compression
             .iter()
             .zip(&fields.density)
-            .zip(self.operators.spring_sum())
+            .zip(self.operators.abel.spring_sum())
             .map(|((q, u), weight)| weight * u * (slipping - q))
             .sum();
         4.0 * friction * friction / half_space.stiffness_ratio()
@@ -70,7 +70,7 @@ impl Model {
     /// The fields at [`Model::radii`], by local cubic interpolation between the springs.
     pub fn radial_fields(&self, fields: &Fields) -> RadialFields {
         let n = self.springs();
-        let nodes = self.operators.nodes();
+        let nodes = self.operators.abel.nodes();
         let nu = 1.0 - self.mu();
         let slip_per_depth =
             self.contact.friction().coefficient / self.contact.half_space().stiffness_ratio();

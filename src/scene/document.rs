@@ -282,7 +282,8 @@ impl<'a> Entry<'a> {
     /// The value as it stands.
     pub(super) fn literal(&self) -> Result<toml::Value> {
         let text = self.source.text.get(self.place.clone()).unwrap_or_default();
-        let mut table: toml::Table = format!("value = {text}").parse().map_err(|_| self.error("is no value"))?;
+        let mut table: toml::Table =
+            format!("value = {text}").parse().map_err(|_| self.error("is no value"))?;
         table.remove("value").ok_or_else(|| self.error("is no value"))
     }
 

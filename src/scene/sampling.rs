@@ -54,8 +54,7 @@ impl UnitCube {
     /// For more variables than [`UnitCube::MOST_VARIABLES`], or more than `u32::MAX` samples.
     pub fn new(method: Method, count: u64, variables: usize, seed: u64) -> Self {
         assert!(variables <= Self::MOST_VARIABLES && count <= u64::from(u32::MAX));
-        let mut cube =
-            Self { method, count, seed, directions: vec![], shifts: vec![], slices: vec![] };
+        let mut cube = Self { method, count, seed, directions: vec![], shifts: vec![], slices: vec![] };
         // Streams from the far end belong to no sample.
         let mut generator = cube.generator(u64::MAX);
         match method {
@@ -78,7 +77,8 @@ impl UnitCube {
             Method::Sobol => {
                 let gray = sample ^ (sample >> 1);
                 let bits = self.directions[variable].iter().enumerate();
-                let point = bits.filter(|(bit, _)| gray >> bit & 1 == 1).fold(0, |sum, (_, value)| sum ^ value);
+                let point =
+                    bits.filter(|(bit, _)| gray >> bit & 1 == 1).fold(0, |sum, (_, value)| sum ^ value);
                 inside(point ^ self.shifts[variable])
             }
             Method::LatinHypercube => {
@@ -235,7 +235,8 @@ mod tests {
     #[test]
     fn quantiles_are_those_of_the_distributions() {
         let none = [f64::NEG_INFINITY, f64::INFINITY];
-        let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        let close =
+            |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         close(Distribution::Uniform { from: -1.0, to: 3.0 }.quantile(0.25), 0.0);
         close(Distribution::LogUniform { from: 1.0, to: 100.0 }.quantile(0.5), 10.0);
         let normal = Distribution::Normal { mean: 2.0, deviation: 0.5, bounds: none };
@@ -247,6 +248,8 @@ mod tests {
         let half = Distribution::Normal { mean: 0.0, deviation: 1.0, bounds: [0.0, f64::INFINITY] };
         close(half.quantile(2.0 * 0.841_344_746_068_542_9 - 1.0), 1.0);
         let far = Distribution::Normal { mean: 0.0, deviation: 1.0, bounds: [1.0, 2.0] };
-        assert!((1.0..=2.0).contains(&far.quantile(1e-16)) && (1.0..=2.0).contains(&far.quantile(1.0 - 1e-16)));
+        assert!(
+            (1.0..=2.0).contains(&far.quantile(1e-16)) && (1.0..=2.0).contains(&far.quantile(1.0 - 1e-16))
+        );
     }
 }

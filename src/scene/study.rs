@@ -230,12 +230,25 @@ impl Study {
         axes.chain(sampled).collect()
     }
 
+    /// Whether a key has numbers and whether it has words in any scene, in the order of [`Study::keys`].
+    pub fn kinds(&self) -> Vec<[bool; 2]> {
+        let mut kinds = vec![];
+        for axis in &self.axes {
+            for place in 0..axis.keys.len() {
+                let is_word = |row: &Vec<Value>| matches!(Input::new(&row[place]), Input::Text(_));
+                kinds.push([!axis.rows.iter().all(is_word), axis.rows.iter().any(is_word)]);
+            }
+        }
+        kinds.extend(self.sampling.iter().flat_map(|it| it.variables.iter().map(|_| [true, false])));
+        kinds
+    }
+
     /// Values of the keys in a scene, in the order of [`Study::keys`].
     ///
     /// # Panics
     /// If there is no scene of this number.
     pub fn inputs(&self, scene: u64) -> Vec<Input> {
-        self.values(scene).iter().map(|value| Input::new(value)).collect()
+        self.values(scene).iter().map(Input::new).collect()
     }
 
     fn values(&self, scene: u64) -> Vec<Value> {
@@ -267,7 +280,8 @@ impl Study {
     pub fn scene_text(&self, scene: u64) -> Result<String> {
         let mut table = self.base.clone();
         for (key, value) in self.keys().into_iter().zip(self.values(scene)) {
-            set(&mut table, key, value).map_err(|why| Error::Scene(format!("{}: {key}: {why}", self.name)))?;
+            set(&mut table, key, value)
+                .map_err(|why| Error::Scene(format!("{}: {key}: {why}", self.name)))?;
         }
         Ok(table.to_string())
     }
@@ -313,7 +327,8 @@ fn set(table: &mut Table, key: &str, value: Value) -> std::result::Result<(), St
         }
         Some((first, rest)) => {
             let inner = table.entry(first).or_insert_with(|| Value::Table(Table::new()));
-            let inner = inner.as_table_mut().ok_or_else(|| format!("{first} is no table in the base scene"))?;
+            let inner =
+                inner.as_table_mut().ok_or_else(|| format!("{first} is no table in the base scene"))?;
             set(inner, rest, value)
         }
     }
@@ -512,7 +527,8 @@ fn variable(section: &Section) -> Result<Variable> {
     const KINDS: [&str; 4] = ["uniform", "log-uniform", "normal", "log-normal"];
     let entry = section.required("distribution", "uniform, log-uniform, normal or log-normal")?;
     let kind = entry.word(&KINDS)?;
-    let parameters: [&str; 2] = [["from", "to"], ["from", "to"], ["mean", "deviation"], ["median", "factor"]][kind];
+    let parameters: [&str; 2] =
+        [["from", "to"], ["from", "to"], ["mean", "deviation"], ["median", "factor"]][kind];
     let bounds: &[&str] = if kind < 2 { &[] } else { &["minimum", "maximum"] };
     section.only(&[&["key", "distribution"], &parameters[..], bounds].concat(), &[])?;
     let key = key(&section.required("key", "for example \"wear.archard.coefficient\"")?)?;

@@ -71,6 +71,15 @@ impl RunFile {
     }
 }
 
+impl RunFile {
+    /// As [`RunFile::into_writer`], without a look at `path` before the first save.
+    pub fn into_deferred_writer(self, path: &Path) -> RunWriter {
+        let mut writer = RunWriter::deferred(path, self.header);
+        self.snapshots.into_iter().for_each(|snapshot| writer.push(snapshot));
+        writer
+    }
+}
+
 /// Opens an HDF5 file for reading.
 pub(super) fn open(path: &Path) -> Result<(Source, File)> {
     check_signature(path)?;
@@ -198,7 +207,12 @@ impl Source {
     }
 
     /// All values of a dataset in row-major order; `None` in the shape stands for any length.
-    pub(super) fn values<T: H5Type>(&self, group: &Group, label: Label, shape: &[Option<usize>]) -> Result<Vec<T>> {
+    pub(super) fn values<T: H5Type>(
+        &self,
+        group: &Group,
+        label: Label,
+        shape: &[Option<usize>],
+    ) -> Result<Vec<T>> {
         let name = format!("{}/{}", group.name().trim_end_matches('/'), label.name);
         if !group.link_exists(label.name) {
             return Err(self.error(format!("dataset {name} is missing; {WRITE_AGAIN}")));

@@ -121,7 +121,8 @@ impl SweepFile {
         ] {
             put_text(&file, name, text)?;
         }
-        for (name, number) in [("scenes", header.scenes), ("shards", header.shards), ("shard", header.shard)] {
+        for (name, number) in [("scenes", header.scenes), ("shards", header.shards), ("shard", header.shard)]
+        {
             file.new_attr::<u64>().create(name)?.write_scalar(&number)?;
         }
         put_integer(&file, "complete", self.complete.into())?;
@@ -142,8 +143,13 @@ impl SweepFile {
             for (scene, run) in &self.runs {
                 let RunFile { header, snapshots, checkpoint, stop_reason, complete, .. } = run;
                 let checkpoint = checkpoint.clone().unwrap_or_default();
-                let run =
-                    Run { header, snapshots, checkpoint: &checkpoint, stop_reason: *stop_reason, complete: *complete };
+                let run = Run {
+                    header,
+                    snapshots,
+                    checkpoint: &checkpoint,
+                    stop_reason: *stop_reason,
+                    complete: *complete,
+                };
                 run.put_into(&create_group(&group, &scene.to_string())?)?;
             }
         }
@@ -202,7 +208,7 @@ impl SweepFile {
 }
 
 impl RunFile {
-    /// A finished run as it would be read from its file.
+    /// A run as it would be read from its file.
     pub fn finished(
         header: super::RunHeader,
         snapshots: Vec<super::Snapshot>,
@@ -210,7 +216,8 @@ impl RunFile {
         stop_reason: StopReason,
     ) -> Self {
         let program_version = env!("CARGO_PKG_VERSION").into();
-        Self { header, snapshots, checkpoint: Some(checkpoint), stop_reason, complete: true, program_version }
+        let complete = stop_reason != StopReason::Interrupted;
+        Self { header, snapshots, checkpoint: Some(checkpoint), stop_reason, complete, program_version }
     }
 }
 

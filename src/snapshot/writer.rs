@@ -1,6 +1,6 @@
 //! Writing the file of a run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::atomic::AtomicFile;
 use super::encode::Run;
@@ -25,9 +25,18 @@ use crate::error::{Error, Result};
 /// ```
 #[derive(Debug)]
 pub struct RunWriter {
-    file: AtomicFile,
+    file: Target,
     header: RunHeader,
     snapshots: Vec<Snapshot>,
+}
+
+/// The file that is written.
+#[derive(Debug)]
+enum Target {
+    /// One that was seen to be writable.
+    Ready(AtomicFile),
+    /// One that is looked at when it is first written.
+    Later(PathBuf),
 }
 
 impl RunWriter {
@@ -58,7 +67,17 @@ impl RunWriter {
         for curve in header.limit.iter().flat_map(|limit| [&limit.profile, &limit.wear_depth]) {
             assert_eq!(curve.len(), header.radius.len(), "values of the limit, nodes");
         }
-        Ok(Self { file: AtomicFile::new(path, overwrite)?, header, snapshots })
+        Ok(Self { file: Target::Ready(AtomicFile::new(path, overwrite)?), header, snapshots })
+    }
+
+    /// A writer that does not look at its file before the first save, which replaces what is there.
+    pub fn deferred(path: &Path, header: RunHeader) -> Self {
+        Self { file: Target::Later(path.to_owned()), header, snapshots: Vec::new() }
+    }
+
+    /// Header and snapshots, when nothing more is to be written.
+    pub fn into_parts(self) -> (RunHeader, Vec<Snapshot>) {
+        (self.header, self.snapshots)
     }
 
     /// Adds a snapshot, in memory.
@@ -84,7 +103,10 @@ impl RunWriter {
 
     /// The file that is written.
     pub fn path(&self) -> &Path {
-        self.file.path()
+        match &self.file {
+            Target::Ready(file) => file.path(),
+            Target::Later(path) => path,
+        }
     }
 
     /// Replaces the file by one with all snapshots so far, and returns when it is safe on the disk.
@@ -99,9 +121,15 @@ impl RunWriter {
     pub fn save(&mut self, checkpoint: &Checkpoint, stop_reason: StopReason, complete: bool) -> Result<()> {
         let run = Run { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
         let bytes = run.encode().map_err(|error| Error::File {
-            path: self.file.path().to_owned(),
+            path: self.path().to_owned(),
             why: format!("the HDF5 library could not lay out the file: {error}"),
         })?;
-        self.file.write(&bytes)
+        if let Target::Later(path) = &self.file {
+            self.file = Target::Ready(AtomicFile::new(path, true)?);
+        }
+        match &mut self.file {
+            Target::Ready(file) => file.write(&bytes),
+            Target::Later(_) => unreachable!("made ready above"),
+        }
     }
 }

@@ -78,8 +78,9 @@ fn array_file(scene: &MapScene, study: &MapStudy) -> ArrayFile {
         ],
         ..ArrayFile::default()
     };
-    let mut coordinate =
-        |label: Label<'static>, values: &[f64]| file.coordinates.push(Coordinate { label, values: values.to_vec() });
+    let mut coordinate = |label: Label<'static>, values: &[f64]| {
+        file.coordinates.push(Coordinate { label, values: values.to_vec() })
+    };
     coordinate(GRADING, &map.gradings);
     coordinate(AMPLITUDE, &map.amplitude_ratios);
     coordinate(OPTIMUM_AMPLITUDE, &scene.optimum_amplitude_ratios);

@@ -1,0 +1,75 @@
+//! Operators of one grading on one mesh, which models of the same can share.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::DEGREE;
+use super::derivatives::{Stencil, derivative_stencils};
+use crate::abel::AbelOperators;
+use crate::error::Result;
+use crate::grid::{Clustering, slip_annulus};
+use crate::linear::Factors;
+
+/// The transforms and what follows from them alone.
+#[derive(Debug)]
+pub(super) struct Operators {
+    pub abel: AbelOperators,
+    /// LU factors of `F` without the edge.
+    pub profile_factors: Factors,
+    /// Row of `F` at the edge times the inverse of the rest.
+    pub edge_row: Vec<f64>,
+    pub derivative: Vec<Stencil>,
+}
+
+/// What tells operators apart: the bits of the grading and of the stretch of the mesh, number of springs and clustering.
+type Key = (u64, u64, usize, Clustering);
+
+/// Operators used last, for all the models of a process.
+///
+/// Models share them when grading, number of springs and the ratio `a∞/c` agree to the last bit: scenes that differ in load, friction,
+/// wear or stiffness at one stick ratio. A model is the same bit for bit whether its operators were shared or not.
+#[derive(Debug, Default)]
+pub struct OperatorStore {
+    kept: Mutex<Vec<(Key, Arc<Operators>)>>,
+}
+
+impl OperatorStore {
+    /// Most operators kept; those used longest ago go first.
+    const MOST: usize = 16;
+
+    pub(super) fn get(
+        &self,
+        grading: f64,
+        stretch: f64,
+        springs: usize,
+        clustering: Clustering,
+    ) -> Result<Arc<Operators>> {
+        let key = (grading.to_bits(), stretch.to_bits(), springs, clustering);
+        if let Some(found) = self.touch(key) {
+            return Ok(found);
+        }
+        // Without the lock, so that others go on meanwhile; two that build the same build it equal.
+        let built = Arc::new(Operators::new(grading, stretch, springs, clustering)?);
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.insert(0, (key, Arc::clone(&built)));
+        kept.truncate(Self::MOST);
+        Ok(built)
+    }
+
+    fn touch(&self, key: Key) -> Option<Arc<Operators>> {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = kept.iter().position(|(known, _)| *known == key)?;
+        kept[..=place].rotate_right(1);
+        Some(Arc::clone(&kept[0].1))
+    }
+}
+
+impl Operators {
+    fn new(grading: f64, stretch: f64, springs: usize, clustering: Clustering) -> Result<Self> {
+        let abel = AbelOperators::new(grading, slip_annulus(springs, stretch, clustering), DEGREE)?;
+        let inner = springs - 1;
+        let profile_factors = Factors::new(abel.profile().submatrix(0, 0, inner, inner).to_owned());
+        let mut edge_row: Vec<f64> = (0..inner).map(|j| abel.profile()[(inner, j)]).collect();
+        profile_factors.solve_transposed(&mut edge_row);
+        Ok(Self { derivative: derivative_stencils(abel.nodes()), abel, profile_factors, edge_row })
+    }
+}

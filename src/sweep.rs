@@ -1,0 +1,335 @@
+//! Many scenes in parallel: one shard of a study, whose results are rows that are never lost and never there twice.
+//!
+//! Each scene runs on one core; the scenes of a shard are spread over the threads. Rows collect in memory and are written, at the latest
+//! after each checkpoint interval, as a *part*: a file that is never changed afterwards and whose name no other process uses. When the
+//! shard is done its parts become one file. Whoever is killed loses the rows since its last part and, of the scenes that were running,
+//! what came after their own checkpoints; another call does only what is missing. Two processes that work on one shard at the same time
+//! find the same results, and the second to finish replaces the file of the first by an equal one.
+//!
+//! ```text
+//! DIR/shard-3-of-10.h5                      a shard that is done
+//! DIR/parts/3-of-10.ATTEMPT.SEQUENCE.h5     rows of a shard that is not
+//! DIR/parts/scene-417.ATTEMPT.h5            a scene that takes longer than the checkpoint interval
+//! ```
+
+mod folder;
+mod merge;
+mod report;
+mod rows;
+
+pub use merge::{Merged, array_syntax, merge};
+pub use report::{MergeReport, SweepReport};
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use crate::error::{Error, Result};
+use crate::progress::SceneProgress;
+use crate::report::{LimitReport, RunReport};
+use crate::run::{Resumed, Run, Shared};
+use crate::scene::{Study, Task};
+use crate::snapshot::{RunFile, StopReason, SweepHeader};
+use folder::Folder;
+use rows::{Row, Schema};
+
+/// Kept runs in memory after which a part is written.
+const MOST_RUNS: usize = 100;
+
+/// Which part of a study is done, and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SweepOptions {
+    /// Number of the shard, from 0.
+    pub shard: u64,
+    /// Number of shards that the study is cut into.
+    pub shards: u64,
+    /// Threads; all cores if none.
+    pub threads: Option<usize>,
+    /// Wall time between checkpoints, s.
+    pub checkpoint_interval: f64,
+}
+
+impl Default for SweepOptions {
+    /// The whole study on all cores, with a checkpoint each half minute.
+    fn default() -> Self {
+        Self { shard: 0, shards: 1, threads: None, checkpoint_interval: 30.0 }
+    }
+}
+
+/// What a sweep came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepOutcome {
+    /// The file of the shard; none if a signal came first.
+    pub file: Option<PathBuf>,
+    /// Scenes of the shard.
+    pub scenes: u64,
+    /// Scenes that were done before.
+    pub done_before: u64,
+    /// Scenes done now.
+    pub done: u64,
+    /// Failed scenes of the shard so far.
+    pub failed: u64,
+    /// Wall time of this call, s.
+    pub wall_seconds: f64,
+}
+
+/// Numbers of the scenes of a shard.
+///
+/// ```
+/// use fretwear::sweep::shard_range;
+/// assert_eq!([0, 1, 2].map(|shard| shard_range(shard, 3, 10)), [0..3, 3..6, 6..10]);
+/// ```
+///
+/// # Panics
+/// If the shard is not below the number of shards.
+pub fn shard_range(shard: u64, shards: u64, scenes: u64) -> Range<u64> {
+    assert!(shard < shards, "shard {shard} of {shards}");
+    let cut = |shard: u64| (u128::from(scenes) * u128::from(shard) / u128::from(shards)) as u64;
+    cut(shard)..cut(shard + 1)
+}
+
+/// Does what is missing of a shard; see the [module](self) for what is written where.
+///
+/// # Errors
+/// [`Error::Scene`] lists scenes of the study that are not valid, before anything runs; [`Error::File`] if files cannot be read or
+/// written, or belong to another study, version or number of shards. Scenes that fail are rows, not errors.
+pub fn sweep(
+    study: &Study,
+    folder: &Path,
+    options: &SweepOptions,
+    progress: Option<&SceneProgress>,
+) -> Result<SweepOutcome> {
+    let started = Instant::now();
+    // First of all: a signal during the preparations is answered like any other.
+    let shared =
+        Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
+    let (shard, shards) = (options.shard, options.shards);
+    if !(1..=study.count()).contains(&shards) || shard >= shards {
+        return Err(Error::Inconsistent {
+            what: "--shard",
+            why: format!(
+                "{shard}/{shards} is none of a study of {} scenes; shards count from 0, and each has a scene",
+                study.count()
+            ),
+        });
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let pool = pool.map_err(|error| Error::Inconsistent { what: "--threads", why: error.to_string() })?;
+    let range = shard_range(shard, shards, study.count());
+    let header = SweepHeader {
+        title: study.title().unwrap_or_default().into(),
+        task: study.task().name().into(),
+        study: study.text().into(),
+        base_scene: study.base_text().into(),
+        study_hash: study.hash(),
+        scenes: study.count(),
+        shards,
+        shard,
+    };
+    let schema = Schema::new(study);
+    let folder = Folder::new(folder, header)?;
+    let outcome = |file: Option<PathBuf>, done_before: usize, done: u64, failed: u64| SweepOutcome {
+        file,
+        scenes: range.end - range.start,
+        done_before: done_before as u64,
+        done,
+        failed,
+        wall_seconds: started.elapsed().as_secs_f64(),
+    };
+    let before = folder.done()?;
+    if let (Some(file), true) = (folder.finished(), before.missing(&range).is_empty()) {
+        return Ok(outcome(Some(file), before.scenes.len(), 0, before.failed));
+    }
+    let missing = before.missing(&range);
+    pool.install(|| validate(study, &missing))?;
+    folder.create()?;
+    if let Some(progress) = progress {
+        progress.begin(missing.len() as u64);
+    }
+    let shared = Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
+    let worker = Worker { study, folder: &folder, shared: &shared, progress };
+    let collector = Collector::new(&folder, &schema, options.checkpoint_interval);
+    let finished = pool.install(|| {
+        missing.par_iter().try_for_each(|&scene| match worker.row(scene) {
+            Ok(Some(row)) => collector.add(row).map_err(Some),
+            Ok(None) => Err(None),
+            Err(error) => Err(Some(error)),
+        })
+    });
+    let (done, failed) = collector.finish()?;
+    match finished {
+        Err(Some(error)) => Err(error),
+        Err(None) => Ok(outcome(None, before.scenes.len(), done, before.failed + failed)),
+        Ok(()) => Ok(outcome(Some(folder.compact()?), before.scenes.len(), done, before.failed + failed)),
+    }
+}
+
+/// Refuses a study of which some scenes are not valid.
+fn validate(study: &Study, scenes: &[u64]) -> Result<()> {
+    const SHOWN: usize = 3;
+    let wrong: Vec<String> =
+        scenes.par_iter().filter_map(|&scene| study.scene(scene).err().map(|it| it.to_string())).collect();
+    match wrong.len() {
+        0 => Ok(()),
+        count => Err(Error::Scene(format!(
+            "{count} of {} scenes are not valid, nothing was run:\n{}",
+            scenes.len(),
+            wrong[..count.min(SHOWN)].join("\n")
+        ))),
+    }
+}
+
+/// Does scenes.
+struct Worker<'a> {
+    study: &'a Study,
+    folder: &'a Folder,
+    shared: &'a Shared,
+    progress: Option<&'a SceneProgress>,
+}
+
+impl Worker<'_> {
+    /// The row of a scene; none if a signal came first.
+    fn row(&self, scene: u64) -> Result<Option<Row>> {
+        if self.shared.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let inputs = self.study.inputs(scene);
+        // A fault of the program in one scene must not cost the others.
+        let result = catch_unwind(AssertUnwindSafe(|| self.results(scene)))
+            .unwrap_or_else(|_| Ok(Err("the program panicked; please report this scene".into())));
+        let row = match result? {
+            Ok(None) => return Ok(None),
+            Ok(Some((results, run))) => Row { scene, inputs, results, run, error: None },
+            Err(error) => {
+                Row { scene, inputs, results: serde_json::Value::Null, run: None, error: Some(error) }
+            }
+        };
+        if let Some(progress) = self.progress {
+            progress.done(row.error.is_some());
+        }
+        Ok(Some(row))
+    }
+
+    /// Results as JSON, or what went wrong in the scene; the outer error concerns all scenes.
+    #[expect(clippy::type_complexity, reason = "two kinds of errors and an interruption")]
+    fn results(
+        &self,
+        scene: u64,
+    ) -> Result<std::result::Result<Option<(serde_json::Value, Option<RunFile>)>, String>> {
+        let done = match self.study.task() {
+            Task::Limit => self
+                .study
+                .scene(scene)
+                .and_then(|it| LimitReport::new(&it, Some(&[])))
+                .map(|report| Some((as_json(&report), None))),
+            Task::Run => self.run(scene),
+        };
+        match done {
+            Ok(done) => Ok(Ok(done)),
+            Err(error @ Error::File { .. }) => Err(error),
+            Err(error) => Ok(Err(error.to_string())),
+        }
+    }
+
+    fn run(&self, scene: u64) -> Result<Option<(serde_json::Value, Option<RunFile>)>> {
+        let own = self.folder.checkpoint(scene);
+        let run = self.folder.checkpoints(scene).iter().find_map(|from| {
+            // One that cannot be used is of no use: the scene is begun anew.
+            match Run::resume_one_of_many(from, &own, self.shared) {
+                Ok(Resumed::Run(run)) => Some(*run),
+                _ => None,
+            }
+        });
+        let run = match run {
+            Some(run) => run,
+            None => Run::one_of_many(&self.study.scene(scene)?, &own, self.shared)?,
+        };
+        let (result, file) = run.execute_keeping(None)?;
+        if result.stop_reason == StopReason::Interrupted {
+            return Ok(None);
+        }
+        let kept = self.study.snapshots().contain(scene).then_some(file);
+        Ok(Some((as_json(&RunReport::new(&result)), kept)))
+    }
+}
+
+fn as_json(report: &impl serde::Serialize) -> serde_json::Value {
+    serde_json::to_value(report).expect("reports have string keys and plain values only")
+}
+
+/// Takes rows from all threads and writes parts.
+struct Collector<'a> {
+    folder: &'a Folder,
+    schema: &'a Schema,
+    interval: Duration,
+    waiting: Mutex<Waiting>,
+}
+
+struct Waiting {
+    rows: Vec<Row>,
+    saved: Instant,
+    done: u64,
+    failed: u64,
+}
+
+impl<'a> Collector<'a> {
+    fn new(folder: &'a Folder, schema: &'a Schema, interval: f64) -> Self {
+        let waiting = Waiting { rows: vec![], saved: Instant::now(), done: 0, failed: 0 };
+        Self { folder, schema, interval: Duration::from_secs_f64(interval), waiting: Mutex::new(waiting) }
+    }
+
+    fn add(&self, row: Row) -> Result<()> {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.done += 1;
+        waiting.failed += u64::from(row.error.is_some());
+        waiting.rows.push(row);
+        let runs = waiting.rows.iter().filter(|row| row.run.is_some()).count();
+        if waiting.saved.elapsed() < self.interval && runs < MOST_RUNS {
+            return Ok(());
+        }
+        waiting.saved = Instant::now();
+        let rows = std::mem::take(&mut waiting.rows);
+        // The others go on while this thread writes.
+        drop(waiting);
+        self.write(rows)
+    }
+
+    fn write(&self, rows: Vec<Row>) -> Result<()> {
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let scenes: Vec<u64> = rows.iter().map(|row| row.scene).collect();
+        self.folder.write_part(self.schema, rows)?;
+        scenes.into_iter().for_each(|scene| self.folder.remove_checkpoints(scene));
+        Ok(())
+    }
+
+    /// Writes what is left; numbers of rows done and failed.
+    fn finish(self) -> Result<(u64, u64)> {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        let rows = std::mem::take(&mut waiting.rows);
+        let counts = (waiting.done, waiting.failed);
+        drop(waiting);
+        self.write(rows)?;
+        Ok(counts)
+    }
+}
+
+/// Scenes that have a row.
+#[derive(Debug, Clone, Default)]
+struct Done {
+    scenes: BTreeSet<u64>,
+    failed: u64,
+}
+
+impl Done {
+    fn missing(&self, range: &Range<u64>) -> Vec<u64> {
+        range.clone().filter(|scene| !self.scenes.contains(scene)).collect()
+    }
+}

@@ -1,0 +1,184 @@
+//! Studies: how they expand, and what is refused.
+
+use std::path::Path;
+
+use fretwear::loading::Amplitude;
+use fretwear::scene::{Input, Study, Task};
+
+const BASE: &str = r#"
+[indenter.paraboloid]
+radius = "10 mm"
+[half_space]
+grading = 0.0
+modulus = "210 GPa"
+poisson_ratio = 0.3
+[friction.coulomb]
+coefficient = 0.6
+[wear.archard]
+coefficient = "1e-14 1/Pa"
+[loading]
+initial_force = "50 N"
+stick_ratio = 0.7
+tau = 30
+"#;
+
+fn study(text: &str) -> fretwear::Result<Study> {
+    Study::from_texts(text, "study.toml", BASE, Path::new("base.toml"))
+}
+
+fn refusal(text: &str) -> String {
+    study(text).expect_err(text).to_string()
+}
+
+#[test]
+fn the_last_axis_runs_fastest_and_the_samples_faster_still() {
+    let study = study(
+        r#"
+        scene = "base.toml"
+        task = "limit"
+        [[axes]]
+        key = "friction.coulomb.coefficient"
+        values = [0.3, 0.5]
+        [[axes]]
+        keys = ["half_space.grading", "loading.stick_ratio"]
+        rows = [[0.0, 0.9], [0.2, 0.8], [0.4, 0.7]]
+        [sampling]
+        count = 5
+        method = "latin-hypercube"
+        seed = 4
+        [[sampling.variables]]
+        key = "wear.archard.coefficient"
+        distribution = "log-normal"
+        median = "1e-14 1/Pa"
+        factor = 1.5
+        "#,
+    )
+    .unwrap();
+    assert_eq!((study.count(), study.task()), (30, Task::Limit));
+    let inputs = study.inputs(17);
+    // 17 = (1 * 3 + 0) * 5 + 2
+    assert_eq!(inputs[..3], [Input::Number(0.5), Input::Number(0.0), Input::Number(0.9)]);
+    let scene = study.scene(17).unwrap();
+    assert_eq!(scene.friction().coefficient, 0.5);
+    assert_eq!(scene.loading().amplitude, Amplitude::StickRatio(0.9));
+    let Input::Number(sampled) = inputs[3] else { panic!("{inputs:?}") };
+    assert!((scene.wear().coefficient / sampled - 1.0).abs() < 1e-15);
+    // the sample is the same along the axes
+    assert_eq!(study.inputs(2)[3], inputs[3]);
+    assert_ne!(study.inputs(3)[3], inputs[3]);
+    assert_eq!(study.keys().len(), 4);
+}
+
+#[test]
+fn ranges_keep_their_unit_and_meet_their_ends() {
+    let study = study(
+        r#"
+        scene = "base.toml"
+        [[axes]]
+        key = "loading.initial_force"
+        from = "1 N"
+        to = "100 N"
+        count = 3
+        spacing = "geometric"
+        [[axes]]
+        key = "indenter.paraboloid.radius"
+        from = "5 mm"
+        to = "20 mm"
+        count = 4
+        "#,
+    )
+    .unwrap();
+    let of = |scene: u64, key: usize| match study.inputs(scene)[key] {
+        Input::Number(number) => number,
+        Input::Text(ref text) => panic!("{text}"),
+    };
+    let forces = [0, 4, 8].map(|scene| of(scene, 0));
+    assert!(forces[0] == 1.0 && (forces[1] / 10.0 - 1.0).abs() < 1e-14 && forces[2] == 100.0, "{forces:?}");
+    assert_eq!([0, 1, 2, 3].map(|scene| of(scene, 1)), [0.005, 0.01, 0.015, 0.02]);
+    study.scene(11).unwrap();
+}
+
+#[test]
+fn words_may_vary_too() {
+    let study =
+        study("scene = \"base.toml\"\n[[axes]]\nkey = \"numerics.stepper\"\nvalues = [\"implicit\", \"cycle-jump\"]")
+            .unwrap();
+    assert_eq!(study.inputs(1), [Input::Text("cycle-jump".into())]);
+    assert_eq!(study.kinds(), [[false, true]]);
+    study.scene(1).unwrap();
+}
+
+#[test]
+fn the_hash_changes_with_study_and_scene() {
+    let text = "scene = \"base.toml\"\n[[axes]]\nkey = \"friction.coulomb.coefficient\"\nvalues = [0.3]";
+    let one = study(text).unwrap().hash();
+    assert_eq!(one, study(text).unwrap().hash());
+    assert_eq!(one.len(), 64);
+    assert_ne!(one, study(&text.replace("0.3", "0.4")).unwrap().hash());
+    let other = Study::from_texts(text, "study.toml", &BASE.replace("50 N", "51 N"), Path::new("base.toml"));
+    assert_ne!(one, other.unwrap().hash());
+}
+
+#[test]
+fn an_empty_study_is_its_base_scene() {
+    let study = study("scene = \"base.toml\"").unwrap();
+    assert_eq!((study.count(), study.inputs(0)), (1, vec![]));
+    assert_eq!(study.scene(0).unwrap().friction().coefficient, 0.6);
+}
+
+#[test]
+fn mistakes_are_named_with_place_and_cure() {
+    let axis = |rest: &str| format!("scene = \"base.toml\"\n[[axes]]\n{rest}");
+    let sampled = |rest: &str| {
+        format!(
+            "scene = \"base.toml\"\n[sampling]\ncount = 4\n[[sampling.variables]]\nkey = \"wear.archard.coefficient\"\n{rest}"
+        )
+    };
+    for (text, expected) in [
+        ("scene = \"base.toml\"\nsteps = 3".to_string(), "steps is not a key of a study"),
+        (axis("key = \"friction\"\nvalues = [1]"), "is not a key of a scene, such as"),
+        (axis("key = \"a.b\""), "axes[0].from is missing; an axis has values = [...], or from, to and count"),
+        (axis("key = \"a.b\"\nvalues = []"), "axes[0].values = [] is empty"),
+        (axis("key = \"a.b\"\nvalues = [{ x = 1 }]"), "is a table; vary its keys one by one"),
+        (
+            axis("key = \"a.b\"\nfrom = \"1 mm\"\nto = \"2 um\"\ncount = 3"),
+            "has not the unit of axes[0].from, \"mm\"",
+        ),
+        (
+            axis("key = \"a.b\"\nfrom = \"1 furlong\"\nto = \"2 furlong\"\ncount = 3"),
+            "\"furlong\" is no known unit",
+        ),
+        (axis("key = \"a.b\"\nfrom = 0\nto = 1\ncount = 3\nspacing = \"geometric\""), "must be above zero"),
+        (axis("key = \"a.b\"\nfrom = 0\nto = 1\ncount = 1"), "axes[0].count = 1 is outside 2 to 10000000"),
+        (axis("keys = [\"a.b\", \"a.c\"]\nrows = [[1, 2], [3]]"), "has 1 values for 2 keys"),
+        (axis("key = \"a.b\"\nvalues = [1]\n[[axes]]\nkey = \"a.b\"\nvalues = [2]"), "a.b is varied twice"),
+        (
+            axis(
+                "key = \"a.b\"\nfrom = 0\nto = 1\ncount = 10000\n[[axes]]\nkey = \"a.c\"\nfrom = 0\nto = 1\ncount = 10000",
+            ),
+            "expands to 100000000 scenes, more than 10000000",
+        ),
+        (sampled("distribution = \"gaussian\""), "is none of the words it may be"),
+        (sampled("distribution = \"normal\"\nmean = 1"), "a normal distribution has mean and deviation"),
+        (sampled("distribution = \"normal\"\nmean = 1\ndeviation = 0"), "must be above zero"),
+        (
+            sampled("distribution = \"normal\"\nmean = 1\ndeviation = 1\nminimum = 2\nmaximum = 1"),
+            "minimum is not below maximum",
+        ),
+        (sampled("distribution = \"uniform\"\nfrom = 2\nto = 1"), "is not above"),
+        (sampled("distribution = \"log-normal\"\nmedian = 1\nfactor = 0.5"), "is outside (1, inf)"),
+        ("scene = \"base.toml\"\n[output]\nsnapshots = [1]".to_string(), "is outside 0 to 0"),
+        ("scene = \"base.toml\"\n[output]\nsnapshots = \"some\"".to_string(), "is none of the words"),
+    ] {
+        let message = refusal(&text);
+        assert!(message.contains(expected) && message.starts_with("study.toml"), "{text}\n{message}");
+    }
+    let missing = Study::read(Path::new("data/studies/no-such.toml")).unwrap_err().to_string();
+    assert!(missing.contains("there is no such file"), "{missing}");
+    let invalid = study(&axis("key = \"friction.coulomb.coefficient\"\nvalues = [-1]")).unwrap().scene(0);
+    let message = invalid.unwrap_err().to_string();
+    assert!(
+        message.contains("study.toml, scene 0") && message.contains("friction.coulomb.coefficient"),
+        "{message}"
+    );
+}
