@@ -85,7 +85,7 @@
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
 //! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`wear`], [`friction`], [`loading`], [`indenter`], [`half_space`] |
-//! | numerics | [`abel`], [`chebyshev`], [`linear`], [`quadrature`], [`roots`], [`grid`], [`error`] |
+//! | numerics | [`transforms`], [`abel`], [`chebyshev`], [`linear`], [`quadrature`], [`roots`], [`grid`], [`error`] |
 //!
 //! SI units everywhere, nothing is scaled behind the scenes; the library neither prints nor exits.
 
@@ -112,6 +112,7 @@ pub mod slip_depth;
 pub mod snapshot;
 pub mod stepper;
 pub mod stick_slip;
+pub mod transforms;
 pub mod wear;
 pub mod wear_map;
 
