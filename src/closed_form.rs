@@ -18,10 +18,12 @@
 //! | (19) | equivalent profile `g` | [`Indenter::equivalent_profile`](crate::indenter::Indenter::equivalent_profile) |
 //! | (22) | normal force | [`EquivalentProfile::load_integral`](crate::indenter::EquivalentProfile::load_integral) |
 
+mod hypergeometric;
 mod limiting_shape;
 mod wear_integral;
 mod wear_volume;
 
+pub use hypergeometric::{Claimed, HypergeometricLimit, gauss_hypergeometric};
 pub use limiting_shape::LimitingShape;
 pub use wear_volume::{PowerLawVolume, gibson_wear_volume};
 

@@ -44,6 +44,11 @@ pub struct LimitingShape {
 }
 
 impl LimitingShape {
+    /// Relative error claimed for `a∞ - c`, `a∞ - a0`, `ΔV` and the largest depth, and for every depth relative to the largest.
+    ///
+    /// It is that of the evaluation: for the doubles given, which next to full sliding hold few digits of `d - q_c`.
+    pub const CLAIMED_ERROR: f64 = 1e-12;
+
     /// Limiting shape after slip down to the spring compression `q_c`.
     ///
     /// # Arguments
