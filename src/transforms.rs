@@ -73,6 +73,23 @@ impl Transforms {
         Ok(transforms)
     }
 
+    /// The same with another relative error than 1e-13 at which refinement ends: for closures that are less accurate themselves, which would
+    /// be refined in vain, or for speed.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] if it is not in [1e-15, 1).
+    pub fn with_tolerance(mut self, tolerance: f64) -> Result<Self> {
+        if !(1e-15..1.0).contains(&tolerance) {
+            return Err(Error::OutOfRange {
+                name: "tolerance of a transform",
+                value: tolerance,
+                range: "[1e-15, 1)",
+            });
+        }
+        self.adaptive.tolerance = tolerance;
+        Ok(self)
+    }
+
     /// Grading `k`.
     pub fn grading(&self) -> f64 {
         self.grading
@@ -89,8 +106,7 @@ impl Transforms {
     /// * `x` -- m, `x >= 0`
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a radius that is negative or not finite; [`Error::NotConverged`] if a relative error of 1e-13 is out of
-    /// reach.
+    /// [`Error::OutOfRange`] for a radius that is negative or not finite; [`Error::NotConverged`] if the tolerance is out of reach.
     pub fn equivalent_profile(&self, slope: impl Fn(f64) -> f64, x: f64) -> Result<f64> {
         if check_radius(x)? == 0.0 {
             return Ok(0.0);

@@ -178,11 +178,12 @@ fn both_ways_agree(count: usize, seed: u64) -> usize {
             }
         };
         let (growth, width) = (shape.contact_growth_limit(), shape.slip_width_limit());
-        for value in
-            [growth, shape.slip_width_initial(), width - growth, shape.wear_volume(), shape.wear_depth_max()]
-        {
+        for value in [growth, shape.slip_width_initial(), shape.wear_volume(), shape.wear_depth_max()] {
             assert!(value > 0.0 && value.is_finite(), "{text}: {value:e}");
         }
+        // The two differ by a0 - c, which beside a∞ may be below the last bit.
+        let held = shape.slip_width_initial() > LimitingShape::CLAIMED_ERROR * width;
+        assert!(width > growth || !held, "{text}: {width:e} and {growth:e}");
         let c = shape.stick_radius();
         let beyond = place * width;
         let offset = beyond * (2.0 * c + beyond);
@@ -208,7 +209,7 @@ fn both_ways_agree(count: usize, seed: u64) -> usize {
         ];
         for ((value, error, other), worst) in pairs.into_iter().zip(&mut apart) {
             let ratio = (value - other.value).abs() / (error + other.error);
-            if !(ratio <= worst.0) {
+            if ratio.is_nan() || ratio > worst.0 {
                 *worst = (ratio, format!("{text}: {value:e} and {:e} ± {:e}", other.value, other.error));
             }
         }

@@ -8,10 +8,10 @@
 //!      = 1 - (r/a0)^n/κ - (sin πν/π) y^μ z^ν [F(1, 1+ν; z)/ν - (c/a0)^n F(1+m, 1+ν+m; z)/(ν+m)]           z <  1/2
 //! ```
 //! with `S = sin(πμ)/(πμ)`: the Γ functions of the regularised incomplete beta functions `I` cancel against those in `κ`, so nothing can
-//! overflow, and every series has positive terms. The differences are what costs digits: at the amplitude `ε` of full sliding some
-//! `log10(1/ε)` of them in the depth and the volume, and as many again by `a∞`; as `k → -1` the depth itself becomes small beside the
-//! terms. [`LimitingShape`](super::LimitingShape) has none of that; here every value comes with a bound of its own error, so that the two
-//! can be compared.
+//! overflow, and every series has positive terms. The differences are what costs digits: at the fraction `ε` of full sliding some
+//! `log10(1/ε)` of them in the depth, the volume and `a∞ - a0`, in the last one `log10(1/μ)` more as `k → 1`; as `k → -1` the depth becomes
+//! small beside the terms. [`LimitingShape`](super::LimitingShape) has none of that; here every value comes with a bound of its own error,
+//! so that the two can be compared. Against tables of 17 digits the error is at most 0.3 of the bound, typically 0.01 to 0.04 of it.
 //!
 //! The series are our own: of the crates with a 2F1 or an incomplete beta function none states an error bound, and the best was good to 1e-12.
 
