@@ -311,6 +311,75 @@ fn profiles_go_there_and_back_for_gradings_next_to_the_ends() {
 }
 
 #[test]
+fn power_laws_of_any_exponent_and_grading_agree_with_their_closed_forms() {
+    let mut worst = Worst::default();
+    let (mut refused, mut count) = (0, 0);
+    for n in [0.1, 0.13, 0.3, 0.7, 1.0, 2.3, 5.0, 11.0, 20.0] {
+        for k in [-0.9999, -0.997, -0.8, -0.3, 0.0, 0.3, 0.8, 0.997, 0.9999] {
+            let transforms = Transforms::new(k, &[]).unwrap();
+            let indenter = Indenter::power_law(1.0, n).unwrap();
+            let profile = indenter.equivalent_profile(k).unwrap();
+            // Micrometres to kilometres.
+            for r in [1e-6, 0.3, 1e3] {
+                let pairs = [
+                    (
+                        "g",
+                        transforms.equivalent_profile(|r| indenter.profile_derivative(r), r),
+                        profile.value(r),
+                    ),
+                    ("f", transforms.profile(|x| profile.value(x), r), indenter.profile(r)),
+                    (
+                        "F_N/c_N",
+                        transforms.load(|x| profile.value(x), profile.value(r), r),
+                        profile.load_integral(r),
+                    ),
+                ];
+                for (quantity, found, expected) in pairs {
+                    count += 1;
+                    match found {
+                        Ok(found) => worst.note(
+                            "power laws",
+                            quantity,
+                            relative(found, expected),
+                            format!("n = {n}, k = {k}, r = {r}"),
+                        ),
+                        Err(error) => {
+                            println!("n = {n}, k = {k}, r = {r}, {quantity}: {error}");
+                            refused += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{refused} of {count} refused");
+    worst.below(1e-12);
+    assert_eq!(refused, 0);
+}
+
+#[test]
+fn pressures_tend_to_local_ones_at_both_ends_of_the_gradings() {
+    // k → 1: p → (c_N/π)(d - f).  k → -1: the kernel ν (x²-r²)^(ν-1) 2r becomes a delta function, p → (c_N/π) g'(r)/(2rν).
+    let (paraboloid, a) = (Indenter::paraboloid(1.0).unwrap(), 1.2);
+    for r in [0.1, 0.6, 1.1] {
+        let error = |k: f64| {
+            let transforms = Transforms::new(k, &[]).unwrap();
+            let profile = paraboloid.equivalent_profile(k).unwrap();
+            let found = transforms.pressure(|x| profile.derivative(x), r, a).unwrap();
+            let local = match k > 0.0 {
+                true => (profile.value(a) - paraboloid.profile(r)) / PI,
+                false => profile.derivative(r) / (r * (1.0 + k)) / PI,
+            };
+            relative(found, local)
+        };
+        for (coarse, fine) in [(0.999, 0.9999), (-0.999, -0.9999)] {
+            let order = (error(coarse) / error(fine)).log10();
+            assert!((order - 1.0).abs() < 0.01, "k = {fine}, r = {r}: order {order}, {:e}", error(fine));
+        }
+    }
+}
+
+#[test]
 fn the_worn_profile_is_the_transform_of_its_jumping_equivalent() {
     let mut worst = Worst::default();
     for (n, k, ratio) in
