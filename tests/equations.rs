@@ -36,6 +36,22 @@ fn indentation_and_contact_radius_of_power_laws_are_inverse() {
 }
 
 #[test]
+fn the_stick_radius_keeps_its_digits_however_pointed_or_flat_the_profile() {
+    let mut worst = Worst::default();
+    for n in [0.1, 0.2, 0.5, 1.0, 2.0, 20.0] {
+        for q in [1e-12, 1e-3, 0.1, 0.3, 0.49, 0.5, 0.51, 0.9, 1.0 - 1e-10] {
+            let shape = LimitingShape::new(&unit_power_law(n, 0.3), 0.3, 1.0, q).unwrap();
+            let logarithm = (-q).ln_1p() / n;
+            let place = [format!("n = {n}"), format!("q = {q}")];
+            worst.note("c", relative(shape.stick_radius(), logarithm.exp()), &place);
+            worst.note("a0 - c", relative(shape.slip_width_initial(), -logarithm.exp_m1()), &place);
+        }
+    }
+    worst.below("c", 1e-13);
+    worst.below("a0 - c", 1e-13);
+}
+
+#[test]
 fn the_paraboloid_is_the_power_law_of_exponent_two() {
     let (radius, d, compression) = (0.02, 3e-6, 4e-7);
     for k in GRADINGS {
