@@ -75,7 +75,7 @@ impl Shape {
 
     /// Slope of the equivalent profile up to `a`: the closed form, or an interpolant of its smooth factor for the sake of speed.
     fn fast_slope(&self, transforms: &Transforms, a: f64) -> Box<dyn Fn(f64) -> f64> {
-        if let Some(indenter) = self.indenter {
+        if let Some(indenter) = &self.indenter {
             let profile = indenter.equivalent_profile(transforms.grading()).unwrap();
             return Box::new(move |x| profile.derivative(x));
         }
@@ -163,7 +163,7 @@ fn equivalent_profiles_of_any_shape_agree_with_the_table() {
         worst.note(&name, "f", relative((shape.profile)(x), f), place.clone());
         worst.note(&name, "g", relative(shape.equivalent(&transforms, x), g), place.clone());
         worst.note(&name, "d", relative(shape.equivalent(&transforms, a), d), place.clone());
-        if let Some(indenter) = shape.indenter {
+        if let Some(indenter) = &shape.indenter {
             let exact = indenter.equivalent_profile(k).unwrap().derivative(x);
             worst.note(&name, "g'", relative(shape.equivalent_slope(&transforms, x), exact), place);
         }
@@ -184,7 +184,7 @@ fn profiles_from_equivalent_profiles_agree_with_the_table() {
             let found = transforms.profile(|x| shape.equivalent(&transforms, x), x).unwrap_or(f64::NAN);
             worst.note(&name, "f from g by Eq. (19)", relative(found, f), place.clone());
         }
-        if let Some(indenter) = shape.indenter {
+        if let Some(indenter) = &shape.indenter {
             let profile = indenter.equivalent_profile(k).unwrap();
             let found = transforms.profile(|x| profile.value(x), x).unwrap_or(f64::NAN);
             worst.note(&name, "f from the closed form of g", relative(found, f), place);
@@ -201,7 +201,7 @@ fn pressures_agree_with_the_table() {
         let transforms = shape.transforms(k);
         let place = format!("k = {k}, x = {x}");
         let slope = |x: f64| shape.equivalent_slope(&transforms, x);
-        let found = match shape.indenter {
+        let found = match &shape.indenter {
             Some(_) => transforms.pressure(shape.fast_slope(&transforms, a), x, a),
             None => transforms.pressure(slope, x, a),
         };
@@ -217,7 +217,7 @@ fn normal_forces_agree_with_the_table() {
     for (name, [k, _, _, _, a, d, _, load, _]) in rows() {
         let shape = Shape::named(&name);
         let transforms = shape.transforms(k);
-        let found = match shape.indenter {
+        let found = match &shape.indenter {
             Some(indenter) => {
                 let profile = indenter.equivalent_profile(k).unwrap();
                 transforms.load(|x| profile.value(x), d, a)

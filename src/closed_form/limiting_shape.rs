@@ -13,8 +13,8 @@ use std::f64::consts::PI;
 ///
 /// Lengths in m. Every width and depth is computed without cancellation, so that the smallest amplitudes keep their digits. Against
 /// tables of 17 digits (`data/reference`) the relative error of `a∞ - c`, `a∞ - a0`, `ΔV` and the largest depth is at most
-/// * 5e-15 for 0.05 <= c/a0 <= 0.999999, -0.99 <= k <= 0.9999, n <= 10;
-/// * 2e-13 in the corners of -0.9999 <= k <= 0.9999, 0.1 <= n <= 20 and amplitudes from 1e-10 of full sliding to 1 - 1e-10 of it, where
+/// * 1.3e-14 for 0.05 <= c/a0 <= 0.999999, -0.99 <= k <= 0.9999, n <= 10;
+/// * 1.3e-13 in the corners of -0.9999 <= k <= 0.9999, 0.1 <= n <= 20 and amplitudes from 1e-10 of full sliding to 1 - 1e-10 of it, where
 ///   c/a0 is as small as 1e-100;
 /// * 8e-13 for amplitudes from 1e-14 μ_f d up at k = -0.9999, where the rounding of `M U/μ_f` next to full sliding is what is seen, and
 ///   1e-15 if the stick radius is given instead.
