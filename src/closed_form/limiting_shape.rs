@@ -14,13 +14,11 @@ use std::f64::consts::PI;
 /// Lengths in m. Every width and depth is computed without cancellation, so that the smallest amplitudes keep their digits. Against
 /// tables of 17 digits (`data/reference`) the relative error of `a∞ - c`, `a∞ - a0`, `ΔV` and the largest depth is at most
 /// * 1.3e-14 for 0.05 <= c/a0 <= 0.999999, -0.99 <= k <= 0.9999, n <= 10;
-/// * 1.3e-13 in the corners of -0.9999 <= k <= 0.9999, 0.1 <= n <= 20 and amplitudes from 1e-10 of full sliding to 1 - 1e-10 of it, where
-///   c/a0 is as small as 1e-100;
-/// * 8e-13 for amplitudes from 1e-14 μ_f d up at k = -0.9999, where the rounding of `M U/μ_f` next to full sliding is what is seen, and
-///   1e-15 if the stick radius is given instead.
+/// * 1.3e-13 for -0.9999 <= k <= 0.9999, 0.1 <= n <= 20 and 1e-10 to 1 - 1e-10 of full sliding, with c/a0 down to 1e-100;
+/// * 8e-13 for amplitudes from 1e-14 μ_f d up at k = -0.9999, where the rounding of `M U/μ_f` next to full sliding is what is seen.
 ///
-/// Against two hundred nodes it is 3e-13 for c/a0 down to 1e-9, and 4e-12 at n = 60. Claimed is [`LimitingShape::CLAIMED_ERROR`], with
-/// which [`HypergeometricLimit`](super::HypergeometricLimit), an independent way, agrees at a million random places of that range.
+/// Against two hundred nodes it is 3e-13 for c/a0 down to 1e-9, and 4e-12 at n = 60. [`HypergeometricLimit`](super::HypergeometricLimit),
+/// an independent way, agrees to both claims at a million random places of the second range.
 ///
 /// The rows of a cone or a paraboloid give their limit to 2e-13. For other tables the integrals take two hundred nodes across the kinks: against
 /// Eq. (3) by brute force the depth is good to 8e-10 of the largest for a hundred smooth rows, to 2e-5 for the roughest tried (k = -0.9).
@@ -49,9 +47,8 @@ pub struct LimitingShape {
 }
 
 impl LimitingShape {
-    /// Relative error claimed for `a∞ - c`, `a∞ - a0`, `ΔV` and the largest depth, and for every depth relative to the largest.
-    ///
-    /// It is that of the evaluation: for the doubles given, which next to full sliding hold few digits of `d - q_c`.
+    /// Relative error claimed for `a∞ - c`, `a∞ - a0`, `ΔV` and the largest depth, and for every depth relative to the largest: of spheres
+    /// and power laws with 0.1 <= n <= 20, for the doubles given, which next to full sliding hold few digits of `d - q_c`. Not for tables.
     pub const CLAIMED_ERROR: f64 = 1e-12;
 
     /// Limiting shape after slip down to the spring compression `q_c`.
