@@ -6,6 +6,7 @@
 //!
 //! | equation | content | function |
 //! |---|---|---|
+//! | (1) | grading `E = E0 (z/z0)^k` | [`modulus_at_depth`](crate::half_space::modulus_at_depth) |
 //! | (2) | limiting equivalent profile `g∞` | [`LimitingShape::equivalent_profile`] |
 //! | (3) | limiting wear depth `Δf(r)` | [`LimitingShape::wear_depth`] |
 //! | (4) | limiting worn volume `ΔV` | [`LimitingShape::wear_volume`] |

@@ -73,7 +73,7 @@
 //! | (14) | limiting annulus at small amplitudes | [`closed_form::relative_limit_width`] |
 //! | (15) | worn volume at small amplitudes | [`closed_form::small_amplitude_wear_volume`] |
 //! | (16), (17), (18) | paraboloid | [`closed_form::paraboloid_contact_radius`], [`closed_form::paraboloid_stick_radius`], [`closed_form::paraboloid_relative_slip_width`], [`closed_form::paraboloid_small_amplitude_wear_volume`] |
-//! | (19) | equivalent profile g(x): power laws and spheres; any profile | [`indenter::EquivalentProfile`], [`transforms::Transforms::equivalent_profile`] |
+//! | (19) | equivalent profile g(x): power laws, spheres, tables; any profile | [`indenter::EquivalentProfile`], [`transforms::Transforms::equivalent_profile`] |
 //! | (20) | springs to profile, slip to surface: on a mesh; any profile | [`abel::AbelOperators::profile`], [`transforms::Transforms::profile`] |
 //! | (21), corrected | springs to pressure: on a mesh; any profile | [`abel::AbelOperators::pressure`], [`transforms::Transforms::pressure`] |
 //! | (22) | normal force | [`indenter::EquivalentProfile::load_integral`], [`transforms::Transforms::load`], [`model::Model::normal_force`] |
