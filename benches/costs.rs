@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use fretwear::abel::AbelOperators;
-use fretwear::closed_form::LimitingShape;
+use fretwear::closed_form::{HypergeometricLimit, LimitingShape};
 use fretwear::contact::InitialContact;
 use fretwear::grid::{Clustering, slip_annulus};
 use fretwear::half_space::Poisson;
@@ -14,6 +14,7 @@ use fretwear::run::Run;
 use fretwear::scene::Scene;
 use fretwear::simulation::{End, Plan, Simulation};
 use fretwear::stepper::{Implicit, Stepper};
+use fretwear::transforms::Transforms;
 use fretwear::wear_map::{Control, Medium, OptimumCurve, WearMap};
 
 const SPRINGS: [usize; 5] = [50, 100, 200, 400, 800];
@@ -97,6 +98,17 @@ fn closed_form(criterion: &mut Criterion) {
     let contact = contact();
     criterion.bench_function("closed-form limit", |bench| {
         bench.iter(|| LimitingShape::from_contact(black_box(&contact)));
+    });
+    criterion.bench_function("closed-form limit by series", |bench| {
+        bench.iter(|| {
+            let limit = HypergeometricLimit::new(black_box(2.0), 0.0, 0.35)?;
+            limit.wear_volume(limit.growth()?)
+        });
+    });
+    let transforms = Transforms::new(0.3, &[0.25]).expect("in range");
+    let truncated_cone = |r: f64| if r < 0.25 { 0.0 } else { 1.0 };
+    criterion.bench_function("equivalent profile of a truncated cone at one radius", |bench| {
+        bench.iter(|| transforms.equivalent_profile(truncated_cone, black_box(0.8)));
     });
 }
 

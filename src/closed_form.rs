@@ -6,23 +6,41 @@
 //!
 //! | equation | content | function |
 //! |---|---|---|
+//! | (1) | grading `E = E0 (z/z0)^k` | [`modulus_at_depth`](crate::half_space::modulus_at_depth) |
 //! | (2) | limiting equivalent profile `g∞` | [`LimitingShape::equivalent_profile`] |
 //! | (3) | limiting wear depth `Δf(r)` | [`LimitingShape::wear_depth`] |
 //! | (4) | limiting worn volume `ΔV` | [`LimitingShape::wear_volume`] |
-//! | (5), (6) | power law, its factor `κ` | [`Indenter::power_law`](crate::indenter::Indenter::power_law), [`power_law_factor`](crate::indenter::power_law_factor) |
-//! | (7), (8) | indentation and contact radius | [`EquivalentProfile::value`](crate::indenter::EquivalentProfile::value), [`EquivalentProfile::radius_at`](crate::indenter::EquivalentProfile::radius_at) |
+//! | (5) | power law `f = A r^n` | [`power_law_profile`] |
+//! | (6) | its factor `κ` | [`power_law_factor`](crate::indenter::power_law_factor) |
+//! | (7) | indentation `d = κ A a^n` | [`power_law_indentation`] |
+//! | (8) | contact radius | [`power_law_contact_radius`] |
+//! | (9) | limiting wear depth of a power law, by series | [`HypergeometricLimit::wear_depth`] |
+//! | (10) | Gauss's hypergeometric function | [`gauss_hypergeometric`] |
 //! | (11) | edge of stick `g0(c) = d - M U/μ_f` | [`slip_compression`], [`stick_radius`] |
 //! | (12) | `M` under elastic similarity | [`similar_stiffness_ratio`] |
-//! | (13)–(15) | small amplitudes | [`relative_slip_width`], [`relative_limit_width`], [`small_amplitude_wear_volume`] |
-//! | (16)–(18) | paraboloid | [`paraboloid_contact_radius`], [`paraboloid_stick_radius`] |
+//! | (13) | small parameter `ε_a` | [`relative_slip_width`] |
+//! | (14) | width of the limiting annulus at small amplitudes | [`relative_limit_width`] |
+//! | (15) | worn volume at small amplitudes | [`small_amplitude_wear_volume`] |
+//! | (16)–(18) | paraboloid | [`paraboloid_contact_radius`], [`paraboloid_stick_radius`], [`paraboloid_relative_slip_width`], [`paraboloid_small_amplitude_wear_volume`] |
 //! | (19) | equivalent profile `g` | [`Indenter::equivalent_profile`](crate::indenter::Indenter::equivalent_profile) |
-//! | (22) | normal force | [`EquivalentProfile::load_integral`](crate::indenter::EquivalentProfile::load_integral) |
+//! | (22) | normal force | [`EquivalentProfile::load_integral`](crate::indenter::EquivalentProfile::load_integral), [`paraboloid_normal_force`] |
+//!
+//! Equations (19)–(22) for any profile are in [`transforms`](crate::transforms).
 
+mod hypergeometric;
 mod limiting_shape;
+mod paraboloid;
+mod power_law;
 mod wear_integral;
 mod wear_volume;
 
+pub use hypergeometric::{Claimed, HypergeometricLimit, gauss_hypergeometric};
 pub use limiting_shape::LimitingShape;
+pub use paraboloid::{
+    paraboloid_contact_radius, paraboloid_normal_force, paraboloid_relative_slip_width,
+    paraboloid_small_amplitude_wear_volume, paraboloid_stick_radius,
+};
+pub use power_law::{power_law_contact_radius, power_law_indentation, power_law_profile};
 pub use wear_volume::{PowerLawVolume, gibson_wear_volume};
 
 pub use crate::half_space::similar_stiffness_ratio;
@@ -93,22 +111,4 @@ pub fn small_amplitude_wear_volume(
         * indentation
         * leading
         * relative_slip_width.powf(1.0 + alpha)
-}
-
-/// Contact radius of a paraboloid, m: part of [S, Eqs. (16)–(18)].
-///
-/// ```text
-/// a0 = √((1+k) R d)
-/// ```
-pub fn paraboloid_contact_radius(grading: f64, radius: f64, indentation: f64) -> f64 {
-    ((1.0 + grading) * radius * indentation).sqrt()
-}
-
-/// Stick radius of a paraboloid, m: part of [S, Eqs. (16)–(18)].
-///
-/// ```text
-/// c = √((1+k) R (d - M U/μ_f))
-/// ```
-pub fn paraboloid_stick_radius(grading: f64, radius: f64, indentation: f64, slip_compression: f64) -> f64 {
-    paraboloid_contact_radius(grading, radius, indentation - slip_compression)
 }

@@ -174,6 +174,26 @@ impl HalfSpace {
     }
 }
 
+/// Modulus at a depth, Pa: the law of grading [S, Eq. (1)].
+///
+/// ```text
+/// E(z) = E0 (z/z0)^k
+/// ```
+///
+/// # Arguments
+/// * `grading` -- `k`, in (-1, 1)
+/// * `modulus` -- `E0`, Pa
+/// * `reference_depth` -- `z0`, m
+/// * `depth` -- `z`, m
+///
+/// # Examples
+/// ```
+/// assert_eq!(fretwear::half_space::modulus_at_depth(0.5, 100e9, 1e-3, 4e-3), 200e9);
+/// ```
+pub fn modulus_at_depth(grading: f64, modulus: f64, reference_depth: f64, depth: f64) -> f64 {
+    modulus * (depth / reference_depth).powf(grading)
+}
+
 /// Stiffness ratio under elastic similarity, `M = 2/((1+k)(3+k))` [S, Eq. (12), where `ν = 1/(2+k)` is implied].
 ///
 /// Outside (-1, 1) the number has no meaning.

@@ -57,19 +57,26 @@
 //!
 //! | equation of \[S\] | content | function |
 //! |---|---|---|
-//! | (2) | limiting equivalent profile `g∞` | [`closed_form::LimitingShape::equivalent_profile`] |
-//! | (3), (9) | limiting wear depth `Δf(r)`; (9) is (3) for a power law | [`closed_form::LimitingShape::wear_depth`] |
-//! | (4) | limiting worn volume; worn volume of a state | [`closed_form::LimitingShape::wear_volume`], [`model::Model::wear_volume`] |
-//! | (5), (6) | power law, its factor `κ` | [`indenter::Indenter::power_law`], [`indenter::power_law_factor`] |
-//! | (7), (8) | indentation and contact radius | [`indenter::EquivalentProfile::value`], [`indenter::EquivalentProfile::radius_at`] |
+//! | (1) | grading E = E0 (z/z0)^k | [`half_space::modulus_at_depth`] |
+//! | (2) | limiting equivalent profile | [`closed_form::LimitingShape::equivalent_profile`] |
+//! | (3) | limiting wear depth | [`closed_form::LimitingShape::wear_depth`] |
+//! | (4) | worn volume: limit, state | [`closed_form::LimitingShape::wear_volume`], [`model::Model::wear_volume`] |
+//! | (5) | power law | [`closed_form::power_law_profile`] |
+//! | (6) | its factor κ | [`indenter::power_law_factor`] |
+//! | (7) | indentation | [`closed_form::power_law_indentation`] |
+//! | (8) | contact radius | [`closed_form::power_law_contact_radius`] |
+//! | (9) | (3) for a power law, by series | [`closed_form::HypergeometricLimit::wear_depth`] |
+//! | (10) | Gauss's hypergeometric function | [`closed_form::gauss_hypergeometric`] |
 //! | (11) | edge of stick | [`stick_slip::slip_compression`], [`stick_slip::stick_radius`] |
-//! | (12) | stiffness ratio under elastic similarity | [`half_space::similar_stiffness_ratio`] |
-//! | (13), (14), (15) | small amplitudes | [`closed_form::relative_slip_width`], [`closed_form::relative_limit_width`], [`closed_form::small_amplitude_wear_volume`] |
-//! | (16), (17), (18) | paraboloid | [`closed_form::paraboloid_contact_radius`], [`closed_form::paraboloid_stick_radius`] |
-//! | (19) | equivalent profile `g(x)` | [`indenter::Indenter::equivalent_profile`], [`indenter::EquivalentProfile`] |
-//! | (20) | springs to profile, slip to surface | [`abel::AbelOperators::profile`] |
-//! | (21), corrected | springs to pressure | [`abel::AbelOperators::pressure`] |
-//! | (22) | normal force | [`indenter::EquivalentProfile::load_integral`], [`model::Model::normal_force`] |
+//! | (12) | M under elastic similarity | [`half_space::similar_stiffness_ratio`] |
+//! | (13) | small parameter ε_a | [`closed_form::relative_slip_width`] |
+//! | (14) | limiting annulus at small amplitudes | [`closed_form::relative_limit_width`] |
+//! | (15) | worn volume at small amplitudes | [`closed_form::small_amplitude_wear_volume`] |
+//! | (16), (17), (18) | paraboloid | [`closed_form::paraboloid_contact_radius`], [`closed_form::paraboloid_stick_radius`], [`closed_form::paraboloid_relative_slip_width`], [`closed_form::paraboloid_small_amplitude_wear_volume`] |
+//! | (19) | equivalent profile g(x): power laws, spheres, tables; any profile | [`indenter::EquivalentProfile`], [`transforms::Transforms::equivalent_profile`] |
+//! | (20) | springs to profile, slip to surface: on a mesh; any profile | [`abel::AbelOperators::profile`], [`transforms::Transforms::profile`] |
+//! | (21), corrected | springs to pressure: on a mesh; any profile | [`abel::AbelOperators::pressure`], [`transforms::Transforms::pressure`] |
+//! | (22) | normal force | [`indenter::EquivalentProfile::load_integral`], [`transforms::Transforms::load`], [`model::Model::normal_force`] |
 //!
 //! Equation (21) as printed has a factor `x^k` too many, with which forces do not balance; the library uses it without and takes pressure
 //! as positive.
@@ -85,7 +92,7 @@
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
 //! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`wear`], [`friction`], [`loading`], [`indenter`], [`half_space`] |
-//! | numerics | [`abel`], [`chebyshev`], [`linear`], [`quadrature`], [`roots`], [`grid`], [`error`] |
+//! | numerics | [`transforms`], [`abel`], [`chebyshev`], [`linear`], [`quadrature`], [`roots`], [`grid`], [`error`] |
 //!
 //! SI units everywhere, nothing is scaled behind the scenes; the library neither prints nor exits.
 
@@ -113,6 +120,7 @@ pub mod snapshot;
 pub mod stepper;
 pub mod stick_slip;
 pub mod sweep;
+pub mod transforms;
 pub mod wear;
 pub mod wear_map;
 

@@ -103,9 +103,12 @@ pub fn stick_logarithm(
     contact_radius: f64,
     slip_compression: f64,
 ) -> Result<f64> {
+    let direct = || Ok((contact_radius / stick_radius(profile, indentation, slip_compression)?).ln());
     if slip_compression > 0.5 * indentation {
-        return Ok((contact_radius / stick_radius(profile, indentation, slip_compression)?).ln());
+        return direct();
     }
     let drop = profile.radius_squared_drop(contact_radius, slip_compression);
-    Ok(-0.5 * (-drop / (contact_radius * contact_radius)).ln_1p())
+    let fraction = drop / (contact_radius * contact_radius);
+    // A pointed profile (n << 1) loses nearly all of its radius well before half of the indentation.
+    if fraction > 0.5 { direct() } else { Ok(-0.5 * (-fraction).ln_1p()) }
 }

@@ -107,8 +107,7 @@ pub fn sweep(
 ) -> Result<SweepOutcome> {
     let started = Instant::now();
     // First of all: a signal during the preparations is answered like any other.
-    let shared =
-        Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
+    let shared = Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
     let (shard, shards) = (options.shard, options.shards);
     if !(1..=study.count()).contains(&shards) || shard >= shards {
         return Err(Error::Inconsistent {

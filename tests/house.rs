@@ -23,7 +23,7 @@ const STOREYS: [(&str, &[&str]); 6] = [
             "half_space",
         ],
     ),
-    ("numerics", &["abel", "chebyshev", "linear", "quadrature", "roots", "grid", "error"]),
+    ("numerics", &["transforms", "abel", "chebyshev", "linear", "quadrature", "roots", "grid", "error"]),
 ];
 
 fn source() -> PathBuf {
