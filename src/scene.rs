@@ -51,7 +51,7 @@ mod study;
 mod unit;
 
 pub use map::MapScene;
-pub use study::{Input, KeptSnapshots, Study, Task};
+pub use study::{Input, KeptSnapshots, MOST_SCENES, Study, Task};
 
 /// Most snapshots a scene may ask for.
 pub const MOST_SNAPSHOTS: usize = 100_000;

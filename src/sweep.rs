@@ -151,7 +151,6 @@ pub fn sweep(
     if let Some(progress) = progress {
         progress.begin(missing.len() as u64);
     }
-    let shared = Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
     let worker = Worker { study, folder: &folder, shared: &shared, progress };
     let collector = Collector::new(&folder, &schema, options.checkpoint_interval);
     let finished = pool.install(|| {
