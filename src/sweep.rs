@@ -42,6 +42,9 @@ use rows::{Row, Schema};
 /// Kept runs in memory after which a part is written.
 const MOST_RUNS: usize = 100;
 
+/// Rows in memory after which a part is written.
+const MOST_ROWS: usize = 20_000;
+
 /// Which part of a study is done, and how.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepOptions {
@@ -151,7 +154,7 @@ pub fn sweep(
     if let Some(progress) = progress {
         progress.begin(missing.len() as u64);
     }
-    let worker = Worker { study, folder: &folder, shared: &shared, progress };
+    let worker = Worker { study, schema: &schema, folder: &folder, shared: &shared, progress };
     let collector = Collector::new(&folder, &schema, options.checkpoint_interval);
     let finished = pool.install(|| {
         missing.par_iter().try_for_each(|&scene| match worker.row(scene) {
@@ -183,9 +186,13 @@ fn validate(study: &Study, scenes: &[u64]) -> Result<()> {
     }
 }
 
+/// Texts and numbers of a row.
+type Results = (Vec<String>, Vec<f64>);
+
 /// Does scenes.
 struct Worker<'a> {
     study: &'a Study,
+    schema: &'a Schema,
     folder: &'a Folder,
     shared: &'a Shared,
     progress: Option<&'a SceneProgress>,
@@ -197,16 +204,27 @@ impl Worker<'_> {
         if self.shared.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        let inputs = self.study.inputs(scene);
         // A fault of the program in one scene must not cost the others.
-        let result = catch_unwind(AssertUnwindSafe(|| self.results(scene)))
-            .unwrap_or_else(|_| Ok(Err("the program panicked; please report this scene".into())));
-        let row = match result? {
-            Ok(None) => return Ok(None),
-            Ok(Some((results, run))) => Row { scene, inputs, results, run, error: None },
-            Err(error) => {
-                Row { scene, inputs, results: serde_json::Value::Null, run: None, error: Some(error) }
-            }
+        let done = catch_unwind(AssertUnwindSafe(|| match self.study.task() {
+            Task::Limit => self.limit(scene).map(Some),
+            Task::Run => self.run(scene),
+        }));
+        let row = |(texts, numbers): Results, run: Option<RunFile>, error: Option<String>| Row {
+            scene,
+            inputs: self.study.inputs(scene),
+            numbers,
+            texts,
+            run,
+            error,
+        };
+        let nothing = || self.schema.results(None::<&RunReport>);
+        let row = match done {
+            Ok(Ok(None)) => return Ok(None),
+            Ok(Ok(Some((results, run)))) => row(results, run, None),
+            // Concerns all scenes: the disk is full, a directory has vanished.
+            Ok(Err(error @ Error::File { .. })) => return Err(error),
+            Ok(Err(error)) => row(nothing(), None, Some(error.to_string())),
+            Err(_) => row(nothing(), None, Some("the program panicked; please report this scene".into())),
         };
         if let Some(progress) = self.progress {
             progress.done(row.error.is_some());
@@ -214,28 +232,13 @@ impl Worker<'_> {
         Ok(Some(row))
     }
 
-    /// Results as JSON, or what went wrong in the scene; the outer error concerns all scenes.
-    #[expect(clippy::type_complexity, reason = "two kinds of errors and an interruption")]
-    fn results(
-        &self,
-        scene: u64,
-    ) -> Result<std::result::Result<Option<(serde_json::Value, Option<RunFile>)>, String>> {
-        let done = match self.study.task() {
-            Task::Limit => self
-                .study
-                .scene(scene)
-                .and_then(|it| LimitReport::new(&it, Some(&[])))
-                .map(|report| Some((as_json(&report), None))),
-            Task::Run => self.run(scene),
-        };
-        match done {
-            Ok(done) => Ok(Ok(done)),
-            Err(error @ Error::File { .. }) => Err(error),
-            Err(error) => Ok(Err(error.to_string())),
-        }
+    fn limit(&self, scene: u64) -> Result<(Results, Option<RunFile>)> {
+        let report = LimitReport::new(&self.study.scene(scene)?, Some(&[]))?;
+        Ok((self.schema.results(Some(&report)), None))
     }
 
-    fn run(&self, scene: u64) -> Result<Option<(serde_json::Value, Option<RunFile>)>> {
+    /// None if a signal came first.
+    fn run(&self, scene: u64) -> Result<Option<(Results, Option<RunFile>)>> {
         let own = self.folder.checkpoint(scene);
         let run = self.folder.checkpoints(scene).iter().find_map(|from| {
             // One that cannot be used is of no use: the scene is begun anew.
@@ -253,12 +256,8 @@ impl Worker<'_> {
             return Ok(None);
         }
         let kept = self.study.snapshots().contain(scene).then_some(file);
-        Ok(Some((as_json(&RunReport::new(&result)), kept)))
+        Ok(Some((self.schema.results(Some(&RunReport::new(&result))), kept)))
     }
-}
-
-fn as_json(report: &impl serde::Serialize) -> serde_json::Value {
-    serde_json::to_value(report).expect("reports have string keys and plain values only")
 }
 
 /// Takes rows from all threads and writes parts.
@@ -271,6 +270,8 @@ struct Collector<'a> {
 
 struct Waiting {
     rows: Vec<Row>,
+    /// How many of them have a run.
+    runs: usize,
     saved: Instant,
     done: u64,
     failed: u64,
@@ -278,7 +279,7 @@ struct Waiting {
 
 impl<'a> Collector<'a> {
     fn new(folder: &'a Folder, schema: &'a Schema, interval: f64) -> Self {
-        let waiting = Waiting { rows: vec![], saved: Instant::now(), done: 0, failed: 0 };
+        let waiting = Waiting { rows: vec![], runs: 0, saved: Instant::now(), done: 0, failed: 0 };
         Self { folder, schema, interval: Duration::from_secs_f64(interval), waiting: Mutex::new(waiting) }
     }
 
@@ -286,12 +287,13 @@ impl<'a> Collector<'a> {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.done += 1;
         waiting.failed += u64::from(row.error.is_some());
+        waiting.runs += usize::from(row.run.is_some());
         waiting.rows.push(row);
-        let runs = waiting.rows.iter().filter(|row| row.run.is_some()).count();
-        if waiting.saved.elapsed() < self.interval && runs < MOST_RUNS {
+        let few = waiting.runs < MOST_RUNS && waiting.rows.len() < MOST_ROWS;
+        if few && waiting.saved.elapsed() < self.interval {
             return Ok(());
         }
-        waiting.saved = Instant::now();
+        (waiting.saved, waiting.runs) = (Instant::now(), 0);
         let rows = std::mem::take(&mut waiting.rows);
         // The others go on while this thread writes.
         drop(waiting);

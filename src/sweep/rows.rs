@@ -1,5 +1,7 @@
 //! Rows of results, and the columns they are stored in.
 
+use serde::Serialize;
+
 use crate::scene::{Input, Study, Task};
 use crate::snapshot::{Column, RunFile, SweepFile, SweepHeader, Values};
 
@@ -9,8 +11,10 @@ pub(super) struct Row {
     pub scene: u64,
     /// In the order of [`Study::keys`].
     pub inputs: Vec<Input>,
-    /// The JSON of `run` or `limit`; null if the scene failed.
-    pub results: serde_json::Value,
+    /// In the order of the schema; not numbers if the scene failed.
+    pub numbers: Vec<f64>,
+    /// In the order of the schema; empty if the scene failed.
+    pub texts: Vec<String>,
     pub run: Option<RunFile>,
     /// What went wrong, if the scene failed.
     pub error: Option<String>,
@@ -88,6 +92,15 @@ impl Schema {
         Self { keys, kinds: study.kinds(), texts, numbers }
     }
 
+    /// Texts and numbers of a report; of none if the scene failed.
+    pub(super) fn results(&self, report: Option<&impl Serialize>) -> (Vec<String>, Vec<f64>) {
+        let json = report.map(serde_json::to_value).transpose();
+        let json = json.expect("reports have string keys and plain values only").unwrap_or_default();
+        let text = |label: &Label| json[label.0].as_str().unwrap_or_default().to_owned();
+        let number = |label: &Label| json[label.0].as_f64().unwrap_or(f64::NAN);
+        (self.texts.iter().map(text).collect(), self.numbers.iter().map(number).collect())
+    }
+
     /// Rows as a file.
     pub(super) fn file(&self, header: SweepHeader, complete: bool, mut rows: Vec<Row>) -> SweepFile {
         rows.sort_by_key(|row| row.scene);
@@ -120,13 +133,13 @@ impl Schema {
         columns.push(column(STATUS, "1", "done or failed", Values::Texts(texts)));
         let texts = rows.iter().map(|row| row.error.clone().unwrap_or_default()).collect();
         columns.push(column("error", "1", "why the scene failed", Values::Texts(texts)));
-        for &(name, units, long_name) in self.texts {
-            let text = |row: &Row| row.results[name].as_str().unwrap_or_default().to_owned();
-            columns.push(column(name, units, long_name, Values::Texts(rows.iter().map(text).collect())));
+        for (index, &(name, units, long_name)) in self.texts.iter().enumerate() {
+            let values = rows.iter().map(|row| row.texts[index].clone()).collect();
+            columns.push(column(name, units, long_name, Values::Texts(values)));
         }
-        for &(name, units, long_name) in self.numbers {
-            let number = |row: &Row| row.results[name].as_f64().unwrap_or(f64::NAN);
-            columns.push(column(name, units, long_name, Values::Numbers(rows.iter().map(number).collect())));
+        for (index, &(name, units, long_name)) in self.numbers.iter().enumerate() {
+            let values = rows.iter().map(|row| row.numbers[index]).collect();
+            columns.push(column(name, units, long_name, Values::Numbers(values)));
         }
         let scenes = rows.iter().map(|row| row.scene).collect();
         let runs = rows.into_iter().filter_map(|row| row.run.map(|run| (row.scene, run))).collect();
