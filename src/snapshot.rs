@@ -18,7 +18,7 @@ mod writer;
 pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate};
 pub(crate) use atomic::AtomicFile;
 pub use reader::RunFile;
-pub use shard::{Column, SweepFile, SweepHeader, Values};
+pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
 pub use writer::RunWriter;
 
 use std::sync::Arc;

@@ -87,7 +87,7 @@ fn study(scenes: usize) -> String {
 fn bits(file: &SweepFile) -> Vec<(String, Vec<u64>, Vec<String>)> {
     let column = |Column { name, values, .. }: &Column| match values {
         Values::Numbers(numbers) => (name.clone(), numbers.iter().map(|it| it.to_bits()).collect(), vec![]),
-        Values::Texts(texts) => (name.clone(), vec![], texts.clone()),
+        Values::Texts(texts) => (name.clone(), vec![], texts.iter().map(str::to_owned).collect()),
     };
     let kept = file.columns.iter().filter(|column| column.name != "wall_seconds");
     std::iter::once(("scene".into(), file.scenes.clone(), vec![])).chain(kept.map(column)).collect()
@@ -100,9 +100,9 @@ fn numbers<'a>(file: &'a SweepFile, name: &str) -> &'a [f64] {
     }
 }
 
-fn texts<'a>(file: &'a SweepFile, name: &str) -> &'a [String] {
+fn texts<'a>(file: &'a SweepFile, name: &str) -> Vec<&'a str> {
     match &file.columns.iter().find(|column| column.name == name).unwrap().values {
-        Values::Texts(texts) => texts,
+        Values::Texts(texts) => texts.iter().collect(),
         Values::Numbers(_) => panic!("{name}"),
     }
 }
@@ -317,14 +317,18 @@ fn a_limit_study_has_the_columns_of_limit() {
     place.sweep("out", &SweepOptions::default());
     let file = place.merged("out");
     assert_eq!(file.scenes.len(), 40);
-    assert!(texts(&file, "regime").iter().all(|regime| regime == "partial-slip"));
+    assert!(texts(&file, "regime").iter().all(|regime| *regime == "partial-slip"));
     assert!(numbers(&file, "wear_depth_max").iter().all(|depth| *depth > 0.0));
 }
 
 #[test]
-fn the_study_of_the_data_folder_is_valid() {
-    let study = Study::read(Path::new("data/studies/friction.toml")).unwrap();
-    for scene in 0..study.count() {
-        study.scene(scene).unwrap();
+fn the_studies_of_the_data_folder_are_valid() {
+    for (file, scenes) in [("friction", 12), ("scatter", 320)] {
+        let study = Study::read(Path::new(&format!("data/studies/{file}.toml"))).unwrap();
+        assert_eq!(study.count(), scenes);
+        for scene in 0..scenes {
+            let contact = study.scene(scene).unwrap().contact().unwrap();
+            assert!(contact.stick_radius().is_some(), "scene {scene} of {file} slides as a whole");
+        }
     }
 }

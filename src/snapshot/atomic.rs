@@ -67,7 +67,12 @@ impl AtomicFile {
     /// # Errors
     /// [`Error::File`] names the path and the cure; the previous content is then still there.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> Result<()> {
-        self.try_write(bytes).map_err(|error| match error.kind() {
+        let written = self.try_write(bytes);
+        self.settle(written)
+    }
+
+    fn settle(&mut self, written: io::Result<()>) -> Result<()> {
+        written.map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => Error::File {
                 path: self.path.clone(),
                 why: format!("was created by another program during the run; {CHOOSE}"),
@@ -78,9 +83,25 @@ impl AtomicFile {
         Ok(())
     }
 
+    /// Replaces the content by what `fill` writes into the file of the name it is given, as [`AtomicFile::write`] does.
+    ///
+    /// # Errors
+    /// As [`AtomicFile::write`], and that of `fill`.
+    pub(crate) fn write_with(&mut self, fill: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+        let temporary = self.temporary().map_err(|error| failure(&self.path, &error))?;
+        fill(&temporary.path)?;
+        let written = self.replace(temporary);
+        self.settle(written)
+    }
+
     fn try_write(&self, bytes: &[u8]) -> io::Result<()> {
         let mut temporary = self.temporary()?;
         temporary.file.write_all(bytes)?;
+        self.replace(temporary)
+    }
+
+    /// Gives a temporary its name.
+    fn replace(&self, temporary: Temporary) -> io::Result<()> {
         temporary.file.sync_all()?;
         if self.may_replace {
             fs::rename(&temporary.path, &self.path)?;

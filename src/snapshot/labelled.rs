@@ -1,11 +1,12 @@
 //! HDF5 files of labelled arrays, valid as netCDF-4: every dataset has units, a meaning and dimension scales.
 
 use std::ffi::{CStr, c_char, c_uint};
+use std::path::Path;
 use std::str::FromStr;
 
 use hdf5::file::{AttrCreationOrder, LibraryVersion, LinkCreationOrder};
 use hdf5::types::VarLenUnicode;
-use hdf5::{Dataset, Extent, File, Group, H5Type, Location, Result};
+use hdf5::{Dataset, Extent, File, FileBuilder, Group, H5Type, Location, Result};
 use hdf5_sys::h5i::hid_t;
 
 use super::layout::Label;
@@ -33,19 +34,30 @@ pub(super) struct Dimension {
 /// file. Small nodes of the chunk index take 25 kB off a run, whose datasets mostly are one chunk each; deflate was
 /// left out because it saved no more than a fifth of the size and took as long as the rest of a save.
 pub(super) fn file_in_memory() -> Result<File> {
-    File::with_options()
-        .with_fapl(|access| {
-            access.core_options(1 << 16, false).libver_bounds(LibraryVersion::Earliest, LibraryVersion::V18)
-        })
+    options()
+        .with_fapl(|access| access.core_options(1 << 16, false))
+        // The library looks for a file of this name before it starts a new one: there can be none below a device.
+        .create("/dev/null/in-memory")
+}
+
+/// A new file of the same format on the disk, for contents too large to be in memory twice; the file of that name is overwritten.
+pub(super) fn file_on_disk(path: &Path) -> Result<File> {
+    // Whoever made the temporary holds the lock.
+    options().with_fapl(|access| access.file_locking(false)).create(path)
+}
+
+fn options() -> FileBuilder {
+    let mut options = File::with_options();
+    options
+        .with_fapl(|access| access.libver_bounds(LibraryVersion::Earliest, LibraryVersion::V18))
         .with_fcpl(|creation| {
             creation
                 .istore_k(4)
                 .link_creation_order(LinkCreationOrder::Indexed)
                 .attr_creation_order(AttrCreationOrder::Indexed)
                 .obj_track_times(false)
-        })
-        // The library looks for a file of this name before it starts a new one: there can be none below a device.
-        .create("/dev/null/in-memory")
+        });
+    options
 }
 
 /// The bytes of a file, as they belong on disk.

@@ -1,5 +1,6 @@
 //! A file of a sweep: one row per scene, and the whole runs of scenes whose snapshots are kept.
 
+use std::collections::HashMap;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -8,7 +9,7 @@ use hdf5::{File, Group};
 
 use super::atomic::AtomicFile;
 use super::encode::Run;
-use super::labelled::{Dimension, bytes_of, create_group, file_in_memory, put_array, put_integer, put_text};
+use super::labelled::{Dimension, create_group, file_on_disk, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader::{self, Source};
 use super::{RunFile, StopReason};
@@ -60,7 +61,57 @@ pub enum Values {
     /// Numbers; not a number where the quantity has no meaning.
     Numbers(Vec<f64>),
     /// Words.
-    Texts(Vec<String>),
+    Texts(Words),
+}
+
+/// Many words of which few are different.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Words {
+    different: Vec<String>,
+    places: Vec<u32>,
+}
+
+impl Words {
+    /// Number of words.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// The words in their order.
+    pub fn iter(&self) -> impl Iterator<Item = &str> {
+        self.places.iter().map(|&place| self.different[place as usize].as_str())
+    }
+
+    /// One of the words.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn get(&self, index: usize) -> &str {
+        &self.different[self.places[index] as usize]
+    }
+}
+
+impl<T: AsRef<str>> FromIterator<T> for Words {
+    fn from_iter<I: IntoIterator<Item = T>>(words: I) -> Self {
+        let mut known: HashMap<String, u32> = HashMap::new();
+        let mut found = Self::default();
+        for word in words {
+            let word = word.as_ref();
+            let place = known.get(word).copied().unwrap_or_else(|| {
+                let place = found.different.len() as u32;
+                known.insert(word.to_owned(), place);
+                found.different.push(word.to_owned());
+                place
+            });
+            found.places.push(place);
+        }
+        found
+    }
 }
 
 /// Rows of a sweep; the same rows give the same bytes.
@@ -99,15 +150,16 @@ impl SweepFile {
             assert_eq!(length, self.scenes.len(), "values of {name}, scenes");
         }
         let mut file = AtomicFile::new(path, overwrite)?;
-        let bytes = hdf5::sync::sync(|| self.encode()).map_err(|error| Error::File {
-            path: path.to_owned(),
-            why: format!("the HDF5 library could not lay out the file: {error}"),
-        })?;
-        file.write(&bytes)
+        file.write_with(|temporary| {
+            self.lay_out(temporary).map_err(|error| Error::File {
+                path: path.to_owned(),
+                why: format!("the HDF5 library could not write the file: {error}"),
+            })
+        })
     }
 
-    fn encode(&self) -> hdf5::Result<Vec<u8>> {
-        let file = file_in_memory()?;
+    fn lay_out(&self, path: &Path) -> hdf5::Result<()> {
+        let file = file_on_disk(path)?;
         let header = &self.header;
         put_text(&file, "title", &header.title)?;
         put_text(&file, "format", Self::FORMAT)?;
@@ -133,7 +185,7 @@ impl SweepFile {
             match values {
                 Values::Numbers(values) => put_array(&file, label, &[&rows], values)?,
                 Values::Texts(values) => {
-                    let texts = values.iter().map(|text| unicode(text)).collect::<hdf5::Result<Vec<_>>>()?;
+                    let texts = values.iter().map(unicode).collect::<hdf5::Result<Vec<_>>>()?;
                     put_array(&file, label, &[&rows], &texts)?
                 }
             };
@@ -153,7 +205,7 @@ impl SweepFile {
                 run.put_into(&create_group(&group, &scene.to_string())?)?;
             }
         }
-        bytes_of(&file)
+        file.close()
     }
 
     /// Reads a file of a sweep.
@@ -177,7 +229,7 @@ impl SweepFile {
                 Values::Numbers(source.values(&file, label, &rows)?)
             } else {
                 let texts: Vec<VarLenUnicode> = source.values(&file, label, &rows)?;
-                Values::Texts(texts.iter().map(|text| text.as_str().to_owned()).collect())
+                Values::Texts(texts.iter().map(|text| text.as_str()).collect())
             };
             columns.push(Column { name, units, long_name, values });
         }

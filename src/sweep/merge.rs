@@ -102,7 +102,12 @@ pub fn array_syntax(numbers: &[u64]) -> String {
 pub(super) fn failed_scenes(file: &SweepFile) -> BTreeSet<u64> {
     let status = file.columns.iter().find(|column| column.name == STATUS);
     let Some(Column { values: Values::Texts(texts), .. }) = status else { return BTreeSet::new() };
-    file.scenes.iter().zip(texts).filter(|(_, text)| *text == FAILED).map(|(scene, _)| *scene).collect()
+    file.scenes
+        .iter()
+        .zip(texts.iter())
+        .filter(|(_, text)| *text == FAILED)
+        .map(|(scene, _)| *scene)
+        .collect()
 }
 
 /// One file of the rows of many, sorted by scene, each scene once.
@@ -158,8 +163,8 @@ fn number(column: &Column, row: usize) -> f64 {
     if let Values::Numbers(values) = &column.values { values[row] } else { f64::NAN }
 }
 
-fn text(column: &Column, row: usize) -> String {
-    if let Values::Texts(values) = &column.values { values[row].clone() } else { String::new() }
+fn text(column: &Column, row: usize) -> &str {
+    if let Values::Texts(values) = &column.values { values.get(row) } else { "" }
 }
 
 /// Two rows of one scene must be the same but for the time they took.

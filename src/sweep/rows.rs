@@ -110,12 +110,10 @@ impl Schema {
                 .iter()
                 .map(|row| if let Input::Number(number) = row.inputs[index] { number } else { f64::NAN })
                 .collect();
-            let texts: Vec<String> =
-                rows.iter()
-                    .map(|row| {
-                        if let Input::Text(text) = &row.inputs[index] { text.clone() } else { String::new() }
-                    })
-                    .collect();
+            let texts = rows
+                .iter()
+                .map(|row| if let Input::Text(text) = &row.inputs[index] { text.as_str() } else { "" })
+                .collect();
             let name = format!("input_{}", key.replace(['.', '-'], "_"));
             let long_name = format!("{key} of the scene, in SI");
             let [has_numbers, has_words] = self.kinds[index];
@@ -128,13 +126,13 @@ impl Schema {
                 columns.push(column(&name, "1", &long_name, Values::Texts(texts)));
             }
         }
-        let status = |row: &Row| if row.error.is_some() { FAILED } else { "done" }.to_owned();
+        let status = |row: &Row| if row.error.is_some() { FAILED } else { "done" };
         let texts = rows.iter().map(status).collect();
         columns.push(column(STATUS, "1", "done or failed", Values::Texts(texts)));
-        let texts = rows.iter().map(|row| row.error.clone().unwrap_or_default()).collect();
+        let texts = rows.iter().map(|row| row.error.as_deref().unwrap_or_default()).collect();
         columns.push(column("error", "1", "why the scene failed", Values::Texts(texts)));
         for (index, &(name, units, long_name)) in self.texts.iter().enumerate() {
-            let values = rows.iter().map(|row| row.texts[index].clone()).collect();
+            let values = rows.iter().map(|row| &row.texts[index]).collect();
             columns.push(column(name, units, long_name, Values::Texts(values)));
         }
         for (index, &(name, units, long_name)) in self.numbers.iter().enumerate() {
