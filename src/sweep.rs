@@ -17,6 +17,7 @@ mod merge;
 mod report;
 mod rows;
 
+pub use folder::shards_in;
 pub use merge::{Merged, array_syntax, merge};
 pub use report::{MergeReport, SweepReport};
 
