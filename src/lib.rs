@@ -88,7 +88,7 @@
 //! | storey | modules |
 //! |---|---|
 //! | entry | the binary; this page |
-//! | jobs | [`sweep`], [`report`], [`progress`], [`run`], [`wear_map`] |
+//! | jobs | [`submit`], [`sweep`], [`report`], [`progress`], [`run`], [`wear_map`] |
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
 //! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`wear`], [`friction`], [`loading`], [`indenter`], [`half_space`] |
@@ -119,6 +119,7 @@ pub mod slip_depth;
 pub mod snapshot;
 pub mod stepper;
 pub mod stick_slip;
+pub mod submit;
 pub mod sweep;
 pub mod transforms;
 pub mod wear;

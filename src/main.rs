@@ -11,6 +11,7 @@ use fretwear::run::{Resumed, RunResult};
 use fretwear::scene::{MapScene, Scene, Study};
 use fretwear::simulation::Observer;
 use fretwear::snapshot::{ArraySummary, StopReason};
+use fretwear::submit::{self, Engine, SubmitReport, Wishes};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result};
 
@@ -42,6 +43,8 @@ enum Command {
     Map(Map),
     /// Validate a scene and show what follows from it, without running anything
     Check(Check),
+    /// Prepare a study for a cluster: measure, propose shards, write job scripts and hand them to the engine
+    Submit(Submit),
     /// Show what is in a result file and whether it is complete
     Info(Info),
 }
@@ -167,6 +170,56 @@ struct Info {
     json: bool,
 }
 
+#[derive(Args)]
+struct Submit {
+    /// The study, a TOML file
+    #[arg(value_name = "STUDY.toml")]
+    study: PathBuf,
+    /// Directory for scripts, logs and results, made if it is missing; the nodes must see it under the same path
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// What runs the jobs
+    #[arg(long, value_parser = engine)]
+    #[arg(value_name = "slurm|hyperqueue")]
+    engine: Engine,
+    /// Write the scripts and hand nothing in
+    #[arg(long)]
+    dry_run: bool,
+    /// Number of shards, instead of the one proposed
+    #[arg(long, value_name = "N")]
+    shards: Option<u64>,
+    /// Cores of each shard
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    cpus_per_task: usize,
+    /// Wall time of a scene on one core, instead of measuring a few
+    #[arg(long, value_name = "SECONDS")]
+    seconds_per_scene: Option<f64>,
+    /// How often a shard may be queued again after an interruption
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    max_requeues: u32,
+    /// Time limit of each shard (Slurm), instead of the one proposed
+    #[arg(long, value_name = "MINUTES")]
+    time_limit: Option<u64>,
+    /// Memory of each shard (Slurm), such as 4G, instead of what the measured scenes suggest
+    #[arg(long, value_name = "SIZE")]
+    memory: Option<String>,
+    /// Partition (Slurm)
+    #[arg(long, value_name = "NAME")]
+    partition: Option<String>,
+    /// Account (Slurm)
+    #[arg(long, value_name = "NAME")]
+    account: Option<String>,
+    /// One more option for sbatch or hq submit, such as --engine-option=--qos=long; may be repeated
+    #[arg(long = "engine-option", value_name = "OPTION", allow_hyphen_values = true)]
+    engine_options: Vec<String>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Overwrite scripts that exist
+    #[arg(long)]
+    force: bool,
+}
+
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Run(arguments) => run(&arguments),
@@ -175,6 +228,7 @@ fn main() -> ExitCode {
         Command::Merge(arguments) => merge(&arguments),
         Command::Map(arguments) => map(&arguments).map(done),
         Command::Check(arguments) => check(&arguments).map(done),
+        Command::Submit(arguments) => submit(&arguments),
         Command::Info(arguments) => info(&arguments).map(done),
     };
     match outcome {
@@ -314,6 +368,44 @@ fn check(arguments: &Check) -> Result<String> {
     let report = CheckReport::new(&Scene::read(&arguments.scene)?)?;
     report.warnings.iter().for_each(|warning| complain("warning", warning));
     Ok(if arguments.json { report::json(&report) } else { report.text() })
+}
+
+fn submit(arguments: &Submit) -> Result<(String, ExitCode)> {
+    let program = std::env::current_exe().map_err(|error| Error::File {
+        path: "fretwear".into(),
+        why: format!("where this program lies cannot be told: {error}"),
+    })?;
+    let options = submit::Options {
+        engine: arguments.engine,
+        program,
+        dry_run: arguments.dry_run,
+        overwrite: arguments.force,
+        seconds_per_scene: arguments.seconds_per_scene,
+        wishes: Wishes {
+            shards: arguments.shards,
+            cpus_per_task: arguments.cpus_per_task,
+            time_limit: arguments.time_limit,
+        },
+        most_requeues: arguments.max_requeues,
+        partition: arguments.partition.clone(),
+        account: arguments.account.clone(),
+        memory: arguments.memory.clone(),
+        engine_options: arguments.engine_options.clone(),
+    };
+    let report = SubmitReport::new(&submit::submit(&arguments.study, &arguments.output, &options)?);
+    let text = if arguments.json { report::json(&report) } else { report.text() };
+    let Some(refusal) = &report.refusal else { return Ok(done(text)) };
+    complain(
+        "error",
+        &format!("the scripts are written, but {} did not take them: {refusal}", report.engine),
+    );
+    Ok((text, ExitCode::FAILURE))
+}
+
+/// The engine of a word.
+fn engine(word: &str) -> std::result::Result<Engine, String> {
+    let known = Engine::ALL.into_iter().find(|engine| engine.name() == word);
+    known.ok_or_else(|| format!("give {}", Engine::ALL.map(Engine::name).join(" or ")))
 }
 
 fn info(arguments: &Info) -> Result<String> {

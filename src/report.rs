@@ -14,6 +14,7 @@ pub use info::{InfoReport, arrays_text};
 pub use limit::{LimitReport, ProfileTable, parse_radii};
 pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;
+pub(crate) use text::{Rows, number};
 
 use std::path::Path;
 

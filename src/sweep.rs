@@ -17,6 +17,7 @@ mod merge;
 mod report;
 mod rows;
 
+pub use folder::shards_in;
 pub use merge::{Merged, array_syntax, merge};
 pub use report::{MergeReport, SweepReport};
 
@@ -171,7 +172,15 @@ pub fn sweep(
     }
 }
 
-/// Refuses a study of which some scenes are not valid.
+/// Refuses a study of which some scenes are not valid; runs nothing.
+///
+/// # Errors
+/// [`Error::Scene`] counts them and shows the first.
+pub fn validate_all(study: &Study) -> Result<()> {
+    validate(study, &(0..study.count()).collect::<Vec<_>>())
+}
+
+/// Refuses a study of which some of these scenes are not valid.
 fn validate(study: &Study, scenes: &[u64]) -> Result<()> {
     const SHOWN: usize = 3;
     let wrong: Vec<String> =

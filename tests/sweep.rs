@@ -127,8 +127,26 @@ fn threads_and_shards_change_no_bit() {
     let run = fretwear::run::Run::new(&scene, &place.path("run.h5"), false).unwrap().execute(None).unwrap();
     assert_eq!(numbers(&one, "wear_volume")[9].to_bits(), run.last.wear_volume.to_bits());
     assert_eq!(numbers(&one, "input_friction_coulomb_coefficient")[9], 0.5);
-    assert!(!place.path("five/parts").exists(), "nothing is left of the parts");
-    assert_eq!(std::fs::read_dir(place.path("five")).unwrap().count(), 5, "one file a shard");
+    assert_eq!(
+        std::fs::read_dir(place.path("five/parts")).unwrap().count(),
+        0,
+        "nothing is left of the parts"
+    );
+    assert_eq!(std::fs::read_dir(place.path("five")).unwrap().count(), 5 + 1, "one file a shard");
+}
+
+#[test]
+fn a_shard_that_ends_leaves_the_others_alone() {
+    let place = Place::new(&study(1000));
+    let start =
+        |shard: &str| place.command("out").args(["--shard", shard, "--threads", "1"]).spawn().unwrap();
+    // The second has written nothing yet when the first ends.
+    let mut first = start("0/2");
+    std::thread::sleep(Duration::from_millis(100));
+    let mut second = start("1/2");
+    assert_eq!([&mut first, &mut second].map(|child| child.wait().unwrap().code()), [Some(0), Some(0)]);
+    assert_eq!(place.merged("out").scenes.len(), 1000);
+    assert_eq!(fretwear::sweep::shards_in(&place.path("out")).unwrap(), Some(2));
 }
 
 #[test]
@@ -268,8 +286,8 @@ fn signals_are_answered_with_a_checkpoint_and_75() {
         let output = format!("out{signal}");
         let stopped = through_signals(&place, &output, signal, 4, &["--threads", "1"]);
         assert!(stopped >= 2, "signal {signal}: stopped {stopped} times");
-        let parts = std::fs::read_dir(place.path(&output)).unwrap().count();
-        assert_eq!(parts, 1, "nothing but the shard is left");
+        let parts = std::fs::read_dir(place.path(&output).join("parts")).unwrap().count();
+        assert_eq!(parts, 0, "nothing but the shard is left");
     }
     place.sweep("alone", &SweepOptions::default());
     assert!(bits(&place.merged("out15")) == bits(&place.merged("alone")));

@@ -35,7 +35,7 @@ impl Scale {
 }
 
 /// Six significant digits, without trailing zeros.
-pub(super) fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     const DIGITS: usize = 6;
     if value == 0.0 {
         return "0".into();
@@ -84,30 +84,30 @@ pub(super) fn table(table: &TabulatedProfile) -> String {
 
 /// Rows of a name and a value.
 #[derive(Debug, Default)]
-pub(super) struct Rows(String);
+pub(crate) struct Rows(String);
 
 impl Rows {
     /// Begins with a title, if there is one.
-    pub(super) fn titled(title: Option<&str>) -> Self {
+    pub(crate) fn titled(title: Option<&str>) -> Self {
         Self(title.map_or(String::new(), |title| format!("{title}\n\n")))
     }
 
-    pub(super) fn row(&mut self, name: &str, value: impl std::fmt::Display) {
+    pub(crate) fn row(&mut self, name: &str, value: impl std::fmt::Display) {
         const WIDTH: usize = 34;
         // Writing to a string cannot fail.
         let _ = writeln!(self.0, "{name:<WIDTH$} {value}");
     }
 
     /// A row whose value may have no meaning.
-    pub(super) fn optional(&mut self, name: &str, value: Option<String>) {
+    pub(crate) fn optional(&mut self, name: &str, value: Option<String>) {
         self.row(name, value.as_deref().unwrap_or("none"));
     }
 
-    pub(super) fn gap(&mut self) {
+    pub(crate) fn gap(&mut self) {
         self.0.push('\n');
     }
 
-    pub(super) fn finish(self) -> String {
+    pub(crate) fn finish(self) -> String {
         self.0
     }
 }

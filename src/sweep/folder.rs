@@ -167,8 +167,7 @@ impl Folder {
             let _ = fs::remove_file(path);
         }
         whole.scenes.iter().for_each(|&scene| self.remove_checkpoints(scene));
-        // Only if it is empty.
-        let _ = fs::remove_dir(self.path.join(PARTS));
+        // The folder of the parts stays: other shards, or other attempts at this one, are about to write into it.
         Ok(target)
     }
 
@@ -226,6 +225,19 @@ fn name_of(path: &Path) -> &str {
 pub(super) fn shard_of(path: &Path) -> Option<(u64, u64)> {
     let (shard, shards) = name_of(path).strip_prefix("shard-")?.strip_suffix(".h5")?.split_once("-of-")?;
     Some((shard.parse().ok()?, shards.parse().ok()?))
+}
+
+/// Number of shards by which the results in a directory are cut; none where there are none.
+///
+/// # Errors
+/// [`Error::File`] if the directory cannot be read.
+pub fn shards_in(folder: &Path) -> Result<Option<u64>> {
+    let whole = files(folder)?.iter().find_map(|path| shard_of(path)).map(|(_, shards)| shards);
+    let part = |path: &PathBuf| {
+        let (_, rest) = name_of(path).split_once("-of-").filter(|_| is_part(path))?;
+        rest.split('.').next()?.parse().ok()
+    };
+    Ok(whole.or(files(&parts_folder(folder))?.iter().find_map(part)))
 }
 
 /// Folder of the parts of a sweep.

@@ -1,0 +1,187 @@
+//! The job scripts: templates beside this file, filled in.
+
+use std::path::{Path, PathBuf};
+
+use super::measure::Measurement;
+use super::proposal::Proposal;
+use super::{Engine, Options, shell};
+use crate::error::{Error, Result};
+use crate::snapshot::AtomicFile;
+
+/// A script: its name and its template, in which `@NAME@` stands for a value.
+type Script = (&'static str, &'static str);
+
+const SLURM: [Script; 3] = [
+    ("sweep.sbatch", include_str!("scripts/sweep.sbatch")),
+    ("merge.sbatch", include_str!("scripts/merge.sbatch")),
+    ("submit.sh", include_str!("scripts/submit-slurm.sh")),
+];
+
+const HYPERQUEUE: [Script; 3] = [
+    ("sweep-hq.sh", include_str!("scripts/sweep-hq.sh")),
+    ("merge-hq.sh", include_str!("scripts/merge-hq.sh")),
+    ("submit.sh", include_str!("scripts/submit-hq.sh")),
+];
+
+/// The merged file, in the directory of the sweep.
+const MERGED: &str = "merged.h5";
+
+/// Memory of a process besides what its scenes need, and the least that is asked for; bytes.
+const BASE_MEMORY: f64 = 0.5e9;
+const LEAST_MEMORY: f64 = 1e9;
+
+/// Absolute paths that a script can hold.
+#[derive(Debug)]
+pub(super) struct Paths {
+    program: String,
+    study: String,
+    folder: String,
+    name: String,
+}
+
+impl Paths {
+    /// Makes paths absolute; a job starts elsewhere.
+    ///
+    /// # Errors
+    /// [`Error::File`] if one has a line break in it or is not UTF-8.
+    pub(super) fn new(program: &Path, study: &Path, folder: &Path) -> Result<Self> {
+        let stem = study.file_stem().unwrap_or_default().to_string_lossy();
+        Ok(Self {
+            program: absolute(program)?,
+            study: absolute(study)?,
+            folder: absolute(folder)?,
+            name: format!("fretwear-{}", shell::job_name(&stem)),
+        })
+    }
+
+    /// The file that the merge writes.
+    pub(super) fn merged(&self) -> PathBuf {
+        Path::new(&self.folder).join(MERGED)
+    }
+}
+
+fn absolute(path: &Path) -> Result<String> {
+    let refused = |why: &str| Error::File { path: path.to_owned(), why: why.into() };
+    let absolute = std::path::absolute(path).map_err(|error| refused(&error.to_string()))?;
+    match absolute.to_str() {
+        None => Err(refused("is not valid UTF-8, which a job script needs; rename it")),
+        Some(text) if text.chars().any(char::is_control) => Err(refused(
+            "has a line break or another control character in it, which a job script cannot hold; rename it",
+        )),
+        Some(text) => Ok(text.into()),
+    }
+}
+
+fn scripts(engine: Engine) -> &'static [Script] {
+    match engine {
+        Engine::Slurm => &SLURM,
+        Engine::HyperQueue => &HYPERQUEUE,
+    }
+}
+
+/// Refuses to overwrite scripts, which a user may have edited.
+pub(super) fn check_absence(engine: Engine, folder: &Path, overwrite: bool) -> Result<()> {
+    let exists = scripts(engine).iter().map(|(name, _)| folder.join(name)).find(|path| path.exists());
+    match exists {
+        Some(path) if !overwrite => {
+            let why =
+                "exists already; `bash submit.sh` beside it hands in what is there, --force writes it anew";
+            Err(Error::File { path, why: why.into() })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes the scripts of an engine into the directory, which is made if it is missing; returns their paths.
+pub(super) fn write(
+    paths: &Paths,
+    options: &Options,
+    proposal: &Proposal,
+    measurement: &Measurement,
+) -> Result<Vec<PathBuf>> {
+    let folder = Path::new(&paths.folder);
+    // Slurm does not make the directory of a log, and a job without it fails in silence.
+    std::fs::create_dir_all(folder.join("log")).map_err(|error| Error::File {
+        path: folder.to_owned(),
+        why: format!("the directory cannot be made: {error}"),
+    })?;
+    let values = values(paths, options, proposal, measurement);
+    let write = |(name, template): &Script| {
+        let path = folder.join(name);
+        AtomicFile::new(&path, options.overwrite)?.write(fill(template, &values).as_bytes())?;
+        Ok(path)
+    };
+    scripts(options.engine).iter().map(write).collect()
+}
+
+/// What the names in the templates stand for.
+fn values(
+    paths: &Paths,
+    options: &Options,
+    proposal: &Proposal,
+    measurement: &Measurement,
+) -> Vec<(&'static str, String)> {
+    let more = match options.engine {
+        Engine::Slurm => slurm_lines(options, proposal, measurement),
+        Engine::HyperQueue => {
+            options.engine_options.iter().map(|it| format!(" {}", shell::quote(it))).collect()
+        }
+    };
+    vec![
+        ("NAME", paths.name.clone()),
+        ("PROGRAM", shell::quote(&paths.program)),
+        ("STUDY", shell::quote(&paths.study)),
+        ("FOLDER", shell::quote(&paths.folder)),
+        ("MERGED", shell::quote(&paths.merged().display().to_string())),
+        ("SHARDS", proposal.shards.to_string()),
+        ("LAST", (proposal.shards - 1).to_string()),
+        ("CPUS", proposal.cpus_per_task.to_string()),
+        ("MINUTES", proposal.time_limit.to_string()),
+        ("LEAD", proposal.signal_lead.to_string()),
+        ("REQUEUES", options.most_requeues.to_string()),
+        ("MORE", more),
+    ]
+}
+
+/// The lines of #SBATCH that not every cluster needs.
+fn slurm_lines(options: &Options, proposal: &Proposal, measurement: &Measurement) -> String {
+    let memory = options.memory.clone().or_else(|| memory(measurement, proposal.cpus_per_task));
+    let named = [
+        ("--mem", memory),
+        ("--partition", options.partition.clone()),
+        ("--account", options.account.clone()),
+    ];
+    let named = named.into_iter().filter_map(|(name, value)| value.map(|value| format!("{name}={value}")));
+    let lines = named.chain(options.engine_options.iter().cloned()).map(|it| format!("#SBATCH {it}"));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Twice what one scene needed, for each core: without a wish of ours many clusters give a job all the memory of its node, and so the node.
+fn memory(measurement: &Measurement, cpus: usize) -> Option<String> {
+    let bytes = BASE_MEMORY + 2.0 * measurement.peak_memory? * cpus as f64;
+    Some(format!("{}M", (bytes.max(LEAST_MEMORY) / 1e8).ceil() as u64 * 100))
+}
+
+/// Puts values in place of `@NAME@`, in one pass: what a value contains is never taken for a name.
+///
+/// # Panics
+/// If a template has a name that has no value.
+fn fill(template: &str, values: &[(&str, String)]) -> String {
+    let mut filled = String::with_capacity(2 * template.len());
+    let mut rest = template;
+    while let Some(at) = rest.find('@') {
+        filled.push_str(&rest[..at]);
+        let after = &rest[at + 1..];
+        let name = after.find(|c: char| !c.is_ascii_uppercase()).map_or(after, |end| &after[..end]);
+        if name.is_empty() || !after[name.len()..].starts_with('@') {
+            filled.push('@');
+            rest = after;
+            continue;
+        }
+        let value = values.iter().find(|(known, _)| *known == name);
+        filled.push_str(&value.unwrap_or_else(|| panic!("@{name}@ has no value")).1);
+        rest = &after[name.len() + 1..];
+    }
+    filled.push_str(rest);
+    filled
+}
