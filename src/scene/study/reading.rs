@@ -1,0 +1,243 @@
+//! The tables of a study: axes, samples and what is kept.
+
+use std::path::PathBuf;
+
+use toml::{Table, Value};
+
+use super::{Axis, KeptSnapshots, MOST_SCENES, Sampling, Study, Task, Variable, with_unit};
+use crate::error::Result;
+use crate::scene::document::{Entry, Section};
+use crate::scene::quantity::{Dimension, split_number};
+use crate::scene::sampling::{Distribution, Method, UnitCube};
+use crate::scene::sections;
+use crate::scene::unit::Unit;
+
+/// Reads the document of a study; the base scene is added by whoever calls.
+pub(super) fn read(root: &Section) -> Result<Study> {
+    root.only(&["title", "scene", "task", "axes", "sampling", "output"], &[])?;
+    let title = root.optional("title").map(|entry| sections::title(&entry)).transpose()?;
+    let task = match root.optional("task") {
+        Some(entry) => Task::ALL[entry.word(&Task::ALL.map(Task::name))?],
+        None => Task::default(),
+    };
+    const MOST_AXES: usize = 100;
+    let axes = match root.optional("axes") {
+        Some(entry) => {
+            entry.array(MOST_AXES)?.iter().map(|it| axis(&it.section()?)).collect::<Result<Vec<_>>>()?
+        }
+        None => vec![],
+    };
+    let sampling =
+        root.optional("sampling").map(|entry| entry.section().and_then(|it| sampling(&it))).transpose()?;
+    let lengths = axes.iter().map(|axis| axis.rows.len() as u64).chain(sampling.as_ref().map(|it| it.count));
+    let count = lengths.fold(1u64, u64::saturating_mul);
+    if count > MOST_SCENES {
+        return Err(root.error(format_args!(
+            "expands to {} scenes, more than {MOST_SCENES}; make the axes shorter or split the study",
+            if count == u64::MAX { "too many".into() } else { count.to_string() }
+        )));
+    }
+    let mut snapshots = KeptSnapshots::None;
+    if let Some(entry) = root.optional("output") {
+        let section = entry.section()?;
+        section.only(&["snapshots"], &[])?;
+        if let Some(entry) = section.optional("snapshots") {
+            snapshots = kept_snapshots(&entry, count)?;
+        }
+    }
+    let study = Study {
+        title,
+        task,
+        snapshots,
+        base: Table::new(),
+        folder: PathBuf::new(),
+        name: String::new(),
+        axes,
+        sampling,
+        count,
+        text: String::new(),
+        base_text: String::new(),
+    };
+    let mut keys = study.keys();
+    keys.sort_unstable();
+    if let Some(twice) = keys.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(root.error(format_args!("{} is varied twice; name it in one axis only", twice[0])));
+    }
+    Ok(study)
+}
+
+fn kept_snapshots(entry: &Entry, count: u64) -> Result<KeptSnapshots> {
+    if entry.is_array() {
+        let last = (count - 1) as usize;
+        let scenes = entry.array(100_000)?.iter().map(|it| it.whole(0..=last)).collect::<Result<Vec<_>>>()?;
+        let mut scenes: Vec<u64> = scenes.into_iter().map(|it| it as u64).collect();
+        scenes.sort_unstable();
+        scenes.dedup();
+        return Ok(KeptSnapshots::Of(scenes));
+    }
+    Ok([KeptSnapshots::None, KeptSnapshots::All][entry.word(&["none", "all"])?].clone())
+}
+
+/// A dotted key of the scene.
+fn key(entry: &Entry) -> Result<String> {
+    let key = entry.string()?;
+    let bare = |part: &str| {
+        !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'))
+    };
+    match key.split('.').all(bare) && key.contains('.') && key.len() < 200 {
+        true => Ok(key.into()),
+        false => Err(entry.error("is not a key of a scene, such as \"friction.coulomb.coefficient\"")),
+    }
+}
+
+const MOST_ROWS: usize = MOST_SCENES as usize;
+
+fn axis(section: &Section) -> Result<Axis> {
+    section.only(&["key", "keys", "values", "rows", "from", "to", "count", "spacing"], &[])?;
+    if let Some(entry) = section.optional("keys") {
+        section.only(&["keys", "rows"], &[])?;
+        let keys = entry.array(100)?.iter().map(key).collect::<Result<Vec<_>>>()?;
+        let rows = section.required("rows", "one list of values for each scene along the axis")?;
+        let width = keys.len();
+        let row = |row: &Entry| -> Result<Vec<Value>> {
+            let values = row.array(width)?.iter().map(value).collect::<Result<Vec<_>>>()?;
+            match values.len() == width {
+                true => Ok(values),
+                false => Err(row.error(format_args!("has {} values for {width} keys", values.len()))),
+            }
+        };
+        let rows = not_empty(&rows)?.iter().map(row).collect::<Result<_>>()?;
+        return Ok(Axis { keys, rows });
+    }
+    let keys = vec![key(&section.required("key", "for example \"friction.coulomb.coefficient\"")?)?];
+    if let Some(entry) = section.optional("values") {
+        section.only(&["key", "values"], &[])?;
+        let rows = not_empty(&entry)?.iter().map(|it| Ok(vec![value(it)?])).collect::<Result<_>>()?;
+        return Ok(Axis { keys, rows });
+    }
+    let cure = "an axis has values = [...], or from, to and count";
+    let (from, to) = (section.required("from", cure)?, section.required("to", cure)?);
+    let ((low, unit), (high, other)) = (magnitude(&from)?, magnitude(&to)?);
+    if unit != other {
+        return Err(to.error(format_args!("has not the unit of {}, {unit:?}", from.path())));
+    }
+    let count = section.required("count", cure)?.whole(2..=MOST_ROWS)?;
+    let spacings = ["linear", "geometric"];
+    let geometric = section.optional("spacing").map_or(Ok(0), |entry| entry.word(&spacings))? == 1;
+    if geometric && !(low > 0.0 && high > 0.0) {
+        return Err(from.error(format_args!("and {} must be above zero for geometric spacing", to.path())));
+    }
+    let last = (count - 1) as f64;
+    let at = |i: usize| match (i, geometric) {
+        (0, _) => low,
+        (i, _) if i + 1 == count => high,
+        (i, true) => low * ((high / low).ln() * i as f64 / last).exp(),
+        (i, false) => (low * (last - i as f64) + high * i as f64) / last,
+    };
+    Ok(Axis { keys, rows: (0..count).map(|i| vec![with_unit(at(i), &unit)]).collect() })
+}
+
+fn not_empty<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>> {
+    let entries = entry.array(MOST_ROWS)?;
+    match entries.is_empty() {
+        true => Err(entry.error("is empty; give at least one value")),
+        false => Ok(entries),
+    }
+}
+
+/// A value as TOML.
+fn value(entry: &Entry) -> Result<Value> {
+    let value = entry.literal()?;
+    match value {
+        Value::Table(_) => Err(entry.error("is a table; vary its keys one by one")),
+        value => Ok(value),
+    }
+}
+
+/// A number and its unit, empty for a plain number.
+fn magnitude(entry: &Entry) -> Result<(f64, String)> {
+    let Ok(text) = entry.string() else { return Ok((entry.quantity(Dimension::NUMBER)?, String::new())) };
+    let unreadable = || entry.error("is not a number with a unit such as \"5 mm\"");
+    let (digits, exponent, unit) = split_number(text.trim()).ok_or_else(unreadable)?;
+    let unit = unit.trim();
+    Unit::read(unit).map_err(|why| entry.error(format_args!(": {why}")))?;
+    let number: f64 = format!("{digits}e{exponent}").parse().map_err(|_| unreadable())?;
+    match number.is_finite() {
+        true => Ok((number, unit.into())),
+        false => Err(entry.error("is too large for a double")),
+    }
+}
+
+fn sampling(section: &Section) -> Result<Sampling> {
+    section.only(&["method", "count", "seed", "variables"], &[])?;
+    let entry = section.required("count", "the number of samples")?;
+    let count = entry.whole(1..=MOST_SCENES as usize)? as u64;
+    let method = match section.optional("method") {
+        Some(entry) => Method::ALL[entry.word(&Method::ALL.map(Method::name))?],
+        None => Method::Sobol,
+    };
+    let seed = section.optional("seed").map_or(Ok(0), |entry| entry.whole(0..=usize::MAX))? as u64;
+    let entry = section.required("variables", "a list of tables with key and distribution")?;
+    let entries = entry.array(UnitCube::MOST_VARIABLES)?;
+    if entries.is_empty() {
+        return Err(entry.error("is empty; give at least one variable"));
+    }
+    let variables = entries.iter().map(|it| variable(&it.section()?)).collect::<Result<Vec<_>>>()?;
+    Ok(Sampling { count, cube: UnitCube::new(method, count, variables.len(), seed), variables })
+}
+
+fn variable(section: &Section) -> Result<Variable> {
+    const KINDS: [&str; 4] = ["uniform", "log-uniform", "normal", "log-normal"];
+    let entry = section.required("distribution", "uniform, log-uniform, normal or log-normal")?;
+    let kind = entry.word(&KINDS)?;
+    let parameters: [&str; 2] =
+        [["from", "to"], ["from", "to"], ["mean", "deviation"], ["median", "factor"]][kind];
+    let bounds: &[&str] = if kind < 2 { &[] } else { &["minimum", "maximum"] };
+    section.only(&[&["key", "distribution"], &parameters[..], bounds].concat(), &[])?;
+    let key = key(&section.required("key", "for example \"wear.archard.coefficient\"")?)?;
+    let cure = format!("a {} distribution has {} and {}", KINDS[kind], parameters[0], parameters[1]);
+    let (first, second) = (section.required(parameters[0], &cure)?, section.required(parameters[1], &cure)?);
+    let (one, unit) = magnitude(&first)?;
+    let same_unit = |entry: &Entry| -> Result<f64> {
+        let (number, other) = magnitude(entry)?;
+        match other == unit {
+            true => Ok(number),
+            false => Err(entry.error(format_args!("has not the unit of {}, {unit:?}", first.path()))),
+        }
+    };
+    let positive = |entry: &Entry, value: f64| match value > 0.0 {
+        true => Ok(value),
+        false => Err(entry.error("must be above zero")),
+    };
+    let mut limits = [f64::NEG_INFINITY, f64::INFINITY];
+    for (limit, name) in limits.iter_mut().zip(bounds) {
+        if let Some(entry) = section.optional(name) {
+            *limit = same_unit(&entry)?;
+        }
+    }
+    if limits[0] >= limits[1] {
+        return Err(section.error("minimum is not below maximum"));
+    }
+    let distribution = match kind {
+        0 | 1 => {
+            let two = same_unit(&second)?;
+            if one >= two {
+                return Err(second.error(format_args!("is not above {} = {one}", first.path())));
+            }
+            match kind {
+                0 => Distribution::Uniform { from: one, to: two },
+                _ => Distribution::LogUniform { from: positive(&first, one)?, to: two },
+            }
+        }
+        2 => {
+            let deviation = same_unit(&second)?;
+            Distribution::Normal { mean: one, deviation: positive(&second, deviation)?, bounds: limits }
+        }
+        _ => {
+            let factor = second.quantity_in(Dimension::NUMBER, "(1, inf)", |factor| factor > 1.0)?;
+            limits[0] = limits[0].max(0.0);
+            Distribution::LogNormal { median: positive(&first, one)?, factor, bounds: limits }
+        }
+    };
+    Ok(Variable { key, distribution, unit })
+}
