@@ -27,6 +27,9 @@ const FIRST_SNAPSHOT: f64 = 1e-4;
 /// Dimensionless times between which snapshots are spread where the end is not known beforehand.
 const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 
+/// Steps along one fretting loop in the result file, even.
+const LOOP_POINTS: usize = 64;
+
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
@@ -121,6 +124,7 @@ impl Run {
             title: scene.title().map(str::to_owned),
             scene: scene.text().to_owned(),
             radius: simulation.model().radii(),
+            loop_displacement: loop_displacement(simulation.model()),
             limit: Some(limit_curves(simulation.model(), &parts.limit)),
             table: scene.table().cloned(),
         };
@@ -381,6 +385,15 @@ fn worn_profile(model: &Model, wear_depth: &[f64]) -> Vec<f64> {
     model.radii().iter().zip(wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect()
 }
 
+/// Displacements, m, along one fretting loop, denser next to the reversals.
+fn loop_displacement(model: &Model) -> Vec<f64> {
+    let amplitude = model.contact().amplitude();
+    let turn = LOOP_POINTS / 2;
+    let way_down = |i: usize| amplitude * (std::f64::consts::PI * i as f64 / turn as f64).cos();
+    // Exactly the same displacements on the way back.
+    (0..=LOOP_POINTS).map(|i| way_down(i.min(LOOP_POINTS - i))).collect()
+}
+
 /// The contact as it is now.
 fn snapshot(simulation: &Simulation) -> Snapshot {
     let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
@@ -397,6 +410,9 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
         indentation: contact.indentation(),
         normal_force: model.normal_force(fields),
         dissipated_energy: state.dissipated_energy,
+        cycle_energy: model.dissipation(fields, &state.compression),
+        tangential_force: model.tangential_force(fields, &state.compression, contact.amplitude()),
+        loop_force: model.fretting_loop(fields, &state.compression, &loop_displacement(model)),
         profile: worn_profile(model, &wear_depth),
         wear_depth,
         pressure: radial.pressure,

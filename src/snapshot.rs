@@ -38,6 +38,8 @@ pub struct RunHeader {
     pub scene: String,
     /// Radius of the nodes, m, shape `(node,)`, increasing.
     pub radius: Vec<f64>,
+    /// Displacements along one fretting loop, m, shape `(point,)`: from the amplitude to its negative and back.
+    pub loop_displacement: Vec<f64>,
     /// The limiting shape, where it has a closed form.
     pub limit: Option<LimitCurves>,
     /// The rows of a measured profile, if the indenter is one.
@@ -106,6 +108,12 @@ pub struct Snapshot {
     pub normal_force: f64,
     /// Energy dissipated by friction since the start, J.
     pub dissipated_energy: f64,
+    /// Energy dissipated by friction in one cycle, J.
+    pub cycle_energy: f64,
+    /// Amplitude of the tangential force, N.
+    pub tangential_force: f64,
+    /// Tangential force along one fretting loop, N, shape `(point,)`.
+    pub loop_force: Vec<f64>,
     /// Worn profile, m, shape `(node,)`.
     pub profile: Vec<f64>,
     /// Wear depth, m, shape `(node,)`.

@@ -35,10 +35,14 @@ fn header(nodes: usize) -> RunHeader {
         title: Some("Paraboloid, μ = 0.3".into()),
         scene: "[indenter.paraboloid]\nradius = \"10 mm\"\n".into(),
         radius: (0..nodes).map(|node| 1e-3 + 1e-5 * node as f64).collect(),
+        loop_displacement: curve(POINTS, 6),
         limit: Some(LimitCurves { profile: curve(nodes, 1), wear_depth: curve(nodes, 2) }),
         table: None,
     }
 }
+
+/// Points of a fretting loop.
+const POINTS: usize = 5;
 
 fn snapshot(nodes: usize, seed: usize) -> Snapshot {
     Snapshot {
@@ -50,6 +54,9 @@ fn snapshot(nodes: usize, seed: usize) -> Snapshot {
         indentation: awkward(seed + 4),
         normal_force: awkward(seed + 5),
         dissipated_energy: awkward(seed + 6),
+        cycle_energy: awkward(seed + 7),
+        tangential_force: awkward(seed + 8),
+        loop_force: curve(POINTS, seed + 4),
         profile: curve(nodes, seed),
         wear_depth: curve(nodes, seed + 1),
         pressure: curve(nodes, seed + 2),
@@ -97,6 +104,9 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
         indentation,
         normal_force,
         dissipated_energy,
+        cycle_energy,
+        tangential_force,
+        loop_force,
         profile,
         wear_depth,
         pressure,
@@ -111,10 +121,12 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
         indentation,
         normal_force,
         dissipated_energy,
+        cycle_energy,
+        tangential_force,
     ];
     scalars
         .into_iter()
-        .chain([profile, wear_depth, pressure, slip].into_iter().flatten())
+        .chain([loop_force, profile, wear_depth, pressure, slip].into_iter().flatten())
         .map(|it| it.to_bits())
         .collect()
 }
@@ -298,8 +310,10 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
         assert_eq!(hdf5::sync::sync(|| unsafe { H5DSis_scale(scale.id()) }), 1, "{name} is a scale");
     }
     let group = file.group("checkpoint").expect("the group");
-    let all = [file.datasets().expect("datasets"), group.datasets().expect("datasets")].concat();
-    assert_eq!(all.len(), 17 + 15, "{all:?}");
+    let loops = file.group("loops").expect("the group");
+    let in_groups = [group, loops].map(|it| it.datasets().expect("datasets")).concat();
+    let all = [file.datasets().expect("datasets"), in_groups].concat();
+    assert_eq!(all.len(), 19 + 15 + 3, "{all:?}");
     for dataset in all {
         for attribute in ["units", "long_name"] {
             let found = text(&dataset, attribute).unwrap_or_default();
@@ -307,7 +321,7 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
         }
     }
     assert_eq!(text(&file, "format").as_deref(), Some("fretwear-run"));
-    assert_eq!(file.attr("format_version").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 1);
+    assert_eq!(file.attr("format_version").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 2);
     assert_eq!(file.attr("complete").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 1);
 }
 
@@ -438,10 +452,10 @@ fn edited_files_are_refused_by_the_name_of_what_is_wrong() {
     }
     type Edit = fn(&hdf5::File) -> hdf5::Result<()>;
     let edits: [(&str, Edit); 21] = [
-        ("format_version 2, this program reads 1; use the fretwear", |file| {
-            put_integer(file, "format_version", 2)
+        ("format_version 1, this program reads 2; use the fretwear", |file| {
+            put_integer(file, "format_version", 1)
         }),
-        ("attribute format_version", |file| put_text(file, "format_version", "1")),
+        ("attribute format_version", |file| put_text(file, "format_version", "2")),
         ("no attribute format", |file| put_text(file, "format", "netcdf")),
         ("attribute scene", |file| file.delete_attr("scene")),
         ("attribute scene: is not UTF-8 text", |file| put_integer(file, "scene", 1)),

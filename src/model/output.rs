@@ -61,6 +61,41 @@ impl Model {
             * sum
     }
 
+    /// Tangential force, N, when a contact without tangential load is moved by `u`, m, in one direction.
+    ///
+    /// ```text
+    /// F_x(u) = 2 c_T ∫_0^a x^k min(u, μ_f q/M) dx,     c_T = M c_N
+    /// ```
+    pub fn tangential_force(&self, fields: &Fields, compression: &[f64], displacement: f64) -> f64 {
+        let half_space = self.contact.half_space();
+        let q = 1.0 + half_space.grading();
+        let limit = self.contact.friction().coefficient / half_space.stiffness_ratio();
+        let stuck = 2.0 * displacement * self.stick_radius_squared.powf(0.5 * q) / q;
+        let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
+        let moved: f64 =
+            springs.map(|((q, factor), weight)| weight * factor * displacement.min(limit * q)).sum();
+        half_space.stiffness_ratio() * half_space.normal_stiffness() * (stuck + fields.edge * moved)
+    }
+
+    /// Tangential force, N, along one steady fretting loop, at displacements, m, that go from `U` to `-U` and back.
+    ///
+    /// After a reversal every spring repeats its first loading at twice the scale (Masing):
+    ///
+    /// ```text
+    /// F = F_x(U) - 2 F_x((U - u)/2)  on the way down,     F = 2 F_x((U + u)/2) - F_x(U)  on the way up
+    /// ```
+    pub fn fretting_loop(&self, fields: &Fields, compression: &[f64], displacements: &[f64]) -> Vec<f64> {
+        let amplitude = self.contact.amplitude();
+        let force = |displacement: f64| self.tangential_force(fields, compression, displacement);
+        let largest = force(amplitude);
+        let turn = displacements.len() / 2;
+        let along = |(index, u): (usize, &f64)| match index <= turn {
+            true => largest - 2.0 * force(0.5 * (amplitude - u)),
+            false => 2.0 * force(0.5 * (amplitude + u)) - largest,
+        };
+        displacements.iter().enumerate().map(along).collect()
+    }
+
     /// Worn volume per cycle, m³: Archard's law on the dissipated energy, `k_w W/μ_f`.
     pub fn wear_rate(&self, fields: &Fields, compression: &[f64]) -> f64 {
         self.dissipation(fields, compression) * self.contact.wear().coefficient

@@ -35,6 +35,7 @@ impl Run<'_> {
         self.put_node_curves(group, &node)?;
         self.put_curves(group, &time, &node)?;
         self.put_table(group)?;
+        self.put_loops(group, &time)?;
         self.put_checkpoint(group)
     }
 
@@ -87,6 +88,16 @@ impl Run<'_> {
         let profile = put_array(file, TABLE_PROFILE, &[&row], table.heights())?;
         put_text(&profile, "coordinates", TABLE_RADIUS.name)?;
         put_text(&profile, TABLE_SOURCE, table.source())
+    }
+
+    fn put_loops(&self, file: &Group, time: &Dimension) -> Result<()> {
+        let group = create_group(file, LOOPS)?;
+        let displacement = &self.header.loop_displacement;
+        let point = Dimension::create(&group, POINT, displacement.len(), false)?;
+        put_array(&group, LOOP_DISPLACEMENT, &[&point], displacement)?;
+        let forces: Vec<f64> = self.snapshots.iter().flat_map(|it| it.loop_force.iter().copied()).collect();
+        let dataset = put_array(&group, LOOP_FORCE, &[time, &point], &forces)?;
+        put_text(&dataset, "coordinates", "cycles tau displacement")
     }
 
     fn put_checkpoint(&self, file: &Group) -> Result<()> {

@@ -5,7 +5,7 @@ use super::{Checkpoint, Snapshot};
 /// Value of the root attribute `format`.
 pub const FORMAT: &str = "fretwear-run";
 /// Value of the root attribute `format_version` that this program writes and reads.
-pub const FORMAT_VERSION: i32 = 1;
+pub const FORMAT_VERSION: i32 = 2;
 /// Group that holds what a restart needs.
 pub const CHECKPOINT: &str = "checkpoint";
 
@@ -29,6 +29,15 @@ pub const fn label<'a>(name: &'a str, units: &'a str, long_name: &'a str) -> Lab
 pub const TIME: Label = label("time", "1", "index of the snapshot");
 /// Index coordinate along the nodes, shape `(node,)`.
 pub const NODE: Label = label("node", "1", "index of the node");
+/// Group of the fretting loops.
+pub const LOOPS: &str = "loops";
+/// Index coordinate along a fretting loop, shape `(point,)`, in the group of the loops.
+pub const POINT: Label<'static> = label("point", "1", "index along one fretting loop");
+/// Displacement, shape `(point,)`, in the group of the loops.
+pub const LOOP_DISPLACEMENT: Label<'static> =
+    label("displacement", "m", "tangential displacement, from the amplitude to its negative and back");
+/// Force, shape `(time, point)`, in the group of the loops.
+pub const LOOP_FORCE: Label<'static> = label("tangential_force", "N", "tangential force along one cycle");
 /// Index coordinate along the springs, shape `(spring,)`, in the group of the checkpoint.
 pub const SPRING: Label = label("spring", "1", "index of the spring");
 /// Radius of the nodes, shape `(node,)`.
@@ -73,7 +82,7 @@ const fn field<Record, Value>(
 }
 
 /// Shape `(time,)`.
-pub(super) const SERIES: [Field<Snapshot, f64>; 8] = [
+pub(super) const SERIES: [Field<Snapshot, f64>; 10] = [
     field(label("cycles", "1", "number of fretting cycles"), |it| &it.cycles, |it| &mut it.cycles),
     field(label("tau", "1", "dimensionless time"), |it| &it.tau, |it| &mut it.tau),
     field(label("wear_volume", "m3", "worn volume"), |it| &it.wear_volume, |it| &mut it.wear_volume),
@@ -93,6 +102,16 @@ pub(super) const SERIES: [Field<Snapshot, f64>; 8] = [
         label("dissipated_energy", "J", "energy dissipated by friction since the start"),
         |it| &it.dissipated_energy,
         |it| &mut it.dissipated_energy,
+    ),
+    field(
+        label("cycle_energy", "J", "energy dissipated by friction in one cycle"),
+        |it| &it.cycle_energy,
+        |it| &mut it.cycle_energy,
+    ),
+    field(
+        label("tangential_force", "N", "amplitude of the tangential force"),
+        |it| &it.tangential_force,
+        |it| &mut it.tangential_force,
     ),
 ];
 

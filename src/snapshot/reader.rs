@@ -52,7 +52,7 @@ impl RunFile {
     pub(super) fn from_group(source: &Source, file: &Group) -> Result<Self> {
         source.check_format(file)?;
         let header = source.header(file)?;
-        let snapshots = source.snapshots(file, header.radius.len())?;
+        let snapshots = source.snapshots(file, header.radius.len(), header.loop_displacement.len())?;
         let checkpoint = if file.link_exists(CHECKPOINT) { Some(source.checkpoint(file)?) } else { None };
         let reason = source.text(file, "stop_reason")?;
         let stop_reason = StopReason::from_name(&reason)
@@ -151,7 +151,12 @@ impl Source {
             None
         };
         let table = if file.link_exists(TABLE_PROFILE.name) { Some(self.table(file)?) } else { None };
-        Ok(RunHeader { title, scene, radius, limit, table })
+        let loop_displacement = self.values(&self.loops(file)?, LOOP_DISPLACEMENT, &[None])?;
+        Ok(RunHeader { title, scene, radius, loop_displacement, limit, table })
+    }
+
+    fn loops(&self, file: &Group) -> Result<Group> {
+        file.group(LOOPS).map_err(|error| self.damaged("/loops", &error))
     }
 
     fn table(&self, file: &Group) -> Result<Arc<TabulatedProfile>> {
@@ -164,7 +169,7 @@ impl Source {
         table.map(Arc::new).map_err(|error| self.damaged(&name, &error))
     }
 
-    fn snapshots(&self, file: &Group, nodes: usize) -> Result<Vec<Snapshot>> {
+    fn snapshots(&self, file: &Group, nodes: usize, points: usize) -> Result<Vec<Snapshot>> {
         let mut times = None;
         let mut snapshots = Vec::new();
         for field in &SERIES {
@@ -180,6 +185,13 @@ impl Source {
             for (snapshot, row) in snapshots.iter_mut().zip(values.chunks_exact(nodes)) {
                 *(field.of_mut)(snapshot) = row.to_vec();
             }
+        }
+        if points == 0 {
+            return Ok(snapshots);
+        }
+        let forces: Vec<f64> = self.values(&self.loops(file)?, LOOP_FORCE, &[times, Some(points)])?;
+        for (snapshot, row) in snapshots.iter_mut().zip(forces.chunks_exact(points)) {
+            snapshot.loop_force = row.to_vec();
         }
         Ok(snapshots)
     }

@@ -88,6 +88,8 @@ impl RunWriter {
         for curve in [&snapshot.profile, &snapshot.wear_depth, &snapshot.pressure, &snapshot.slip] {
             assert_eq!(curve.len(), self.header.radius.len(), "values of a snapshot, nodes");
         }
+        let points = self.header.loop_displacement.len();
+        assert_eq!(snapshot.loop_force.len(), points, "forces of a snapshot, points of a loop");
         self.snapshots.push(snapshot);
     }
 
