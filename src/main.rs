@@ -332,8 +332,17 @@ fn sweep(arguments: &Sweep) -> Result<(String, ExitCode)> {
         complain("note", &format!("{} scenes in {shards} shards", study.count()));
     }
     let progress = shown.then(SceneProgress::default);
-    let outcome = fretwear::sweep::sweep(&study, &arguments.output, &options, progress.as_ref())?;
+    let outcome =
+        fretwear::sweep::Sweep::new(&study, &arguments.output, &options)?.execute(progress.as_ref());
     drop(progress);
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        // The input was in order: what stops a sweep that has begun is a failure of the sweep.
+        Err(error) => {
+            complain("error", &error.to_string());
+            return Ok((String::new(), ExitCode::FAILURE));
+        }
+    };
     let report = SweepReport::new(&options, &outcome);
     let code = match &outcome.file {
         None => ExitCode::from(INTERRUPTED),

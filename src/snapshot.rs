@@ -16,7 +16,7 @@ mod shard;
 mod writer;
 
 pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate};
-pub(crate) use atomic::AtomicFile;
+pub(crate) use atomic::{AtomicFile, remove_abandoned};
 pub use reader::RunFile;
 pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
 pub use writer::RunWriter;

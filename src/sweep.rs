@@ -25,10 +25,11 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
@@ -98,77 +99,114 @@ pub fn shard_range(shard: u64, shards: u64, scenes: u64) -> Range<u64> {
     cut(shard)..cut(shard + 1)
 }
 
-/// Does what is missing of a shard; see the [module](self) for what is written where.
+/// Does what is missing of a shard: [`Sweep::new`] and [`Sweep::execute`] in one.
 ///
 /// # Errors
-/// [`Error::Scene`] lists scenes of the study that are not valid, before anything runs; [`Error::File`] if files cannot be read or
-/// written, or belong to another study, version or number of shards. Scenes that fail are rows, not errors.
+/// Those of both.
 pub fn sweep(
     study: &Study,
     folder: &Path,
     options: &SweepOptions,
     progress: Option<&SceneProgress>,
 ) -> Result<SweepOutcome> {
-    let started = Instant::now();
-    // First of all: a signal during the preparations is answered like any other.
-    let shared = Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
-    let (shard, shards) = (options.shard, options.shards);
-    if !(1..=study.count()).contains(&shards) || shard >= shards {
-        return Err(Error::Inconsistent {
-            what: "--shard",
-            why: format!(
-                "{shard}/{shards} is none of a study of {} scenes; shards count from 0, and each has a scene",
-                study.count()
-            ),
+    Sweep::new(study, folder, options)?.execute(progress)
+}
+
+/// A shard that is ready to be done.
+pub struct Sweep<'a> {
+    study: &'a Study,
+    schema: Schema,
+    folder: Folder,
+    shared: Shared,
+    pool: ThreadPool,
+    range: Range<u64>,
+    before: Done,
+    /// Scenes without a row.
+    missing: Vec<u64>,
+    started: Instant,
+}
+
+impl<'a> Sweep<'a> {
+    /// Looks at what is there of a shard, and makes sure that what is missing can be done. From here on signals are answered.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] lists scenes of the study that are not valid; [`Error::Inconsistent`] for a shard that is none;
+    /// [`Error::File`] if the directory cannot be used, or holds results of another study, version or number of shards.
+    pub fn new(study: &'a Study, folder: &Path, options: &SweepOptions) -> Result<Self> {
+        let started = Instant::now();
+        let shared =
+            Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
+        let (shard, shards) = (options.shard, options.shards);
+        if !(1..=study.count()).contains(&shards) || shard >= shards {
+            return Err(Error::Inconsistent {
+                what: "--shard",
+                why: format!(
+                    "{shard}/{shards} is none of a study of {} scenes; shards count from 0, and each has a scene",
+                    study.count()
+                ),
+            });
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+        let pool = pool.map_err(|error| Error::Inconsistent { what: "--threads", why: error.to_string() })?;
+        let header = SweepHeader {
+            title: study.title().unwrap_or_default().into(),
+            task: study.task().name().into(),
+            study: study.text().into(),
+            base_scene: study.base_text().into(),
+            study_hash: study.hash(),
+            scenes: study.count(),
+            shards,
+            shard,
+        };
+        let folder = Folder::new(folder, header)?;
+        let range = shard_range(shard, shards, study.count());
+        let before = folder.done()?;
+        let missing = before.missing(&range);
+        pool.install(|| validate(study, &missing, &shared.stop))?;
+        folder.create()?;
+        Ok(Self { study, schema: Schema::new(study), folder, shared, pool, range, before, missing, started })
+    }
+
+    /// Runs what is missing; see the [module](self) for what is written where. Scenes that fail are rows, not errors.
+    ///
+    /// # Errors
+    /// [`Error::File`] if files cannot be read or written.
+    pub fn execute(self, progress: Option<&SceneProgress>) -> Result<SweepOutcome> {
+        let Self { study, schema, folder, shared, pool, missing, .. } = &self;
+        if let (Some(file), true) = (folder.finished(), missing.is_empty()) {
+            return Ok(self.outcome(Some(file), 0, 0));
+        }
+        if let Some(progress) = progress {
+            progress.begin(missing.len() as u64);
+        }
+        let worker = Worker { study, schema, folder, shared, progress };
+        let interval = shared.checkpoint_interval.unwrap_or_default();
+        let collector = Collector::new(folder, schema, interval);
+        let finished = pool.install(|| {
+            missing.par_iter().try_for_each(|&scene| match worker.row(scene) {
+                Ok(Some(row)) => collector.add(row).map_err(Some),
+                Ok(None) => Err(None),
+                Err(error) => Err(Some(error)),
+            })
         });
+        let (done, failed) = collector.finish()?;
+        let file = match finished {
+            Err(Some(error)) => return Err(error),
+            Err(None) => None,
+            Ok(()) => Some(folder.compact()?),
+        };
+        Ok(self.outcome(file, done, failed))
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
-    let pool = pool.map_err(|error| Error::Inconsistent { what: "--threads", why: error.to_string() })?;
-    let range = shard_range(shard, shards, study.count());
-    let header = SweepHeader {
-        title: study.title().unwrap_or_default().into(),
-        task: study.task().name().into(),
-        study: study.text().into(),
-        base_scene: study.base_text().into(),
-        study_hash: study.hash(),
-        scenes: study.count(),
-        shards,
-        shard,
-    };
-    let schema = Schema::new(study);
-    let folder = Folder::new(folder, header)?;
-    let outcome = |file: Option<PathBuf>, done_before: usize, done: u64, failed: u64| SweepOutcome {
-        file,
-        scenes: range.end - range.start,
-        done_before: done_before as u64,
-        done,
-        failed,
-        wall_seconds: started.elapsed().as_secs_f64(),
-    };
-    let before = folder.done()?;
-    if let (Some(file), true) = (folder.finished(), before.missing(&range).is_empty()) {
-        return Ok(outcome(Some(file), before.scenes.len(), 0, before.failed));
-    }
-    let missing = before.missing(&range);
-    pool.install(|| validate(study, &missing))?;
-    folder.create()?;
-    if let Some(progress) = progress {
-        progress.begin(missing.len() as u64);
-    }
-    let worker = Worker { study, schema: &schema, folder: &folder, shared: &shared, progress };
-    let collector = Collector::new(&folder, &schema, options.checkpoint_interval);
-    let finished = pool.install(|| {
-        missing.par_iter().try_for_each(|&scene| match worker.row(scene) {
-            Ok(Some(row)) => collector.add(row).map_err(Some),
-            Ok(None) => Err(None),
-            Err(error) => Err(Some(error)),
-        })
-    });
-    let (done, failed) = collector.finish()?;
-    match finished {
-        Err(Some(error)) => Err(error),
-        Err(None) => Ok(outcome(None, before.scenes.len(), done, before.failed + failed)),
-        Ok(()) => Ok(outcome(Some(folder.compact()?), before.scenes.len(), done, before.failed + failed)),
+
+    fn outcome(&self, file: Option<PathBuf>, done: u64, failed: u64) -> SweepOutcome {
+        SweepOutcome {
+            file,
+            scenes: self.range.end - self.range.start,
+            done_before: self.before.scenes.len() as u64,
+            done,
+            failed: self.before.failed + failed,
+            wall_seconds: self.started.elapsed().as_secs_f64(),
+        }
     }
 }
 
@@ -177,14 +215,17 @@ pub fn sweep(
 /// # Errors
 /// [`Error::Scene`] counts them and shows the first.
 pub fn validate_all(study: &Study) -> Result<()> {
-    validate(study, &(0..study.count()).collect::<Vec<_>>())
+    validate(study, &(0..study.count()).collect::<Vec<_>>(), &AtomicBool::new(false))
 }
 
-/// Refuses a study of which some of these scenes are not valid.
-fn validate(study: &Study, scenes: &[u64]) -> Result<()> {
+/// Refuses a study of which some of these scenes are not valid; a signal ends the search, and with it the sweep.
+fn validate(study: &Study, scenes: &[u64], stop: &AtomicBool) -> Result<()> {
     const SHOWN: usize = 3;
-    let wrong: Vec<String> =
-        scenes.par_iter().filter_map(|&scene| study.scene(scene).err().map(|it| it.to_string())).collect();
+    let fault = |&scene: &u64| match stop.load(Ordering::Relaxed) {
+        true => None,
+        false => study.scene(scene).err().map(|it| it.to_string()),
+    };
+    let wrong: Vec<String> = scenes.par_iter().filter_map(fault).collect();
     match wrong.len() {
         0 => Ok(()),
         count => Err(Error::Scene(format!(

@@ -244,15 +244,24 @@ fn two_attempts_at_one_shard_do_no_harm() {
 
 /// Starts the command again and again, each time stopped by a signal after a while that changes, until it reaches its end; the number of
 /// kills, or of signals that were answered.
-fn through_signals(place: &Place, output: &str, signal: i32, most: usize, arguments: &[&str]) -> usize {
+fn through_signals(
+    place: &Place,
+    output: &str,
+    signal: i32,
+    most: usize,
+    delays: std::ops::Range<u64>,
+    arguments: &[&str],
+) -> usize {
     let (mut stopped, mut answered) = (0, 0);
-    // Deterministic, between 20 and 150 ms.
+    // Deterministic.
     let mut random = 12345u64;
     loop {
         random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         let mut child = place.command(output).args(arguments).spawn().unwrap();
         if stopped < most {
-            std::thread::sleep(Duration::from_millis(20 + (random >> 33) % 130));
+            std::thread::sleep(Duration::from_millis(
+                delays.start + (random >> 33) % (delays.end - delays.start),
+            ));
             // SAFETY: a signal to a child that has not been waited for.
             unsafe { libc::kill(child.id() as libc::pid_t, signal) };
         }
@@ -272,19 +281,23 @@ fn through_signals(place: &Place, output: &str, signal: i32, most: usize, argume
 #[test]
 fn nothing_is_lost_or_doubled_by_kills() {
     let place = Place::new(&study(600));
-    let stopped = through_signals(&place, "out", libc::SIGKILL, 12, &["--checkpoint-interval", "0.05"]);
+    let stopped =
+        through_signals(&place, "out", libc::SIGKILL, 12, 20..150, &["--checkpoint-interval", "0.05"]);
     println!("{stopped} kills hit");
     assert!(stopped >= 5, "only {stopped} kills hit");
+    let left: Vec<_> =
+        std::fs::read_dir(place.path("out/parts")).unwrap().flatten().map(|it| it.path()).collect();
+    assert!(left.is_empty(), "left by killed processes: {left:?}");
     place.sweep("alone", &SweepOptions::default());
     assert!(bits(&place.merged("out")) == bits(&place.merged("alone")));
 }
 
 #[test]
 fn signals_are_answered_with_a_checkpoint_and_75() {
-    let place = Place::new(&study(200));
+    let place = Place::new(&study(1000));
     for signal in [libc::SIGTERM, libc::SIGINT, libc::SIGUSR1] {
         let output = format!("out{signal}");
-        let stopped = through_signals(&place, &output, signal, 4, &["--threads", "1"]);
+        let stopped = through_signals(&place, &output, signal, 4, 200..600, &["--threads", "1"]);
         assert!(stopped >= 2, "signal {signal}: stopped {stopped} times");
         let parts = std::fs::read_dir(place.path(&output).join("parts")).unwrap().count();
         assert_eq!(parts, 0, "nothing but the shard is left");
@@ -321,7 +334,8 @@ fn a_long_scene_goes_on_inside() {
 #[ignore = "minutes: a hundred kills over five thousand scenes"]
 fn a_hundred_kills_over_five_thousand_scenes_lose_nothing() {
     let place = Place::new(&study(5000));
-    let stopped = through_signals(&place, "out", libc::SIGKILL, 100, &["--checkpoint-interval", "0.05"]);
+    let stopped =
+        through_signals(&place, "out", libc::SIGKILL, 100, 20..150, &["--checkpoint-interval", "0.05"]);
     println!("{stopped} kills hit");
     assert!(stopped >= 60, "only {stopped} kills hit");
     place.sweep("alone", &SweepOptions::default());

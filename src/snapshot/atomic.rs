@@ -156,9 +156,7 @@ impl AtomicFile {
     fn remove_leftovers(&self) {
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
         for path in entries.filter(|entry| self.is_temporary(&entry.file_name())).map(|entry| entry.path()) {
-            let abandoned =
-                OpenOptions::new().write(true).open(&path).is_ok_and(|file| file.try_lock().is_ok());
-            if abandoned {
+            if is_abandoned(&path) {
                 // Failing to remove it is no reason to fail the run.
                 let _ = fs::remove_file(&path);
             }
@@ -170,6 +168,24 @@ impl AtomicFile {
         let process = rest.and_then(|rest| rest.strip_suffix(b".tmp"));
         process.is_some_and(|digits| !digits.is_empty() && digits.iter().all(u8::is_ascii_digit))
     }
+}
+
+/// Removes the temporaries in a folder whose processes are gone, of the files whose names satisfy a condition.
+pub(crate) fn remove_abandoned(folder: &Path, belongs: impl Fn(&str) -> bool) {
+    for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+        let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
+        let file = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(".tmp"));
+        let file = file.and_then(|rest| rest.rsplit_once('.')).map(|(file, _process)| file);
+        if file.is_some_and(&belongs) && is_abandoned(&path) {
+            // Somebody else may have done so.
+            let _ = fs::remove_file(&path);
+        }
+    }
+}
+
+/// Whether nobody holds the lock of a temporary.
+fn is_abandoned(path: &Path) -> bool {
+    OpenOptions::new().write(true).open(path).is_ok_and(|file| file.try_lock().is_ok())
 }
 
 /// A temporary that is removed when dropped, unless it has been renamed by then.

@@ -151,11 +151,23 @@ impl SweepFile {
         }
         let mut file = AtomicFile::new(path, overwrite)?;
         file.write_with(|temporary| {
-            self.lay_out(temporary).map_err(|error| Error::File {
+            let failed = |error: &dyn std::fmt::Display| Error::File {
                 path: path.to_owned(),
-                why: format!("the HDF5 library could not write the file: {error}"),
-            })
+                why: format!("could not be written, is the disk full? ({})", first_line(error)),
+            };
+            self.lay_out(temporary).map_err(|error| failed(&error))?;
+            // The library has lost errors of a full disk.
+            let (source, file) = reader::open(temporary).map_err(|error| failed(&error))?;
+            let rows: Vec<i64> = source.values(&file, SCENE, &[Some(self.scenes.len())])?;
+            match header(&source, &file)? == self.header && rows == self.ids() {
+                true => Ok(()),
+                false => Err(failed(&"what was written reads differently")),
+            }
         })
+    }
+
+    fn ids(&self) -> Vec<i64> {
+        self.scenes.iter().map(|scene| scene.cast_signed()).collect()
     }
 
     fn lay_out(&self, path: &Path) -> hdf5::Result<()> {
@@ -178,8 +190,7 @@ impl SweepFile {
             file.new_attr::<u64>().create(name)?.write_scalar(&number)?;
         }
         put_integer(&file, "complete", self.complete.into())?;
-        let ids: Vec<i64> = self.scenes.iter().map(|scene| scene.cast_signed()).collect();
-        let rows = Dimension::coordinate(&file, SCENE, &ids)?;
+        let rows = Dimension::coordinate(&file, SCENE, &self.ids())?;
         for Column { name, units, long_name, values } in &self.columns {
             let label = Label { name, units, long_name };
             match values {
@@ -205,6 +216,8 @@ impl SweepFile {
                 run.put_into(&create_group(&group, &scene.to_string())?)?;
             }
         }
+        drop(rows);
+        file.flush()?;
         file.close()
     }
 
@@ -310,4 +323,9 @@ fn header(source: &Source, file: &File) -> Result<SweepHeader> {
 /// Text without NUL, which HDF5 would end it at.
 fn unicode(text: &str) -> hdf5::Result<VarLenUnicode> {
     VarLenUnicode::from_str(&text.replace('\0', "\u{fffd}")).map_err(|error| error.to_string().into())
+}
+
+/// Errors of the HDF5 library go on for lines.
+fn first_line(error: &dyn std::fmt::Display) -> String {
+    error.to_string().lines().next().unwrap_or_default().to_owned()
 }

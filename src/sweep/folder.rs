@@ -1,6 +1,6 @@
 //! The directory of a sweep: which files are there, whose they are, and how parts become the file of a shard.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,7 +12,7 @@ use super::Done;
 use super::merge::{failed_scenes, gather};
 use super::rows::{Row, Schema};
 use crate::error::{Error, Result};
-use crate::snapshot::{SweepFile, SweepHeader};
+use crate::snapshot::{SweepFile, SweepHeader, remove_abandoned};
 
 /// Folder of the parts.
 const PARTS: &str = "parts";
@@ -43,8 +43,7 @@ impl Folder {
         }
         this.check_shards()?;
         for file in files(&path.join(PARTS))? {
-            let scene = name_of(&file).strip_prefix("scene-").and_then(|rest| rest.split('.').next());
-            if let Some(scene) = scene.and_then(|digits| digits.parse().ok()) {
+            if let Some(scene) = scene_of(name_of(&file)) {
                 this.checkpoints.entry(scene).or_default().push(file);
             }
         }
@@ -162,11 +161,16 @@ impl Folder {
         let target = self.shard_file();
         let whole = gather(files, self.header.clone(), true)?;
         whole.write(&target, true)?;
+        let done: HashSet<u64> = whole.scenes.iter().copied().collect();
         for path in paths.into_iter().filter(|path| *path != target) {
             // Another attempt may have done so.
             let _ = fs::remove_file(path);
         }
         whole.scenes.iter().for_each(|&scene| self.remove_checkpoints(scene));
+        let prefix = format!("{}-of-{}.", self.header.shard, self.header.shards);
+        let own =
+            |name: &str| name.starts_with(&prefix) || scene_of(name).is_some_and(|it| done.contains(&it));
+        remove_abandoned(&self.path.join(PARTS), own);
         // The folder of the parts stays: other shards, or other attempts at this one, are about to write into it.
         Ok(target)
     }
@@ -219,6 +223,11 @@ pub(super) fn files(folder: &Path) -> Result<Vec<PathBuf>> {
 
 fn name_of(path: &Path) -> &str {
     path.file_name().and_then(|name| name.to_str()).unwrap_or_default()
+}
+
+/// Number of the scene in the name of its checkpoint.
+fn scene_of(name: &str) -> Option<u64> {
+    name.strip_prefix("scene-")?.split('.').next()?.parse().ok()
 }
 
 /// Number and count of shards in the name of a shard's file.
