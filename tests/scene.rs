@@ -232,7 +232,12 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "stribeck",
             &["friction.stribeck", "offers coulomb only"],
         ),
-        ("[wear.archard]", "[wear.power]", "[wear.power]", &["wear.power", "offers archard only"]),
+        (
+            "[wear.archard]",
+            "[wear.power]",
+            "[wear.power]",
+            &["wear.power", "this version offers archard or dissipated-energy"],
+        ),
         (FRICTION, "coeficient = 0.6", "coeficient", &["friction.coulomb.coeficient", "coefficient"]),
         (ACCURACY, "stepper = \"implict\"", "stepper", &["numerics.stepper", "did you mean implicit?"]),
         (
@@ -708,4 +713,19 @@ proptest! {
             prop_assert!(scene.friction().coefficient > 0.0 && scene.wear().coefficient > 0.0);
         }
     }
+}
+
+#[test]
+fn wear_by_dissipated_energy_is_archards_law_times_the_friction_coefficient() {
+    let text = VALID.replace(
+        "[wear.archard]\ncoefficient = \"1e-14 1/Pa\"",
+        "[wear.dissipated-energy]\ncoefficient = \"2e-5 mm^3/J\"",
+    );
+    assert_ne!(text, VALID);
+    let scene = Scene::from_toml(&text, "scene.toml").unwrap();
+    let expected = 2e-14 * scene.friction().coefficient;
+    assert!((scene.wear().coefficient / expected - 1.0).abs() < 1e-15, "{}", scene.wear().coefficient);
+    let both = text + "\n[wear.archard]\ncoefficient = 1e-14\n";
+    let message = Scene::from_toml(&both, "scene.toml").unwrap_err().to_string();
+    assert!(message.contains("exclude each other"), "{message}");
 }

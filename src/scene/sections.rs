@@ -34,7 +34,7 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     let bodies = table(root, "half_space", "add [half_space] with grading, modulus and poisson_ratio")?;
     let half_space = contact(root, &bodies, &mut warnings)?;
     let friction = friction(&table(root, "friction", "add [friction.coulomb] with coefficient")?)?;
-    let wear = wear(&table(root, "wear", "add [wear.archard] with coefficient")?)?;
+    let wear = wear(&table(root, "wear", "add [wear.archard] with coefficient")?, &friction)?;
     let loading = loading(&table(root, "loading", "add [loading] with load, amplitude and duration")?)?;
     let numerics = match root.optional("numerics") {
         Some(entry) => numerics(&entry.section()?, &mut warnings)?,
@@ -222,20 +222,26 @@ fn warn_if_formal(section: &Section, poisson: Poisson, grading: f64, warnings: &
 }
 
 fn friction(section: &Section) -> Result<Coulomb> {
-    Ok(Coulomb { coefficient: law(section, "coulomb", Dimension::NUMBER)? })
+    section.only(&["coulomb"], &[])?;
+    let law = section.one_of(&["coulomb"])?.1.section()?;
+    Ok(Coulomb { coefficient: coefficient(&law, Dimension::NUMBER, "for example 0.6")? })
 }
 
-fn wear(section: &Section) -> Result<Archard> {
-    Ok(Archard { coefficient: law(section, "archard", Dimension::INVERSE_PRESSURE)? })
+fn wear(section: &Section, friction: &Coulomb) -> Result<Archard> {
+    const LAWS: [&str; 2] = ["archard", "dissipated-energy"];
+    section.only(&LAWS, &[])?;
+    let (law, entry) = section.one_of(&LAWS)?;
+    // Volume per load and distance, and volume per energy, have the same dimension.
+    let coefficient = |example: &str| coefficient(&entry.section()?, Dimension::INVERSE_PRESSURE, example);
+    Ok(match law {
+        "archard" => Archard { coefficient: coefficient("for example \"1e-14 1/Pa\"")? },
+        _ => Archard::from_dissipated_energy(coefficient("for example \"2e-5 mm^3/J\"")?, friction),
+    })
 }
 
-/// The positive coefficient of the one law that there is.
-fn law(section: &Section, name: &'static str, dimension: Dimension) -> Result<f64> {
-    section.only(&[name], &[])?;
-    let law = section.one_of(&[name])?.1.section()?;
+/// The positive coefficient of a law.
+fn coefficient(law: &Section, dimension: Dimension, example: &str) -> Result<f64> {
     law.only(&["coefficient"], &[])?;
-    let example =
-        if dimension == Dimension::NUMBER { "for example 0.6" } else { "for example \"1e-14 1/Pa\"" };
     law.required("coefficient", example)?.positive(dimension)
 }
 
