@@ -138,6 +138,7 @@ fn values(
         ("CPUS", proposal.cpus_per_task.to_string()),
         ("MINUTES", proposal.time_limit.to_string()),
         ("LEAD", proposal.signal_lead.to_string()),
+        ("INTERVAL", options.checkpoint_interval.unwrap_or(options.engine.checkpoint_interval()).to_string()),
         ("REQUEUES", options.most_requeues.to_string()),
         ("MORE", more),
     ]
