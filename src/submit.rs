@@ -95,7 +95,7 @@ pub fn submit(study: &Path, folder: &Path, options: &Options) -> Result<Submissi
     let wishes = Wishes { shards: shards_so_far(folder, options.wishes.shards)?, ..options.wishes };
     let proposal = Proposal::new(description.count(), &measurement, &wishes, largest_array)?;
     let merged = paths.merged();
-    let files = scripts::write(&paths, options, &proposal, &measurement)?;
+    let files = scripts::write(&paths, options, &proposal, &measurement, description.count())?;
     let submitted = match options.dry_run {
         true => None,
         false => Some(options.engine.hand_in(folder)),

@@ -7,6 +7,7 @@ import os
 import sys
 import tempfile
 import threading
+import time
 from pathlib import Path
 
 from hyperqueue import Job, LocalCluster
@@ -26,6 +27,8 @@ with tempfile.TemporaryDirectory() as server:
 
         def stop():
             cluster.stop()
+            # SIGINT goes out at once, SIGKILL one second later.
+            time.sleep(2)
             print(f"cluster stopped after {stop_after} s", flush=True)
             os._exit(3)
 
