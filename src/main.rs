@@ -194,6 +194,9 @@ struct Submit {
     /// Wall time of a scene on one core, instead of measuring a few
     #[arg(long, value_name = "SECONDS")]
     seconds_per_scene: Option<f64>,
+    /// Seconds between checkpoints; by default 30, and 10 in HyperQueue, which warns only a second before it kills
+    #[arg(long, value_name = "SECONDS")]
+    checkpoint_interval: Option<f64>,
     /// How often a shard may be queued again after an interruption
     #[arg(long, value_name = "N", default_value_t = 20)]
     max_requeues: u32,
@@ -395,6 +398,7 @@ fn submit(arguments: &Submit) -> Result<(String, ExitCode)> {
             cpus_per_task: arguments.cpus_per_task,
             time_limit: arguments.time_limit,
         },
+        checkpoint_interval: arguments.checkpoint_interval,
         most_requeues: arguments.max_requeues,
         partition: arguments.partition.clone(),
         account: arguments.account.clone(),

@@ -36,6 +36,8 @@ pub struct Options {
     pub seconds_per_scene: Option<f64>,
     /// What the shards are to be like.
     pub wishes: Wishes,
+    /// Wall time between checkpoints, s, instead of the engine's own.
+    pub checkpoint_interval: Option<f64>,
     /// How often a shard may be queued again.
     pub most_requeues: u32,
     /// Slurm's partition.
@@ -90,9 +92,10 @@ pub fn submit(study: &Path, folder: &Path, options: &Options) -> Result<Submissi
         None => Measurement::new(&description)?,
     };
     let largest_array = options.engine.largest_array();
-    let proposal = Proposal::new(description.count(), &measurement, &options.wishes, largest_array)?;
+    let wishes = Wishes { shards: shards_so_far(folder, options.wishes.shards)?, ..options.wishes };
+    let proposal = Proposal::new(description.count(), &measurement, &wishes, largest_array)?;
     let merged = paths.merged();
-    let files = scripts::write(&paths, options, &proposal, &measurement)?;
+    let files = scripts::write(&paths, options, &proposal, &measurement, description.count())?;
     let submitted = match options.dry_run {
         true => None,
         false => Some(options.engine.hand_in(folder)),
@@ -110,13 +113,30 @@ pub fn submit(study: &Path, folder: &Path, options: &Options) -> Result<Submissi
     })
 }
 
+/// The number of shards that is asked for, or that results in the directory dictate.
+fn shards_so_far(folder: &Path, asked: Option<u64>) -> Result<Option<u64>> {
+    match (sweep::shards_in(folder)?, asked) {
+        (Some(there), Some(asked)) if there != asked => Err(Error::File {
+            path: folder.to_owned(),
+            why: format!(
+                "holds results of {there} shards, and --shards {asked} is asked for; leave it out, or use another directory"
+            ),
+        }),
+        (there, asked) => Ok(there.or(asked)),
+    }
+}
+
 impl Options {
     /// Refuses options that make no sense or belong to another engine.
     fn check(&self) -> Result<()> {
-        if let Some(seconds) = self.seconds_per_scene
-            && !(seconds > 0.0 && seconds.is_finite())
+        let times = [
+            ("--seconds-per-scene", self.seconds_per_scene),
+            ("--checkpoint-interval", self.checkpoint_interval),
+        ];
+        if let Some((name, Some(seconds))) =
+            times.iter().find(|(_, it)| it.is_some_and(|it| !(it > 0.0 && it.is_finite())))
         {
-            return Err(refuse("--seconds-per-scene", format!("{seconds} is no time; give seconds above 0")));
+            return Err(refuse(name, format!("{seconds} is no time; give seconds above 0")));
         }
         if self.engine == Engine::HyperQueue {
             let slurm_only = [

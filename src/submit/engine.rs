@@ -43,6 +43,14 @@ impl Engine {
         }
     }
 
+    /// Wall time between checkpoints, s: Slurm warns, and only a lost node costs more; HyperQueue kills one second after its warning.
+    pub(super) fn checkpoint_interval(self) -> f64 {
+        match self {
+            Self::Slurm => 30.0,
+            Self::HyperQueue => 10.0,
+        }
+    }
+
     /// The program that takes jobs.
     fn program(self) -> &'static str {
         match self {

@@ -11,6 +11,9 @@ const LONGEST_SHARD: f64 = 1800.0;
 /// Seconds by which Slurm may send its warning early, and a checkpoint needs besides.
 const LEAD: f64 = 60.0;
 
+/// Least time between a start and the warning, s, of which Slurm may take half a minute off.
+const LEAST_WORK: f64 = 45.0;
+
 /// Longest warning that Slurm accepts, s.
 const LONGEST_LEAD: f64 = 65535.0;
 
@@ -72,8 +75,7 @@ impl Proposal {
         let seconds_per_shard =
             (core_seconds / shards as f64 / cpus_per_task as f64).max(cost.longest_seconds);
         let signal_lead = (LEAD + cost.longest_seconds.ceil()).min(LONGEST_LEAD);
-        // Half the time may go in warnings, no more.
-        let shortest = (2.0 * signal_lead / 60.0).ceil() as u64;
+        let shortest = ((signal_lead + LEAST_WORK) / 60.0).ceil() as u64;
         let time_limit = match time_limit {
             Some(minutes) if minutes < shortest => {
                 let why = format!(
@@ -140,7 +142,7 @@ mod tests {
     fn the_warning_leaves_time_for_a_scene_and_the_limit_for_the_warning() {
         let proposal = propose(1000, 599.5);
         assert_eq!(proposal.signal_lead, 660);
-        assert!(proposal.time_limit * 60 >= 2 * proposal.signal_lead, "{proposal:?}");
+        assert!(proposal.time_limit * 60 >= proposal.signal_lead + 45, "{proposal:?}");
         assert_eq!(propose(10, 1e6).signal_lead, 65535);
     }
 
@@ -152,7 +154,7 @@ mod tests {
         assert!(refuse(Wishes { shards: Some(13), ..WISHES }).contains("give 1 to 12"));
         assert!(refuse(Wishes { shards: Some(0), ..WISHES }).contains("give 1 to 12"));
         assert!(refuse(Wishes { cpus_per_task: 0, ..WISHES }).contains("--cpus-per-task"));
-        assert!(refuse(Wishes { time_limit: Some(2), ..WISHES }).contains("give at least 3"));
+        assert!(refuse(Wishes { time_limit: Some(1), ..WISHES }).contains("give at least 2"));
         let kept = Wishes { shards: Some(5), cpus_per_task: 1, time_limit: Some(3) };
         let proposal = Proposal::new(12, &Measurement::told(0.1), &kept, 1001).expect("a proposal");
         assert_eq!((proposal.shards, proposal.time_limit), (5, 3));

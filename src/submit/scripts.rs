@@ -30,6 +30,9 @@ const MERGED: &str = "merged.h5";
 const BASE_MEMORY: f64 = 0.5e9;
 const LEAST_MEMORY: f64 = 1e9;
 
+/// Memory of the merge for each scene, bytes; measured 0.5 kB.
+const MERGE_MEMORY: f64 = 1e3;
+
 /// Absolute paths that a script can hold.
 #[derive(Debug)]
 pub(super) struct Paths {
@@ -98,6 +101,7 @@ pub(super) fn write(
     options: &Options,
     proposal: &Proposal,
     measurement: &Measurement,
+    scenes: u64,
 ) -> Result<Vec<PathBuf>> {
     let folder = Path::new(&paths.folder);
     // Slurm does not make the directory of a log, and a job without it fails in silence.
@@ -105,7 +109,7 @@ pub(super) fn write(
         path: folder.to_owned(),
         why: format!("the directory cannot be made: {error}"),
     })?;
-    let values = values(paths, options, proposal, measurement);
+    let values = values(paths, options, proposal, measurement, scenes);
     let write = |(name, template): &Script| {
         let path = folder.join(name);
         AtomicFile::new(&path, options.overwrite)?.write(fill(template, &values).as_bytes())?;
@@ -120,9 +124,11 @@ fn values(
     options: &Options,
     proposal: &Proposal,
     measurement: &Measurement,
+    scenes: u64,
 ) -> Vec<(&'static str, String)> {
+    let memory = shard_memory(measurement, proposal.cpus_per_task);
     let more = match options.engine {
-        Engine::Slurm => slurm_lines(options, proposal, measurement),
+        Engine::Slurm => slurm_lines(options, memory.map(megabytes)),
         Engine::HyperQueue => {
             options.engine_options.iter().map(|it| format!(" {}", shell::quote(it))).collect()
         }
@@ -138,14 +144,16 @@ fn values(
         ("CPUS", proposal.cpus_per_task.to_string()),
         ("MINUTES", proposal.time_limit.to_string()),
         ("LEAD", proposal.signal_lead.to_string()),
+        ("INTERVAL", options.checkpoint_interval.unwrap_or(options.engine.checkpoint_interval()).to_string()),
         ("REQUEUES", options.most_requeues.to_string()),
         ("MORE", more),
+        ("MERGEMORE", slurm_lines(options, memory.map(|it| megabytes(it.max(merge_memory(scenes)))))),
     ]
 }
 
 /// The lines of #SBATCH that not every cluster needs.
-fn slurm_lines(options: &Options, proposal: &Proposal, measurement: &Measurement) -> String {
-    let memory = options.memory.clone().or_else(|| memory(measurement, proposal.cpus_per_task));
+fn slurm_lines(options: &Options, memory: Option<String>) -> String {
+    let memory = options.memory.clone().or(memory);
     let named = [
         ("--mem", memory),
         ("--partition", options.partition.clone()),
@@ -156,10 +164,19 @@ fn slurm_lines(options: &Options, proposal: &Proposal, measurement: &Measurement
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Twice what one scene needed, for each core: without a wish of ours many clusters give a job all the memory of its node, and so the node.
-fn memory(measurement: &Measurement, cpus: usize) -> Option<String> {
-    let bytes = BASE_MEMORY + 2.0 * measurement.peak_memory? * cpus as f64;
-    Some(format!("{}M", (bytes.max(LEAST_MEMORY) / 1e8).ceil() as u64 * 100))
+/// Twice what one scene needed, for each core, bytes: without a wish of ours many clusters give a job all the memory of its node, and so
+/// the node.
+fn shard_memory(measurement: &Measurement, cpus: usize) -> Option<f64> {
+    Some((BASE_MEMORY + 2.0 * measurement.peak_memory? * cpus as f64).max(LEAST_MEMORY))
+}
+
+fn merge_memory(scenes: u64) -> f64 {
+    BASE_MEMORY + MERGE_MEMORY * scenes as f64
+}
+
+/// An amount of memory as Slurm takes it, rounded up.
+fn megabytes(bytes: f64) -> String {
+    format!("{}M", (bytes / 1e8).ceil() as u64 * 100)
 }
 
 /// Puts values in place of `@NAME@`, in one pass: what a value contains is never taken for a name.
@@ -184,4 +201,23 @@ fn fill(template: &str, values: &[(&str, String)]) -> String {
     }
     filled.push_str(rest);
     filled
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_put_in_once() {
+        let values = [("A", "@B@".to_string()), ("B", "b".to_string())];
+        assert_eq!(fill("@A@ B:USR1@@B@ x@y @ @", &values), "@B@ B:USR1@b x@y @ @");
+    }
+
+    #[test]
+    fn memory_grows_with_cores_and_scenes() {
+        let measured = Measurement { peak_memory: Some(3e8), ..Measurement::told(1.0) };
+        assert_eq!(shard_memory(&measured, 4).map(megabytes).as_deref(), Some("2900M"));
+        assert_eq!(shard_memory(&measured, 0).map(megabytes).as_deref(), Some("1000M"));
+        assert_eq!(megabytes(merge_memory(1_000_000)), "1500M");
+    }
 }

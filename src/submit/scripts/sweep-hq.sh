@@ -9,5 +9,5 @@ folder=@FOLDER@
 shards=@SHARDS@
 
 task=${HQ_TASK_ID:?run this through hq submit}
-exec "$fretwear" sweep "$study" -o "$folder" --shard "$task/$shards" --threads @CPUS@ --checkpoint-interval 10 --quiet \
+exec "$fretwear" sweep "$study" -o "$folder" --shard "$task/$shards" --threads @CPUS@ --checkpoint-interval @INTERVAL@ --quiet \
     >>"$folder/log/sweep-hq_$task.log" 2>&1
