@@ -13,6 +13,7 @@
 //! ```
 
 mod folder;
+mod gathering;
 mod merge;
 mod report;
 mod rows;
@@ -21,7 +22,7 @@ pub use folder::shards_in;
 pub use merge::{Merged, array_syntax, merge};
 pub use report::{MergeReport, SweepReport};
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -374,7 +375,7 @@ impl<'a> Collector<'a> {
 /// Scenes that have a row.
 #[derive(Debug, Clone, Default)]
 struct Done {
-    scenes: BTreeSet<u64>,
+    scenes: HashSet<u64>,
     failed: u64,
 }
 

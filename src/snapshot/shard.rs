@@ -68,10 +68,22 @@ pub enum Values {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Words {
     different: Vec<String>,
+    known: HashMap<String, u32>,
     places: Vec<u32>,
 }
 
 impl Words {
+    /// Adds a word.
+    pub fn push(&mut self, word: &str) {
+        let place = self.known.get(word).copied().unwrap_or_else(|| {
+            let place = self.different.len() as u32;
+            self.known.insert(word.to_owned(), place);
+            self.different.push(word.to_owned());
+            place
+        });
+        self.places.push(place);
+    }
+
     /// Number of words.
     pub fn len(&self) -> usize {
         self.places.len()
@@ -98,18 +110,8 @@ impl Words {
 
 impl<T: AsRef<str>> FromIterator<T> for Words {
     fn from_iter<I: IntoIterator<Item = T>>(words: I) -> Self {
-        let mut known: HashMap<String, u32> = HashMap::new();
         let mut found = Self::default();
-        for word in words {
-            let word = word.as_ref();
-            let place = known.get(word).copied().unwrap_or_else(|| {
-                let place = found.different.len() as u32;
-                known.insert(word.to_owned(), place);
-                found.different.push(word.to_owned());
-                place
-            });
-            found.places.push(place);
-        }
+        words.into_iter().for_each(|word| found.push(word.as_ref()));
         found
     }
 }

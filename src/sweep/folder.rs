@@ -9,7 +9,7 @@ use std::time::SystemTime;
 use sha2::{Digest, Sha256};
 
 use super::Done;
-use super::merge::{failed_scenes, gather};
+use super::gathering::{Gathering, fold_files};
 use super::rows::{Row, Schema};
 use crate::error::{Error, Result};
 use crate::snapshot::{SweepFile, SweepHeader, remove_abandoned};
@@ -94,28 +94,14 @@ impl Folder {
         Ok(parts)
     }
 
-    /// Everything that is there of this shard, and the files it was read from.
-    fn read(&self) -> Result<(Vec<SweepFile>, Vec<PathBuf>)> {
-        const MOST_TRIES: usize = 5;
-        for _ in 0..MOST_TRIES {
+    /// All rows that are there of this shard, and the files they were read from.
+    fn read(&self) -> Result<(Gathering, Vec<PathBuf>)> {
+        let list = || {
             let mut paths = self.parts()?;
             paths.extend(self.finished());
-            let read = paths.iter().map(|path| (path, SweepFile::read(path)));
-            let mut found = vec![];
-            let mut vanished = false;
-            for (path, file) in read {
-                match file {
-                    Ok(file) => found.push(self.checked(path, file)?),
-                    // Another attempt has put it into the file of the shard meanwhile.
-                    Err(_) if !path.exists() => vanished = true,
-                    Err(error) => return Err(error),
-                }
-            }
-            if !vanished {
-                return Ok((found, paths));
-            }
-        }
-        Err(self.error(&self.path, "changes all the time; wait for the other attempts at this shard"))
+            Ok(paths)
+        };
+        fold_files(list, Gathering::default, |gathered, path, file| gathered.add(self.checked(path, file)?))
     }
 
     /// Refuses a file of another study or version.
@@ -135,17 +121,8 @@ impl Folder {
 
     /// Scenes of this shard that have a row.
     pub(super) fn done(&self) -> Result<Done> {
-        let (files, _) = self.read()?;
-        let mut done = Done::default();
-        for file in &files {
-            let failed = failed_scenes(file);
-            for &scene in &file.scenes {
-                if done.scenes.insert(scene) && failed.contains(&scene) {
-                    done.failed += 1;
-                }
-            }
-        }
-        Ok(done)
+        let (gathered, _) = self.read()?;
+        Ok(Done { failed: gathered.failed(), scenes: gathered.into_scenes() })
     }
 
     /// Writes rows as a new part.
@@ -157,16 +134,16 @@ impl Folder {
 
     /// Makes one file of all parts, and removes them.
     pub(super) fn compact(&self) -> Result<PathBuf> {
-        let (files, paths) = self.read()?;
+        let (gathered, paths) = self.read()?;
         let target = self.shard_file();
-        let whole = gather(files, self.header.clone(), true)?;
+        let whole = gathered.into_file(self.header.clone(), true);
         whole.write(&target, true)?;
-        let done: HashSet<u64> = whole.scenes.iter().copied().collect();
+        let done: HashSet<u64> = whole.scenes.into_iter().collect();
         for path in paths.into_iter().filter(|path| *path != target) {
             // Another attempt may have done so.
             let _ = fs::remove_file(path);
         }
-        whole.scenes.iter().for_each(|&scene| self.remove_checkpoints(scene));
+        done.iter().for_each(|&scene| self.remove_checkpoints(scene));
         let prefix = format!("{}-of-{}.", self.header.shard, self.header.shards);
         let own =
             |name: &str| name.starts_with(&prefix) || scene_of(name).is_some_and(|it| done.contains(&it));

@@ -1,13 +1,12 @@
 //! All shards of a sweep as one table.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::folder::{files, is_part, parts_folder, shard_of};
-use super::rows::{FAILED, STATUS, WALL_SECONDS};
+use super::gathering::{Gathering, fold_files};
 use super::shard_range;
 use crate::error::{Error, Result};
-use crate::snapshot::{Column, SweepFile, SweepHeader, Values};
+use crate::snapshot::SweepHeader;
 
 /// What is in a merged file, or is missing for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,51 +28,44 @@ pub struct Merged {
 /// Merges the files of a sweep into one, sorted by scene, without duplicates; writes nothing if scenes are missing.
 ///
 /// # Errors
-/// [`Error::File`] if there is nothing to merge, files are damaged, belong to different studies, or disagree on a scene.
+/// [`Error::File`] if there is nothing to merge, files are damaged or belong to different studies; [`Error::Inconsistent`] if they disagree
+/// on a scene.
 pub fn merge(folder: &Path, output: &Path, overwrite: bool) -> Result<Merged> {
-    let mut paths: Vec<_> = files(folder)?.into_iter().filter(|path| shard_of(path).is_some()).collect();
-    paths.extend(files(&parts_folder(folder))?.into_iter().filter(|path| is_part(path)));
-    let Some(first) = paths.first() else {
+    let list = || -> Result<Vec<PathBuf>> {
+        let mut paths: Vec<_> = files(folder)?.into_iter().filter(|path| shard_of(path).is_some()).collect();
+        paths.extend(files(&parts_folder(folder))?.into_iter().filter(|path| is_part(path)));
+        Ok(paths)
+    };
+    let mut header: Option<SweepHeader> = None;
+    let (gathered, paths) = fold_files(list, Gathering::default, |gathered, path, file| {
+        let first = header.get_or_insert_with(|| file.header.clone());
+        if file.header.study_hash != first.study_hash || file.header.shards != first.shards {
+            return Err(Error::File {
+                path: path.to_owned(),
+                why: "belongs to another study, version or number of shards than the others".into(),
+            });
+        }
+        gathered.add(file)
+    })?;
+    let Some(header) = header else {
         return Err(Error::File {
             path: folder.to_owned(),
             why: "holds no results of a sweep; run `fretwear sweep` first, or check the spelling".into(),
         });
     };
-    let header = SweepFile::read_header(first)?;
-    let mut found = vec![];
-    for path in &paths {
-        let file = SweepFile::read(path)?;
-        if file.header.study_hash != header.study_hash || file.header.shards != header.shards {
-            return Err(Error::File {
-                path: path.clone(),
-                why: format!(
-                    "belongs to another study, version or number of shards than {}",
-                    first.display()
-                ),
-            });
-        }
-        found.push(file);
-    }
-    let rows: u64 = found.iter().map(|file| file.scenes.len() as u64).sum();
-    let present: BTreeSet<u64> = found.iter().flat_map(|file| file.scenes.iter().copied()).collect();
-    let missing_shards: Vec<u64> = (0..header.shards)
-        .filter(|&shard| {
-            shard_range(shard, header.shards, header.scenes).any(|scene| !present.contains(&scene))
-        })
-        .collect();
-    let (scenes, distinct) = (header.scenes, present.len() as u64);
-    let mut merged = Merged {
-        scenes,
-        failed: 0,
-        duplicates: rows - distinct,
-        missing: scenes.saturating_sub(distinct),
-        missing_shards,
+    let lacks =
+        |shard: &u64| shard_range(*shard, header.shards, header.scenes).any(|scene| !gathered.has(scene));
+    let merged = Merged {
+        scenes: header.scenes,
+        failed: gathered.failed(),
+        duplicates: gathered.duplicates,
+        missing: header.scenes.saturating_sub(gathered.len()),
+        missing_shards: (0..header.shards).filter(lacks).collect(),
         files: paths.len(),
     };
     if merged.missing_shards.is_empty() {
-        let whole = gather(found, SweepHeader { shard: 0, shards: 1, ..header }, true)?;
-        merged.failed = failed_scenes(&whole).len() as u64;
-        whole.write(output, overwrite)?;
+        let header = SweepHeader { shard: 0, shards: 1, ..header };
+        gathered.into_file(header, true).write(output, overwrite)?;
     }
     Ok(merged)
 }
@@ -96,94 +88,4 @@ pub fn array_syntax(numbers: &[u64]) -> String {
         false => format!("{first}-{last}"),
     };
     runs.iter().map(shown).collect::<Vec<_>>().join(",")
-}
-
-/// Scenes of a file that failed.
-pub(super) fn failed_scenes(file: &SweepFile) -> BTreeSet<u64> {
-    let status = file.columns.iter().find(|column| column.name == STATUS);
-    let Some(Column { values: Values::Texts(texts), .. }) = status else { return BTreeSet::new() };
-    file.scenes
-        .iter()
-        .zip(texts.iter())
-        .filter(|(_, text)| *text == FAILED)
-        .map(|(scene, _)| *scene)
-        .collect()
-}
-
-/// One file of the rows of many, sorted by scene, each scene once.
-pub(super) fn gather(files: Vec<SweepFile>, header: SweepHeader, complete: bool) -> Result<SweepFile> {
-    // Where the row of each scene is.
-    let mut places: BTreeMap<u64, (usize, usize)> = BTreeMap::new();
-    for (number, file) in files.iter().enumerate() {
-        for (row, scene) in file.scenes.iter().enumerate() {
-            match places.get(scene) {
-                None => {
-                    places.insert(*scene, (number, row));
-                }
-                Some(&other) => check_equal(&files, *scene, other, (number, row))?,
-            }
-        }
-    }
-    let Some(first) = files.first() else {
-        return Err(Error::Inconsistent { what: "sweep", why: "there are no rows".into() });
-    };
-    let mut columns = vec![];
-    for index in 0..first.columns.len() {
-        let Column { name, units, long_name, values } = &first.columns[index];
-        let same = files.iter().all(|file| file.columns.get(index).is_some_and(|it| it.name == *name));
-        if !same {
-            return Err(Error::Inconsistent {
-                what: "sweep",
-                why: format!("not every file has the column {name}; use one version of the program"),
-            });
-        }
-        let values = match values {
-            Values::Numbers(_) => Values::Numbers(
-                places.values().map(|&(file, row)| number(&files[file].columns[index], row)).collect(),
-            ),
-            Values::Texts(_) => Values::Texts(
-                places.values().map(|&(file, row)| text(&files[file].columns[index], row)).collect(),
-            ),
-        };
-        columns.push(Column {
-            name: name.clone(),
-            units: units.clone(),
-            long_name: long_name.clone(),
-            values,
-        });
-    }
-    let scenes = places.into_keys().collect();
-    let mut runs: Vec<_> = files.into_iter().flat_map(|file| file.runs).collect();
-    runs.sort_by_key(|(scene, _)| *scene);
-    runs.dedup_by_key(|(scene, _)| *scene);
-    Ok(SweepFile { header, complete, scenes, columns, runs })
-}
-
-fn number(column: &Column, row: usize) -> f64 {
-    if let Values::Numbers(values) = &column.values { values[row] } else { f64::NAN }
-}
-
-fn text(column: &Column, row: usize) -> &str {
-    if let Values::Texts(values) = &column.values { values.get(row) } else { "" }
-}
-
-/// Two rows of one scene must be the same but for the time they took.
-fn check_equal(files: &[SweepFile], scene: u64, one: (usize, usize), other: (usize, usize)) -> Result<()> {
-    let columns = |(file, _): (usize, usize)| files[file].columns.iter();
-    let differs = columns(one).zip(columns(other)).find(|(a, b)| {
-        a.name != WALL_SECONDS
-            && (a.name != b.name
-                || number(a, one.1).to_bits() != number(b, other.1).to_bits()
-                || text(a, one.1) != text(b, other.1))
-    });
-    match differs {
-        None => Ok(()),
-        Some((column, _)) => Err(Error::Inconsistent {
-            what: "sweep",
-            why: format!(
-                "scene {scene} has two different results for {}; one of the files was made by another program",
-                column.name
-            ),
-        }),
-    }
 }
