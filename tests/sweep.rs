@@ -213,6 +213,24 @@ fn snapshots_are_kept_where_asked_for() {
 }
 
 #[test]
+fn info_lists_the_columns_of_a_shard() {
+    let place = Place::new(&format!("title = \"Some\"\n{}[output]\nsnapshots = [1]\n", study(4)));
+    place.sweep("out", &SweepOptions::default());
+    let mut info = Command::new(env!("CARGO_BIN_EXE_fretwear"));
+    let output = info.arg("info").arg(place.path("out/shard-0-of-1.h5")).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{text}");
+    for expected in [
+        "Some",
+        "fretwear-sweep",
+        "wear_volume                        4, m3",
+        "runs                               1",
+    ] {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+}
+
+#[test]
 fn another_study_in_the_same_directory_is_refused() {
     let place = Place::new(&study(4));
     place.sweep("out", &SweepOptions::default());

@@ -9,6 +9,7 @@ use super::atomic::AtomicFile;
 use super::labelled::{Dimension, bytes_of, file_in_memory, put_array, put_integer, put_text};
 use super::layout::Label;
 use super::reader;
+use super::shard::SweepFile;
 use crate::error::{Error, Result};
 
 /// A coordinate: a dimension and the values along it.
@@ -46,7 +47,7 @@ pub struct ArrayFile {
 
 impl ArrayFile {
     /// The formats there are.
-    pub const FORMATS: [&str; 1] = ["fretwear-map"];
+    pub const FORMATS: [&str; 2] = ["fretwear-map", SweepFile::FORMAT];
 
     /// Version of the layout, the root attribute `format_version`.
     pub const FORMAT_VERSION: i32 = 1;
@@ -141,6 +142,15 @@ impl ArraySummary {
         let mut names = file.member_names().map_err(|error| source.damaged("its members", &error))?;
         names.sort();
         let shape = |name: String| {
+            if let Ok(group) = file.group(&name) {
+                let long_name = "whole runs, one group each".into();
+                return Ok(ArrayShape {
+                    name,
+                    shape: vec![group.len() as usize],
+                    units: "1".into(),
+                    long_name,
+                });
+            }
             let dataset = file.dataset(&name).map_err(|error| source.damaged(&name, &error))?;
             Ok(ArrayShape {
                 shape: dataset.shape(),
