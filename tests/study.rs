@@ -5,22 +5,7 @@ use std::path::Path;
 use fretwear::loading::Amplitude;
 use fretwear::scene::{Input, Study, Task};
 
-const BASE: &str = r#"
-[indenter.paraboloid]
-radius = "10 mm"
-[half_space]
-grading = 0.0
-modulus = "210 GPa"
-poisson_ratio = 0.3
-[friction.coulomb]
-coefficient = 0.6
-[wear.archard]
-coefficient = "1e-14 1/Pa"
-[loading]
-initial_force = "50 N"
-stick_ratio = 0.7
-tau = 30
-"#;
+const BASE: &str = include_str!("support/base.toml");
 
 fn study(text: &str) -> fretwear::Result<Study> {
     Study::from_texts(text, "study.toml", BASE, Path::new("base.toml"))

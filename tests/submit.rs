@@ -6,25 +6,7 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
-const SCENE: &str = r#"
-[indenter.paraboloid]
-radius = "10 mm"
-[half_space]
-grading = 0
-modulus = "210 GPa"
-poisson_ratio = 0.3
-[friction.coulomb]
-coefficient = 0.6
-[wear.archard]
-coefficient = "1e-14 1/Pa"
-[loading]
-initial_force = "50 N"
-stick_ratio = 0.7
-tau = 3
-[numerics]
-springs = 16
-tolerance = 1e-2
-"#;
+const SCENE: &str = include_str!("support/base.toml");
 
 /// A name with everything that a shell would take for something else.
 const HOSTILE: &str = "it's a \"study\" $(touch bad) `touch bad` @SHARDS@ %j \\ *; exit 9 #";

@@ -9,27 +9,7 @@ use fretwear::snapshot::{Column, SweepFile, Values};
 use fretwear::sweep::{SweepOptions, merge, sweep};
 use tempfile::TempDir;
 
-const BASE: &str = r#"
-[indenter.paraboloid]
-radius = "10 mm"
-[half_space]
-grading = 0.0
-modulus = "210 GPa"
-poisson_ratio = 0.3
-[friction.coulomb]
-coefficient = 0.6
-[wear.archard]
-coefficient = "1e-14 1/Pa"
-[loading]
-initial_force = "50 N"
-stick_ratio = 0.7
-tau = 3
-[numerics]
-springs = 16
-tolerance = 1e-2
-[output]
-snapshots = 3
-"#;
+const BASE: &str = include_str!("support/base.toml");
 
 /// A folder with a base scene and a study of `friction x stick_ratio x wear` scenes.
 struct Place {
