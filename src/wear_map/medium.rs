@@ -62,21 +62,19 @@ impl Medium {
     /// # Errors
     /// [`Error::OutOfRange`] names the grading.
     pub(super) fn at(&self, grading: f64) -> Result<Column> {
-        Ok(Column {
-            stiffness_ratio: self.stiffness_ratio(grading),
-            area: self.relative_factor(grading).powf(-2.0 / self.exponent),
-            volume: Some(PowerLawVolume::new(self.exponent, grading)?),
-            exponent: self.exponent,
-        })
+        Ok(self.column(grading, Some(PowerLawVolume::new(self.exponent, grading)?)))
     }
 
     /// The limit `k → 1` of the worn volume at the same indentation.
     pub(super) fn gibson(&self) -> Column {
+        self.column(1.0, None)
+    }
+
+    fn column(&self, grading: f64, volume: Option<PowerLawVolume>) -> Column {
         Column {
-            stiffness_ratio: self.stiffness_ratio(1.0),
-            // κ → 1
-            area: power_law_factor(self.exponent, 0.0).powf(2.0 / self.exponent),
-            volume: None,
+            stiffness_ratio: self.stiffness_ratio(grading),
+            area: self.relative_factor(grading).powf(-2.0 / self.exponent),
+            volume,
             exponent: self.exponent,
         }
     }

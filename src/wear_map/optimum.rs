@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::medium::Column;
 use super::{Form, Medium};
 use crate::chebyshev::Chebyshev;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::roots::bracketed;
 
 /// What is the same for all gradings, besides indenter and amplitude.
@@ -99,7 +99,7 @@ impl OptimumCurve {
     /// itself would give half the digits.
     ///
     /// # Errors
-    /// Those of the closed form; [`Error::NotConverged`] if a minimum was seen and not found.
+    /// Those of the closed form; [`Error::NotConverged`](crate::Error::NotConverged) if a minimum was seen and not found.
     ///
     /// # Examples
     /// ```
@@ -144,14 +144,14 @@ impl Thresholds {
             (volumes[0] / volumes[1]).ln()
         };
         // Derivatives by the grading: of a series about k = 0 in its middle, of one up to k = 1 at its end.
-        let search = Search { medium, control: Control::Indentation, scan: vec![] };
-        let slope_at_zero = |amplitude: f64| search.slope(amplitude, -0.1, 0.1, 0.0).unwrap_or(f64::NAN);
-        let slope_at_one = |amplitude: f64| search.slope(amplitude, 0.9, 1.0, 1.0).unwrap_or(f64::NAN);
+        let search = Search::new(medium, Control::Indentation)?;
+        let slope_at_zero = |amplitude: f64| search.slope(amplitude, -0.1, 0.1, 0.0);
+        let slope_at_one = |amplitude: f64| search.slope(amplitude, 0.9, 1.0, 1.0);
         let slidable = largest.min((1.0 - 1e-9) / medium.stiffness_ratio(-0.1));
         Ok(Self {
             optimum_crosses_zero: threshold(&slope_at_zero, slidable)?,
             limit_beats_homogeneous: threshold(&ratio_of_limit, largest)?,
-            limit_is_best: best_above(medium, threshold(&slope_at_one, largest)?, largest)?,
+            limit_is_best: best_above(&search, threshold(&slope_at_one, largest)?, largest)?,
         })
     }
 }
@@ -160,8 +160,7 @@ impl Thresholds {
 ///
 /// As a rule the optimum moves there continuously, at the amplitude `turning` where the slope at `k = 1` changes sign; otherwise it jumps
 /// from another grading, and the amplitude is found by bisection.
-fn best_above(medium: &Medium, turning: Option<f64>, largest: f64) -> Result<Option<f64>> {
-    let search = Search::new(medium, Control::Indentation)?;
+fn best_above(search: &Search, turning: Option<f64>, largest: f64) -> Result<Option<f64>> {
     let is_best = |amplitude: f64| search.optimum(amplitude).map(|it| it.end == End::One);
     if let Some(turning) = turning
         && turning * 1.001 < largest
@@ -187,6 +186,10 @@ struct Search<'a> {
     control: Control,
     /// Gradings, increasing, with all that does not depend on the amplitude.
     scan: Vec<Loaded>,
+    /// The homogeneous contact.
+    reference: Loaded,
+    /// The limit `k → 1`, where it has one.
+    limit: Option<Loaded>,
 }
 
 /// One grading under the load that is held.
@@ -248,7 +251,8 @@ impl<'a> Search<'a> {
             .par_iter()
             .map(|&step| Loaded::new(medium, control, grading(step)))
             .collect::<Result<_>>()?;
-        Ok(Self { medium, control, scan })
+        let reference = Loaded::new(medium, control, 0.0)?;
+        Ok(Self { medium, control, scan, reference, limit: Loaded::limit(medium, control)? })
     }
 
     fn volume(&self, grading: f64, amplitude_ratio: f64) -> Result<f64> {
@@ -261,18 +265,14 @@ impl<'a> Search<'a> {
         Chebyshev::fit(logarithm, high - low)
     }
 
-    /// `d ln ΔV/dk` at a grading, from a series over an interval.
-    fn slope(&self, amplitude_ratio: f64, low: f64, high: f64, grading: f64) -> Result<f64> {
-        let slope = -self.series(amplitude_ratio, low, high).value_and_derivative(high - grading).1;
-        match slope.is_finite() {
-            true => Ok(slope),
-            false => Err(not_found(format!("gradings from {low} to {high} are not all in partial slip"))),
-        }
+    /// `d ln ΔV/dk` at a grading, from a series over an interval; not a number where some of it slides as a whole.
+    fn slope(&self, amplitude_ratio: f64, low: f64, high: f64, grading: f64) -> f64 {
+        -self.series(amplitude_ratio, low, high).value_and_derivative(high - grading).1
     }
 
     fn optimum(&self, amplitude_ratio: f64) -> Result<Optimum> {
         let volumes = self.scan.iter().map(|it| it.volume(amplitude_ratio)).collect::<Result<Vec<f64>>>()?;
-        let reference = Loaded::new(self.medium, self.control, 0.0)?.volume(amplitude_ratio)?;
+        let reference = self.reference.volume(amplitude_ratio)?;
         let nothing = |grading: f64, end: End| {
             let (volume_ratio, indentation_ratio) = (f64::NAN, f64::NAN);
             Ok(Optimum { amplitude_ratio, grading, volume_ratio, indentation_ratio, end })
@@ -288,8 +288,7 @@ impl<'a> Search<'a> {
         if least == 0 {
             return nothing(-1.0, End::MinusOne);
         }
-        let limit = Loaded::limit(self.medium, self.control)?;
-        match &limit {
+        match &self.limit {
             Some(limit) if limit.volume(amplitude_ratio)? <= volumes[least] => {
                 return at(limit, 1.0, End::One);
             }
@@ -321,8 +320,4 @@ impl<'a> Search<'a> {
         }
         Ok(slipping)
     }
-}
-
-fn not_found(why: String) -> Error {
-    Error::NotConverged { what: "search for the optimal grading", why }
 }
