@@ -134,8 +134,7 @@ impl ArraySummary {
     /// [`Error::File`] if it is no HDF5 file or damaged.
     pub fn read(path: &Path) -> Result<Option<Self>> {
         let (source, file) = reader::open(path)?;
-        let known = file.attr("format").is_ok();
-        let format = if known { source.text(&file, "format")? } else { String::new() };
+        let format = source.format(&file)?;
         if !ArrayFile::FORMATS.contains(&format.as_str()) {
             return Ok(None);
         }

@@ -51,8 +51,8 @@ impl AtomicFile {
             Some(parent) if parent != Path::new("") => parent.to_owned(),
             _ => PathBuf::from("."),
         };
+        remove_abandoned(&folder, |file| OsStr::new(file) == name);
         let this = Self { path: target, folder, prefix, may_replace: overwrite };
-        this.remove_leftovers();
         drop(this.temporary().map_err(|error| failure(path, &error))?);
         Ok(this)
     }
@@ -151,33 +151,17 @@ impl AtomicFile {
         let _ = temporary.file.try_lock();
         Ok(temporary)
     }
-
-    /// Removes the temporaries of this output whose processes are gone; their locks went with them.
-    fn remove_leftovers(&self) {
-        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
-        for path in entries.filter(|entry| self.is_temporary(&entry.file_name())).map(|entry| entry.path()) {
-            if is_abandoned(&path) {
-                // Failing to remove it is no reason to fail the run.
-                let _ = fs::remove_file(&path);
-            }
-        }
-    }
-
-    fn is_temporary(&self, name: &OsStr) -> bool {
-        let rest = name.as_encoded_bytes().strip_prefix(self.prefix.as_encoded_bytes());
-        let process = rest.and_then(|rest| rest.strip_suffix(b".tmp"));
-        process.is_some_and(|digits| !digits.is_empty() && digits.iter().all(u8::is_ascii_digit))
-    }
 }
 
-/// Removes the temporaries in a folder whose processes are gone, of the files whose names satisfy a condition.
+/// Removes the temporaries in a folder whose processes are gone, their locks with them, of the files whose names satisfy a condition.
 pub(crate) fn remove_abandoned(folder: &Path, belongs: impl Fn(&str) -> bool) {
     for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
         let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
         let file = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(".tmp"));
-        let file = file.and_then(|rest| rest.rsplit_once('.')).map(|(file, _process)| file);
-        if file.is_some_and(&belongs) && is_abandoned(&path) {
-            // Somebody else may have done so.
+        let is_process = |digits: &str| !digits.is_empty() && digits.bytes().all(|it| it.is_ascii_digit());
+        let file = file.and_then(|rest| rest.rsplit_once('.')).filter(|(_, process)| is_process(process));
+        if file.is_some_and(|(file, _)| belongs(file)) && is_abandoned(&path) {
+            // Failing to remove it is no reason to fail, and somebody else may have done so.
             let _ = fs::remove_file(&path);
         }
     }

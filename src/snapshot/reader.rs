@@ -50,7 +50,7 @@ impl RunFile {
 
     /// Reads a run from a group of a file.
     pub(super) fn from_group(source: &Source, file: &Group) -> Result<Self> {
-        source.check_format(file)?;
+        source.check_format(file, FORMAT, FORMAT_VERSION, NOT_A_RUN)?;
         let header = source.header(file)?;
         let snapshots = source.snapshots(file, header.radius.len(), header.loop_displacement.len())?;
         let checkpoint = if file.link_exists(CHECKPOINT) { Some(source.checkpoint(file)?) } else { None };
@@ -123,15 +123,21 @@ impl Source {
         self.error(format!("{what}: {why}; {WRITE_AGAIN}"))
     }
 
-    fn check_format(&self, file: &Group) -> Result<()> {
-        if file.attr("format").is_err() || self.text(file, "format")? != FORMAT {
-            return Err(self
-                .error(format!("is an HDF5 file, but has no attribute format = \"{FORMAT}\"; {NOT_A_RUN}")));
+    /// The root attribute `format`; empty if there is none.
+    pub(super) fn format(&self, file: &Group) -> Result<String> {
+        if file.attr("format").is_ok() { self.text(file, "format") } else { Ok(String::new()) }
+    }
+
+    /// Refuses a file of another format or version; the cure says what to give instead.
+    pub(super) fn check_format(&self, file: &Group, format: &str, version: i32, cure: &str) -> Result<()> {
+        if self.format(file)? != format {
+            let why = format!("is an HDF5 file, but has no attribute format = \"{format}\"; {cure}");
+            return Err(self.error(why));
         }
         match self.integer(file, "format_version")? {
-            FORMAT_VERSION => Ok(()),
+            found if found == version => Ok(()),
             other => Err(self.error(format!(
-                "has format_version {other}, this program reads {FORMAT_VERSION}; use the fretwear that wrote it"
+                "has format_version {other}, this program reads {version}; use the fretwear that wrote it"
             ))),
         }
     }

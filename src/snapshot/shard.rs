@@ -290,22 +290,8 @@ impl RunFile {
 
 fn header(source: &Source, file: &File) -> Result<SweepHeader> {
     let group: &Group = file;
-    let format = if group.attr("format").is_ok() { source.text(group, "format")? } else { String::new() };
-    if format != SweepFile::FORMAT {
-        return Err(source.error(format!(
-            "is an HDF5 file, but has no attribute format = \"{}\"; give the directory of a `fretwear sweep` only",
-            SweepFile::FORMAT
-        )));
-    }
-    match source.integer(group, "format_version")? {
-        SweepFile::FORMAT_VERSION => {}
-        other => {
-            return Err(source.error(format!(
-                "has format_version {other}, this program reads {}; use the fretwear that wrote it",
-                SweepFile::FORMAT_VERSION
-            )));
-        }
-    }
+    const CURE: &str = "give the directory of a `fretwear sweep` only";
+    source.check_format(group, SweepFile::FORMAT, SweepFile::FORMAT_VERSION, CURE)?;
     let whole = |name: &str| -> Result<u64> {
         let attribute = group.attr(name).and_then(|attribute| attribute.read_scalar::<u64>());
         attribute.map_err(|error| source.damaged(&format!("attribute {name}"), &error))
