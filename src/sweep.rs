@@ -163,7 +163,8 @@ impl<'a> Sweep<'a> {
         let range = shard_range(shard, shards, study.count());
         let before = folder.done()?;
         let missing = before.missing(&range);
-        pool.install(|| validate(study, &missing, &shared.stop))?;
+        let all = missing.len() as u64;
+        pool.install(|| validate(study, missing.par_iter().copied(), all, &shared.stop))?;
         folder.create()?;
         Ok(Self { study, schema: Schema::new(study), folder, shared, pool, range, before, missing, started })
     }
@@ -216,22 +217,26 @@ impl<'a> Sweep<'a> {
 /// # Errors
 /// [`Error::Scene`] counts them and shows the first.
 pub fn validate_all(study: &Study) -> Result<()> {
-    validate(study, &(0..study.count()).collect::<Vec<_>>(), &AtomicBool::new(false))
+    validate(study, (0..study.count()).into_par_iter(), study.count(), &AtomicBool::new(false))
 }
 
 /// Refuses a study of which some of these scenes are not valid; a signal ends the search, and with it the sweep.
-fn validate(study: &Study, scenes: &[u64], stop: &AtomicBool) -> Result<()> {
+fn validate(
+    study: &Study,
+    scenes: impl ParallelIterator<Item = u64>,
+    total: u64,
+    stop: &AtomicBool,
+) -> Result<()> {
     const SHOWN: usize = 3;
-    let fault = |&scene: &u64| match stop.load(Ordering::Relaxed) {
+    let fault = |scene: u64| match stop.load(Ordering::Relaxed) {
         true => None,
         false => study.scene(scene).err().map(|it| it.to_string()),
     };
-    let wrong: Vec<String> = scenes.par_iter().filter_map(fault).collect();
+    let wrong: Vec<String> = scenes.filter_map(fault).collect();
     match wrong.len() {
         0 => Ok(()),
         count => Err(Error::Scene(format!(
-            "{count} of {} scenes are not valid, nothing was run:\n{}",
-            scenes.len(),
+            "{count} of {total} scenes are not valid, nothing was run:\n{}",
             wrong[..count.min(SHOWN)].join("\n")
         ))),
     }

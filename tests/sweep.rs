@@ -220,6 +220,11 @@ fn another_study_in_the_same_directory_is_refused() {
     let options = SweepOptions { shards: 2, ..SweepOptions::default() };
     let error = sweep(&place.study(), &place.path("out"), &options, None).unwrap_err();
     assert!(error.to_string().contains("is one of 1 shards, and 2 are asked for"), "{error}");
+    // parts alone tell as well
+    std::fs::create_dir_all(place.path("parts-only/parts")).unwrap();
+    std::fs::write(place.path("parts-only/parts/0-of-4.abc.0.h5"), "rows").unwrap();
+    let error = sweep(&place.study(), &place.path("parts-only"), &options, None).unwrap_err();
+    assert!(error.to_string().contains("is one of 4 shards, and 2 are asked for"), "{error}");
     let nothing = merge(&place.path("nowhere"), &place.path("m.h5"), false).unwrap_err().to_string();
     assert!(nothing.contains("holds no results of a sweep"), "{nothing}");
     let many = SweepOptions { shards: 7, ..SweepOptions::default() };

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
 use crate::report::LimitReport;
-use crate::run::{Run, Shared};
+use crate::run::{Run, Shared, memory_figure};
 use crate::scene::{Study, Task};
 
 /// Most scenes measured.
@@ -63,7 +63,7 @@ impl Measurement {
         Ok(Self {
             mean_seconds: seconds().sum::<f64>() / scenes.len() as f64,
             longest_seconds: seconds().fold(0.0, f64::max),
-            peak_memory: peak_memory(),
+            peak_memory: memory_figure("/proc/self/status", "VmHWM:"),
             scenes,
         })
     }
@@ -114,13 +114,6 @@ fn measure(study: &Study, scene: u64, shared: &Shared) -> MeasuredScene {
     };
     let failure = outcome.err().map(|it| it.to_string());
     MeasuredScene { scene, seconds: begun.elapsed().as_secs_f64(), failure }
-}
-
-/// Most memory that this process has held, bytes.
-fn peak_memory() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok().map(|kilobytes| 1024.0 * kilobytes)
 }
 
 #[cfg(test)]

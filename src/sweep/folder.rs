@@ -50,20 +50,15 @@ impl Folder {
         Ok(this)
     }
 
-    /// Refuses a directory that holds shards of another number.
+    /// Refuses a directory that holds results cut into another number of shards.
     fn check_shards(&self) -> Result<()> {
-        for file in files(&self.path)? {
-            if let Some((_, shards)) = shard_of(&file)
-                && shards != self.header.shards
-            {
-                let why = format!(
-                    "is one of {shards} shards, and {} are asked for; use the same number, or another directory",
-                    self.header.shards
-                );
-                return Err(self.error(&file, &why));
-            }
-        }
-        Ok(())
+        let other = counts(&self.path)?.into_iter().find(|(_, shards)| *shards != self.header.shards);
+        let Some((file, shards)) = other else { return Ok(()) };
+        let why = format!(
+            "is one of {shards} shards, and {} are asked for; use the same number, or another directory",
+            self.header.shards
+        );
+        Err(self.error(&file, &why))
     }
 
     fn error(&self, path: &Path, why: &str) -> Error {
@@ -218,12 +213,19 @@ pub(super) fn shard_of(path: &Path) -> Option<(u64, u64)> {
 /// # Errors
 /// [`Error::File`] if the directory cannot be read.
 pub fn shards_in(folder: &Path) -> Result<Option<u64>> {
-    let whole = files(folder)?.iter().find_map(|path| shard_of(path)).map(|(_, shards)| shards);
-    let part = |path: &PathBuf| {
-        let (_, rest) = name_of(path).split_once("-of-").filter(|_| is_part(path))?;
-        rest.split('.').next()?.parse().ok()
+    Ok(counts(folder)?.first().map(|(_, shards)| *shards))
+}
+
+/// The files of whole shards and of parts, each with the number of shards of its sweep.
+fn counts(folder: &Path) -> Result<Vec<(PathBuf, u64)>> {
+    let of_shard = |path: PathBuf| shard_of(&path).map(|(_, shards)| (path, shards));
+    let of_part = |path: PathBuf| {
+        let (_, rest) = name_of(&path).split_once("-of-").filter(|_| is_part(&path))?;
+        let shards = rest.split('.').next()?.parse().ok()?;
+        Some((path, shards))
     };
-    Ok(whole.or(files(&parts_folder(folder))?.iter().find_map(part)))
+    let whole = files(folder)?.into_iter().filter_map(of_shard);
+    Ok(whole.chain(files(&parts_folder(folder))?.into_iter().filter_map(of_part)).collect())
 }
 
 /// Folder of the parts of a sweep.
