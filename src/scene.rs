@@ -47,6 +47,7 @@ mod profile_file;
 pub mod quantity;
 pub mod sampling;
 mod sections;
+mod spacing;
 mod study;
 mod unit;
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::document::{Entry, Section, Source};
 use super::quantity::Dimension;
 use super::sections;
+use super::spacing::Spacing;
 use super::{LARGEST, read_text};
 use crate::error::Result;
 use crate::half_space::{HalfSpace, Poisson};
@@ -107,7 +108,7 @@ fn map(root: &Section, text: &str) -> Result<MapScene> {
     let depth = Axis { range: "[1e-6, 1e6]", holds: |depth| (1e-6..=1e6).contains(&depth), least: 0.0 };
 
     let mut gradings: Vec<f64> = (0..190).map(|i| (i as f64 - 90.0) / 100.0).collect();
-    let mut amplitude_ratios: Vec<f64> = geometric(1e-4, 1.0, 161);
+    let mut amplitude_ratios: Vec<f64> = Spacing::Geometric.values(1e-4, 1.0, 161);
     let mut levels =
         vec![0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0];
     if let Some(section) = table("map")? {
@@ -117,7 +118,7 @@ fn map(root: &Section, text: &str) -> Result<MapScene> {
         replace(&mut levels, section.optional("levels"), &level)?;
         bounded(&section, gradings.len(), amplitude_ratios.len())?;
     }
-    let mut optimum_amplitude_ratios = geometric(1e-6, 1.4, 124);
+    let mut optimum_amplitude_ratios = Spacing::Geometric.values(1e-6, 1.4, 124);
     let mut reference_depths = vec![1.0];
     if let Some(section) = table("optimum")? {
         section.only(&["amplitude_ratio", "reference_depth"], &[])?;
@@ -170,11 +171,6 @@ struct Axis {
     least: f64,
 }
 
-fn geometric(from: f64, to: f64, count: usize) -> Vec<f64> {
-    let step = (to / from).ln() / (count - 1) as f64;
-    (0..count).map(|i| if i + 1 == count { to } else { from * (step * i as f64).exp() }).collect()
-}
-
 fn replace(values: &mut Vec<f64>, entry: Option<Entry>, axis: &Axis) -> Result<()> {
     if let Some(entry) = entry {
         *values = axis_values(&entry, axis)?;
@@ -204,21 +200,16 @@ fn axis_values(entry: &Entry, axis: &Axis) -> Result<Vec<f64>> {
         return Err(to.error(format_args!("is not above {} = {low}", from.path())));
     }
     let count = section.required("count", cure)?.whole(2..=MOST_ALONG_AXIS)?;
-    let spacings = ["linear", "geometric"];
-    let is_geometric = match section.optional("spacing") {
+    let spacing = match section.optional("spacing") {
         Some(entry) => {
-            let chosen = entry.word(&spacings)? == 1;
-            if chosen && low <= axis.least.max(0.0) {
+            let chosen = Spacing::of_word(entry.word(&Spacing::WORDS)?);
+            if chosen == Spacing::Geometric && low <= axis.least.max(0.0) {
                 return Err(entry.error("needs values above zero; use \"linear\""));
             }
             chosen
         }
-        None => axis.least == 0.0,
+        None if axis.least == 0.0 => Spacing::Geometric,
+        None => Spacing::Linear,
     };
-    if is_geometric {
-        return Ok(geometric(low, high, count));
-    }
-    let last = (count - 1) as f64;
-    // Weighted so that a point meant to be zero is zero.
-    Ok((0..count).map(|i| (low * (last - i as f64) + high * i as f64) / last).collect())
+    Ok(spacing.values(low, high, count))
 }

@@ -10,6 +10,7 @@ use crate::scene::document::{Entry, Section};
 use crate::scene::quantity::{Dimension, split_number};
 use crate::scene::sampling::{Distribution, Method, UnitCube};
 use crate::scene::sections;
+use crate::scene::spacing::Spacing;
 use crate::scene::unit::Unit;
 
 /// Reads the document of a study; the base scene is added by whoever calls.
@@ -122,19 +123,13 @@ fn axis(section: &Section) -> Result<Axis> {
         return Err(to.error(format_args!("has not the unit of {}, {unit:?}", from.path())));
     }
     let count = section.required("count", cure)?.whole(2..=MOST_ROWS)?;
-    let spacings = ["linear", "geometric"];
-    let geometric = section.optional("spacing").map_or(Ok(0), |entry| entry.word(&spacings))? == 1;
-    if geometric && !(low > 0.0 && high > 0.0) {
+    let spacing = section.optional("spacing").map_or(Ok(0), |entry| entry.word(&Spacing::WORDS))?;
+    let spacing = Spacing::of_word(spacing);
+    if spacing == Spacing::Geometric && !(low > 0.0 && high > 0.0) {
         return Err(from.error(format_args!("and {} must be above zero for geometric spacing", to.path())));
     }
-    let last = (count - 1) as f64;
-    let at = |i: usize| match (i, geometric) {
-        (0, _) => low,
-        (i, _) if i + 1 == count => high,
-        (i, true) => low * ((high / low).ln() * i as f64 / last).exp(),
-        (i, false) => (low * (last - i as f64) + high * i as f64) / last,
-    };
-    Ok(Axis { keys, rows: (0..count).map(|i| vec![with_unit(at(i), &unit)]).collect() })
+    let values = spacing.values(low, high, count).into_iter();
+    Ok(Axis { keys, rows: values.map(|value| vec![with_unit(value, &unit)]).collect() })
 }
 
 fn not_empty<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>> {
