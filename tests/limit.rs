@@ -1,8 +1,10 @@
 //! The commands `limit`, `check` and `info`, as a script sees them.
 
+mod support;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 use fretwear::closed_form::LimitingShape;
 use fretwear::model::State;
@@ -12,6 +14,7 @@ use fretwear::simulation::Progress;
 use fretwear::snapshot::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
 use serde_json::Value;
 use std::f64::consts::PI;
+use support::command::{done, names, object, run, text};
 
 const KEYS: [&str; 18] = [
     "grading",
@@ -56,34 +59,6 @@ fn scene(amplitude: &str) -> String {
          [friction.coulomb]\ncoefficient = 0.6\n[wear.archard]\ncoefficient = 1e-14\n\
          [loading]\nindentation = \"1 um\"\n{amplitude}\ntau = 30\n"
     )
-}
-
-/// Runs the program in a folder of its own.
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    let program = assert_cmd::cargo::cargo_bin!("fretwear");
-    Command::new(program).current_dir(folder).args(arguments).output().expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).expect("UTF-8")
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
-    text(&output.stdout).to_owned()
-}
-
-fn object(folder: &Path, arguments: &[&str]) -> Value {
-    let found = done(folder, arguments);
-    serde_json::from_str(&found).unwrap_or_else(|error| panic!("{arguments:?}: {error}\n{found}"))
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("the folder");
-    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 fn list(value: &Value) -> Vec<f64> {

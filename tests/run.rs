@@ -1,15 +1,18 @@
 //! The command `run`, as a script sees it: what it writes, what survives an interruption, what it refuses.
 
+mod support;
+
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use fretwear::closed_form::LimitingShape;
 use fretwear::scene::Scene;
 use fretwear::snapshot::{RunFile, Snapshot, StopReason};
 use serde_json::Value;
+use support::command::{names, object, program, run, text};
 
 const KEYS: [&str; 18] = [
     "output",
@@ -33,27 +36,6 @@ const KEYS: [&str; 18] = [
 ];
 
 const SCENES: [&str; 4] = ["paraboloid", "graded_ceramic", "cone_negative_grading", "measured_profile"];
-
-fn program(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fretwear"));
-    command.current_dir(folder).args(arguments).stdin(Stdio::null());
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    program(folder, arguments).output().expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).expect("UTF-8")
-}
-
-/// Runs a command that must succeed; its one JSON object.
-fn object(folder: &Path, arguments: &[&str]) -> Value {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
-}
 
 /// Runs a command that must fail with this code and these words; nothing goes to stdout.
 fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
@@ -99,13 +81,6 @@ fn run_file(scene: &str) -> (Value, RunFile) {
     let folder = folder_with(scene);
     let json = object(folder.path(), &["run", "scene.toml", "--json"]);
     (json, RunFile::open(&folder.path().join("scene.h5")).expect("a run"))
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("the folder");
-    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 fn close(found: f64, expected: f64, tolerance: f64, what: &str) {

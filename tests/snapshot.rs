@@ -1,5 +1,7 @@
 //! The file of a run: what is written comes back, other programs can read it, and a crash loses nothing.
 
+mod support;
+
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -12,6 +14,7 @@ use fretwear::model::State;
 use fretwear::simulation::Progress;
 use fretwear::snapshot::{Checkpoint, LimitCurves, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
 use hdf5::types::VarLenUnicode;
+use support::command::names;
 
 /// Values that a careless conversion would change.
 const AWKWARD: [f64; 9] =
@@ -148,13 +151,6 @@ fn edit(path: &Path, change: impl FnOnce(&hdf5::File) -> hdf5::Result<()>) -> hd
 fn message(path: &Path) -> String {
     let _guard = EDITING.lock().unwrap_or_else(PoisonError::into_inner);
     RunFile::open(path).expect_err("this file must be refused").to_string()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    fs::read_dir(folder)
-        .expect("a folder")
-        .map(|it| it.expect("an entry").file_name().into_string().expect("UTF-8"))
-        .collect()
 }
 
 #[test]

@@ -1,14 +1,15 @@
 //! The file of a measured profile as a user meets it: what is read, how the rest is refused, and that a result needs it no more.
 
+mod support;
+
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use fretwear::indenter::{Indenter, TabulatedProfile};
 use fretwear::scene::Scene;
 use fretwear::snapshot::{RunFile, StopReason};
-use serde_json::Value;
+use support::command::{names, object, program, run, text};
 
 /// f = r²/(2R), R = 10 mm: in mm and µm, f = 50 r².
 const ROWS: [(f64, f64); 7] =
@@ -39,33 +40,6 @@ fn folder_with(scene: &str, rows: impl AsRef<[u8]>) -> tempfile::TempDir {
 
 fn read(rows: impl AsRef<[u8]>) -> fretwear::Result<Scene> {
     Scene::read(&folder_with(&table("tau = 1"), rows).path().join("scene.toml"))
-}
-
-fn program(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fretwear"));
-    command.current_dir(folder).args(arguments).stdin(Stdio::null());
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    program(folder, arguments).output().expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).expect("UTF-8")
-}
-
-fn object(folder: &Path, arguments: &[&str]) -> Value {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("the folder");
-    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 #[test]
