@@ -213,7 +213,7 @@ struct Press {
 impl Press {
     fn new(profile: &EquivalentProfile, normal_stiffness: f64, load: Load) -> Result<Self> {
         let key = load.key();
-        let (Load::Indentation(value) | Load::InitialForce(value)) = load;
+        let (Load::Indentation(value) | Load::InitialForce(value) | Load::NormalForce(value)) = load;
         positive(key, value)?;
         let too_large = |error: Error| match error {
             // That of a table has its own cure.
@@ -228,7 +228,7 @@ impl Press {
         };
         let indentation = match load {
             Load::Indentation(indentation) => indentation,
-            Load::InitialForce(force) => {
+            Load::InitialForce(force) | Load::NormalForce(force) => {
                 let per_stiffness = force / normal_stiffness;
                 representable(
                     "normal force per stiffness F_N/c_N, m^(2+k)",
@@ -246,7 +246,7 @@ impl Press {
         representable("volume π a0² d, m³", volume, "indenter and loading")?;
         let normal_force = match load {
             Load::Indentation(_) => normal_stiffness * profile.load_integral(contact_radius),
-            Load::InitialForce(force) => force,
+            Load::InitialForce(force) | Load::NormalForce(force) => force,
         };
         representable("normal force, N", normal_force, "loading.indentation and half_space")?;
         Ok(Self { indentation, contact_radius, normal_force })

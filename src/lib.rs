@@ -91,7 +91,7 @@
 //! | jobs | [`submit`], [`sweep`], [`report`], [`progress`], [`run`], [`wear_map`] |
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
-//! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`wear`], [`friction`], [`loading`], [`indenter`], [`half_space`] |
+//! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`conditions`], [`wear`], [`path`], [`friction`], [`loading`], [`history`], [`indenter`], [`half_space`] |
 //! | numerics | [`transforms`], [`abel`], [`chebyshev`], [`linear`], [`quadrature`], [`roots`], [`grid`], [`error`] |
 //!
 //! SI units everywhere, nothing is scaled behind the scenes; the library neither prints nor exits.
@@ -99,15 +99,18 @@
 pub mod abel;
 pub mod chebyshev;
 pub mod closed_form;
+pub mod conditions;
 pub mod contact;
 pub mod error;
 pub mod friction;
 pub mod grid;
 pub mod half_space;
+pub mod history;
 pub mod indenter;
 pub mod linear;
 pub mod loading;
 pub mod model;
+pub mod path;
 pub mod progress;
 pub mod quadrature;
 pub mod report;

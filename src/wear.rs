@@ -34,3 +34,39 @@ impl Archard {
         Self { coefficient: coefficient * friction.coefficient }
     }
 }
+
+/// A law of wear, every number positive and finite; `p` is the pressure, `s` the slip, both on the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WearLaw {
+    /// `dw = k_w p |ds|`.
+    Archard(Archard),
+    /// `dw = α τ |ds|`, with the frictional traction `τ`.
+    DissipatedEnergy {
+        /// `α`, m³/J.
+        coefficient: f64,
+    },
+    /// `dw = k ℓ^(β-1) p^α |ds|`, with the slip path `ℓ = ∮|ds|` of the cycle: `k p^α (4s)^β` a cycle for plain tangential oscillation.
+    PowerLaw {
+        /// `k`, Pa^(-α) m^(1-β).
+        coefficient: f64,
+        /// `α`.
+        pressure_exponent: f64,
+        /// `β`.
+        slip_exponent: f64,
+    },
+    /// `dw = k_w (p - p_0)₊ |ds|`: no wear below a pressure. It leaves the paper's assumptions and its limit.
+    Threshold {
+        /// `k_w`, 1/Pa.
+        coefficient: f64,
+        /// `p_0`, Pa.
+        pressure: f64,
+    },
+    /// `dw = k_w p̄ |ds|` with the pressure averaged over a length, as debris that does not leave would: not local. It leaves the paper's
+    /// assumptions and its limit.
+    NonLocal {
+        /// `k_w`, 1/Pa.
+        coefficient: f64,
+        /// Standard deviation of the Gaussian average along the radius, m.
+        length: f64,
+    },
+}
