@@ -10,23 +10,33 @@
 //!
 //! Compressions and edge are what is stored ([`State`]); everything else is recomputed from them ([`Fields`]).
 
+mod cycle;
 mod derivatives;
+mod motion;
 mod operators;
 mod output;
+mod reach;
+mod schedule;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use faer::Mat;
+
 use crate::abel::AbelOperators;
+use crate::conditions::Conditions;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::linear::multiply;
 use crate::roots::bracketed;
 use crate::slip_depth::{UnwornSlip, UnwornValues};
+use crate::stick_slip::Regime;
+pub use cycle::CycleFields;
 pub use operators::OperatorStore;
 use operators::Operators;
 pub use output::RadialFields;
+pub use schedule::{Demand, Drive, Resolution, Schedule};
 
 /// Degree of the local polynomials of the transforms, of the derivative along the annulus and of output between the springs.
 const DEGREE: usize = 3;
@@ -46,6 +56,10 @@ pub struct State {
     pub compression: Vec<f64>,
     /// Energy dissipated by friction since the start, J.
     pub dissipated_energy: f64,
+    /// Worn volume by the rates of the cycles, m³: from the dissipated energy where the two are in proportion.
+    pub volume_by_rate: f64,
+    /// Smallest stick radius of the cycles so far, m; infinite before the first.
+    pub least_stick_radius: f64,
     /// Mean rate of the edge in the last step, m² per cycle; zero at the start. A first guess for the next step.
     pub edge_rate: f64,
     /// Mean rates of the compressions in the last step, m per cycle, shape `(springs - 1,)`; zero at the start.
@@ -86,8 +100,11 @@ impl Fields {
 #[derive(Debug, Clone)]
 pub struct Model {
     contact: InitialContact,
+    schedule: Schedule,
     unworn: UnwornSlip,
     operators: Arc<Operators>,
+    /// `F` without signs, where slip may turn: the direction of slip on the surface.
+    positive: Option<Mat<f64>>,
     radial_unworn: Vec<UnwornValues>,
     stick_radius_squared: f64,
     /// `c^(k-1)`.
@@ -103,26 +120,31 @@ impl Model {
     /// # Errors
     /// [`Error::Inconsistent`] if the contact does not slip in part; [`Error::OutOfRange`] for too few springs; those of the transforms.
     pub fn new(contact: &InitialContact, springs: usize, clustering: Clustering) -> Result<Self> {
-        Self::with_operators(contact, springs, clustering, &OperatorStore::default())
+        let conditions = Conditions::plain(*contact.friction(), *contact.wear());
+        let schedule = Schedule::new(contact, &conditions, Resolution::default())?;
+        Self::under(contact, schedule, springs, clustering, &OperatorStore::default())
     }
 
-    /// The same with operators from a store that other models share.
+    /// Puts a contact on springs for what a schedule does to it, with operators from a store that other models share.
+    ///
+    /// # Arguments
+    /// * `contact` -- the contact of the first cycle
     ///
     /// # Errors
     /// As [`Model::new`].
-    pub fn with_operators(
+    pub fn under(
         contact: &InitialContact,
+        schedule: Schedule,
         springs: usize,
         clustering: Clustering,
         store: &OperatorStore,
     ) -> Result<Self> {
+        let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
+        let contact = &if uniform { contact.clone() } else { schedule.reach(contact)? };
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
         let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
             what: "slip annulus",
-            why: format!(
-                "the contact is in the regime {:?}, and wear is stepped in partial slip only",
-                contact.regime()
-            ),
+            why: "no spring slips, so that nothing wears; ask for a larger amplitude".into(),
         })?;
         if springs < FEWEST_SPRINGS {
             return Err(Error::OutOfRange {
@@ -148,10 +170,16 @@ impl Model {
         let depth_scale = radial_unworn.iter().map(|u| u.limit_slip - u.slip).fold(0.0, f64::max);
         let wear_factor =
             4.0 * contact.wear().coefficient * contact.friction().coefficient / half_space.stiffness_ratio();
+        let positive = schedule.resolves().then(|| {
+            let profile = operators.abel.profile();
+            Mat::from_fn(springs, springs, |i, j| profile[(i, j)].abs())
+        });
         Ok(Self {
             contact: contact.clone(),
+            schedule,
             unworn,
             operators,
+            positive,
             radial_unworn,
             stick_radius_squared,
             stick_density_factor: stick_radius_squared.powf(-0.5 * (1.0 - grading)),
@@ -164,6 +192,11 @@ impl Model {
     /// The unworn contact.
     pub fn contact(&self) -> &InitialContact {
         &self.contact
+    }
+
+    /// What acts when.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
     }
 
     /// The transforms.
@@ -227,6 +260,8 @@ impl Model {
             compression_rate: vec![0.0; compression.len()],
             compression,
             dissipated_energy: 0.0,
+            volume_by_rate: 0.0,
+            least_stick_radius: f64::INFINITY,
             edge_rate: 0.0,
         })
     }

@@ -12,7 +12,7 @@ use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::loading;
-use crate::model::{Model, OperatorStore};
+use crate::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::scene::{Output, Scene, Stepper as StepperChoice};
 use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
@@ -266,7 +266,12 @@ impl Parts {
             StepperChoice::Implicit => Clustering::Cubic,
             StepperChoice::EveryCycle | StepperChoice::CycleJump => Clustering::Quadratic,
         };
-        let model = Model::with_operators(&contact, springs, clustering, &shared.operators)?;
+        let schedule = Schedule::new(
+            &contact,
+            &crate::conditions::Conditions::plain(*scene.friction(), *scene.wear()),
+            Resolution::default(),
+        )?;
+        let model = Model::under(&contact, schedule, springs, clustering, &shared.operators)?;
         let limit = LimitingShape::from_contact(&contact)?.ok_or_else(|| Error::Inconsistent {
             what: "limiting shape",
             why: "there is none under full sliding".into(),
@@ -415,7 +420,7 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
         indentation: contact.indentation(),
         normal_force: model.normal_force(fields),
         dissipated_energy: state.dissipated_energy,
-        cycle_energy: model.dissipation(fields, &state.compression),
+        cycle_energy: simulation.cycle().dissipation,
         tangential_force: model.tangential_force(fields, &state.compression, contact.amplitude()),
         loop_force: model.fretting_loop(fields, &state.compression, &loop_displacement(model)),
         profile: worn_profile(model, &wear_depth),

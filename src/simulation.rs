@@ -1,7 +1,7 @@
 //! The loop over time: which step to try, where to land, when to stop.
 
 use crate::error::{Error, Result};
-use crate::model::{Fields, Model, RadialFields, State};
+use crate::model::{CycleFields, Fields, Model, RadialFields, State};
 use crate::stepper::Stepper;
 
 /// Safety factor and bounds of the choice of steps.
@@ -20,6 +20,9 @@ const WORN_OUT: f64 = 1e-13;
 
 /// Loss of wear depth, relative to the limit's largest, that the output's interpolation between moving springs may show.
 const INTERPOLATION: f64 = 1e-6;
+
+/// The same where the edge of stick moves through the mesh.
+const KINKED_INTERPOLATION: f64 = 1e-2;
 
 /// How far the rate may fall below the one asked for in the last step.
 const OVERSHOT: f64 = 0.5;
@@ -92,6 +95,8 @@ pub struct Progress {
     pub next_step: f64,
     /// Worn volume per cycle at the start, m³.
     pub first_rate: f64,
+    /// Cycles until which the rate was above the one at which to stop.
+    pub busy_until: f64,
     /// Index of the next entry of the plan's outputs.
     pub next_output: u64,
     /// Steps accepted.
@@ -102,6 +107,15 @@ pub struct Progress {
     pub rate_evaluations: u64,
 }
 
+/// A step to try.
+struct Landing {
+    step: f64,
+    /// Cycles at which it ends exactly, on an output or where what acts changes.
+    at: Option<f64>,
+    /// Whether that is an output.
+    output: bool,
+}
+
 /// A model on its way through time.
 pub struct Simulation {
     model: Model,
@@ -110,6 +124,7 @@ pub struct Simulation {
     plan: Plan,
     state: State,
     fields: Fields,
+    cycle: CycleFields,
     radial: RadialFields,
     progress: Progress,
 }
@@ -125,9 +140,20 @@ impl Simulation {
     pub fn new(model: Model, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Result<Self> {
         let state = model.initial_state()?;
         let fields = model.fields(&state);
-        let first_rate = model.wear_rate(&fields, &state.compression);
-        let largest = fields.pressure.iter().fold(0.0, |m: f64, p| m.max(*p));
-        let next_step = FIRST_GROWTH / (model.wear_factor() * largest);
+        let mut first_rate = 0.0_f64;
+        let mut growth = 0.0_f64;
+        for drive in model.schedule().first_cycles() {
+            let cycle = model.cycle(&drive, &state.compression, &fields);
+            first_rate = first_rate.max(cycle.volume);
+            growth = growth.max(largest(&cycle.growth));
+        }
+        if !(growth > 0.0 && growth.is_finite()) {
+            return Err(Error::Inconsistent {
+                what: "wear",
+                why: "nothing wears in the first cycles".into(),
+            });
+        }
+        let next_step = FIRST_GROWTH / growth;
         let progress = Progress { next_step, first_rate, rate_evaluations: 1, ..Progress::default() };
         Ok(Self::resume(model, stepper, tolerance, plan, state, progress))
     }
@@ -142,8 +168,10 @@ impl Simulation {
         progress: Progress,
     ) -> Self {
         let fields = model.fields(&state);
-        let radial = model.radial_fields(&fields);
-        Self { model, stepper, tolerance, plan, state, fields, radial, progress }
+        let drive = model.schedule().drive(state.cycles, state.cycles);
+        let cycle = model.cycle(&drive, &state.compression, &fields);
+        let radial = model.radial_fields(&fields, &cycle);
+        Self { model, stepper, tolerance, plan, state, fields, cycle, radial, progress }
     }
 
     /// The model.
@@ -159,6 +187,11 @@ impl Simulation {
     /// The fields of the state reached.
     pub fn fields(&self) -> &Fields {
         &self.fields
+    }
+
+    /// What the next cycle does.
+    pub fn cycle(&self) -> &CycleFields {
+        &self.cycle
     }
 
     /// The fields at the radii of the output.
@@ -183,7 +216,7 @@ impl Simulation {
 
     /// Worn volume per cycle, m³.
     pub fn wear_rate(&self) -> f64 {
-        self.model.wear_rate(&self.fields, &self.state.compression)
+        self.cycle.volume
     }
 
     /// Steps to the end of the plan or until an observer stops it. The start is an output too, unless steps were made before.
@@ -223,7 +256,8 @@ impl Simulation {
         match self.plan.end {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
             End::Rate(fraction) => {
-                let spent = self.wear_rate() <= fraction * self.progress.first_rate;
+                let spent = self.wear_rate() <= fraction * self.progress.first_rate
+                    && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
                 let limit = WORN_OUT * self.model.contact().slip_compression();
                 let worn_out = self.state.compression.iter().all(|q| *q <= limit);
                 spent.then_some(Outcome::Rate).or(worn_out.then_some(Outcome::WornOut))
@@ -234,18 +268,32 @@ impl Simulation {
     /// Makes one step, of which the length may have to be found; whether it landed on an output.
     fn advance(&mut self) -> Result<bool> {
         loop {
-            let (step, target) = self.choose_step()?;
+            let landing = self.choose_step()?;
+            let step = landing.step;
+            if std::env::var("DBG").is_ok() {
+                eprintln!(
+                    "{:e} step {step:e} edge {:e} rate {:e}",
+                    self.state.cycles,
+                    self.state.edge,
+                    self.cycle.volume / self.progress.first_rate
+                );
+            }
             let trial = self.stepper.step(&self.model, &self.state, step)?;
             self.progress.rate_evaluations += trial.rate_evaluations;
             let error = trial.error / self.tolerance;
+            if std::env::var("DBG").is_ok() {
+                eprintln!("    error {error:e} state {}", trial.state.is_some());
+            }
             let accepted = match trial.state {
                 Some(state) if error <= 1.0 => {
                     let fields = self.model.fields(&state);
-                    if let Some(shorter) = self.overshoot(&state, &fields, step) {
+                    let drive = self.model.schedule().drive(self.state.cycles, state.cycles);
+                    let cycle = self.model.cycle(&drive, &state.compression, &fields);
+                    if let Some(shorter) = self.overshoot(&cycle, step) {
                         self.progress.next_step = shorter;
                         continue;
                     }
-                    self.accept(state, fields, target)
+                    self.accept(state, fields, cycle, landing.at)
                 }
                 _ => false,
             };
@@ -258,52 +306,56 @@ impl Simulation {
                 self.adapt(step, error, accepted);
             }
             if accepted {
-                let landed = target.is_some();
                 self.progress.steps += 1;
-                self.progress.next_output += u64::from(landed);
-                return Ok(landed);
+                self.progress.next_output += u64::from(landing.output);
+                return Ok(landing.output);
             }
             self.progress.rejected_steps += 1;
         }
     }
 
-    /// The step to try, and the output on which it lands if it does.
-    fn choose_step(&self) -> Result<(f64, Option<f64>)> {
-        let target = self.plan.outputs.get(self.progress.next_output as usize).copied();
+    /// The step to try, and where it lands if it does.
+    fn choose_step(&self) -> Result<Landing> {
+        let now = self.state.cycles;
+        let output = self.plan.outputs.get(self.progress.next_output as usize).copied();
+        let target = self.model.schedule().next_break(now).into_iter().chain(output).min_by(f64::total_cmp);
+        let landing = |step: f64, at: Option<f64>| Landing { step, at, output: at.is_some() && at == output };
         if let Some(step) = self.stepper.prescribed_step() {
-            return Ok((step, target.filter(|t| self.state.cycles + 1.5 * step > *t)));
+            return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
         let step = self.progress.next_step;
-        let largest = self.fields.pressure.iter().fold(0.0, |m: f64, p| m.max(*p));
-        if !(step * self.model.wear_factor() * largest > SMALLEST_GROWTH || step > 1e-6 * self.state.cycles) {
+        let growth = step * largest(&self.cycle.growth);
+        if !(growth > SMALLEST_GROWTH || step > 1e-6 * now) {
             return Err(self.stuck("the step had to become too small", step));
         }
-        let Some(target) = target else { return Ok((step, None)) };
-        let remaining = target - self.state.cycles;
-        if step >= remaining * (1.0 - 1e-9) {
-            Ok((remaining, Some(target)))
+        let Some(target) = target else { return Ok(landing(step, None)) };
+        let remaining = target - now;
+        Ok(if step >= remaining * (1.0 - 1e-9) {
+            landing(remaining, Some(target))
         } else {
-            Ok((if 2.0 * step > remaining { 0.5 * remaining } else { step }, None))
-        }
+            landing(if 2.0 * step > remaining { 0.5 * remaining } else { step }, None)
+        })
     }
 
     /// The step that ends where the rate is what was asked for, if this one leaves it far behind; the rate falls exponentially.
-    fn overshoot(&self, state: &State, fields: &Fields, step: f64) -> Option<f64> {
+    fn overshoot(&self, cycle: &CycleFields, step: f64) -> Option<f64> {
         let End::Rate(fraction) = self.plan.end else { return None };
         if self.stepper.prescribed_step().is_some() {
             return None;
         }
         let wanted = fraction * self.progress.first_rate;
-        let reached = self.model.wear_rate(fields, &state.compression).max(f64::MIN_POSITIVE);
+        let reached = cycle.volume.max(f64::MIN_POSITIVE);
         let now = self.wear_rate();
         let part = (now / wanted).ln() / (now / reached).ln();
         (reached < OVERSHOT * wanted && part < 1.0).then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
     }
 
     /// Takes a state over if it is one that wear can lead to.
-    fn accept(&mut self, mut state: State, fields: Fields, target: Option<f64>) -> bool {
-        let radial = self.model.radial_fields(&fields);
-        let allowed = (self.tolerance + INTERPOLATION) * self.model.depth_scale();
+    fn accept(&mut self, mut state: State, fields: Fields, cycle: CycleFields, target: Option<f64>) -> bool {
+        let radial = self.model.radial_fields(&fields, &cycle);
+        let interpolation =
+            if self.model.schedule().is_uniform() { INTERPOLATION } else { KINKED_INTERPOLATION };
+        let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
         let mut pairs = radial.wear_depth.iter().zip(&self.radial.wear_depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);
         if !(grew && fields.are_physical()) {
@@ -312,7 +364,15 @@ impl Simulation {
         if let Some(target) = target {
             state.cycles = target;
         }
-        (self.state, self.fields, self.radial) = (state, fields, radial);
+        if let End::Rate(fraction) = self.plan.end
+            && cycle.volume > fraction * self.progress.first_rate
+        {
+            self.progress.busy_until = state.cycles;
+        }
+        let next = self.model.schedule().drive(state.cycles, state.cycles);
+        let cycle =
+            if target.is_some() { self.model.cycle(&next, &state.compression, &fields) } else { cycle };
+        (self.state, self.fields, self.cycle, self.radial) = (state, fields, cycle, radial);
         true
     }
 
@@ -337,4 +397,9 @@ impl Simulation {
             ),
         }
     }
+}
+
+/// Largest of some rates of growth, at least zero.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m: f64, value| m.max(*value))
 }

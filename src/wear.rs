@@ -70,3 +70,18 @@ pub enum WearLaw {
         length: f64,
     },
 }
+
+impl WearLaw {
+    /// The law with its coefficient times `factor`.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut law = *self;
+        match &mut law {
+            Self::Archard(Archard { coefficient })
+            | Self::DissipatedEnergy { coefficient }
+            | Self::PowerLaw { coefficient, .. }
+            | Self::Threshold { coefficient, .. }
+            | Self::NonLocal { coefficient, .. } => *coefficient *= factor,
+        }
+        law
+    }
+}

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::{Fields, Model, POINTS};
+use super::{CycleFields, Fields, Model, POINTS};
 use crate::error::{Error, Result};
 use crate::grid::{lagrange_derivative, stencil_start};
 use crate::linear::{dot, multiply};
@@ -73,15 +73,14 @@ impl Model {
         self.operators.abel.profile()[(i, j)] * fields.density_factor[j]
     }
 
-    /// Rates per cycle of the edge, m², and of the compressions, m, under Archard's law: the closed-form cycle as an explicit
-    /// differential equation.
-    pub fn rates(&self, fields: &Fields) -> (f64, Vec<f64>) {
+    /// Rates per cycle of the edge, m², and of the compressions, m, that follow from a cycle: wear as an explicit differential
+    /// equation.
+    pub fn rates(&self, fields: &Fields, cycle: &CycleFields) -> (f64, Vec<f64>) {
         let inner = self.springs() - 1;
         let by_edge = self.log_slip_by_edge(fields);
         let along = self.along_annulus(&fields.log_slip);
         let slip = &fields.slip_depth;
-        let mut worn: Vec<f64> =
-            (0..inner).map(|i| -self.wear_factor * fields.pressure[i] * slip[i]).collect();
+        let mut worn: Vec<f64> = (0..inner).map(|i| -cycle.growth[i] * slip[i]).collect();
         let mut moved: Vec<f64> =
             (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
         // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Fields, Model, POINTS};
+use super::{CycleFields, Fields, Model, POINTS};
 use crate::grid::{lagrange, stencil_start};
 use crate::linear::dot;
 
@@ -28,7 +28,7 @@ impl Model {
         self.volume(self.unworn.limit_edge(), &self.limit_depth())
     }
 
-    fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
+    pub(super) fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
         PI * edge * dot(self.operators.abel.depth_sum(), wear_depth)
     }
 
@@ -96,19 +96,14 @@ impl Model {
         displacements.iter().enumerate().map(along).collect()
     }
 
-    /// Worn volume per cycle, m³: Archard's law on the dissipated energy, `k_w W/μ_f`.
-    pub fn wear_rate(&self, fields: &Fields, compression: &[f64]) -> f64 {
-        self.dissipation(fields, compression) * self.contact.wear().coefficient
-            / self.contact.friction().coefficient
-    }
-
     /// The fields at [`Model::radii`], by local cubic interpolation between the springs.
-    pub fn radial_fields(&self, fields: &Fields) -> RadialFields {
+    pub fn radial_fields(&self, fields: &Fields, cycle: &CycleFields) -> RadialFields {
         let n = self.springs();
         let nodes = self.operators.abel.nodes();
         let nu = 1.0 - self.mu();
-        let slip_per_depth =
-            self.contact.friction().coefficient / self.contact.half_space().stiffness_ratio();
+        // Slip over slip depth is smooth along the annulus.
+        let per_depth: Vec<f64> =
+            cycle.slip.iter().zip(&fields.slip_depth).map(|(slip, depth)| slip / depth).collect();
         let eased: Vec<f64> =
             (0..n - 1).map(|i| fields.pressure[i] * (1.0 - nodes[i + 1]).powf(-nu)).collect();
         let mut radial =
@@ -125,7 +120,7 @@ impl Model {
             let log_slip = interpolate(&nodes[1..], &fields.log_slip, cell, x);
             let unworn = self.radial_unworn[i].slip;
             radial.wear_depth[i] = unworn * log_slip.exp_m1();
-            radial.slip[i] = slip_per_depth * unworn * log_slip.exp();
+            radial.slip[i] = interpolate(&nodes[1..], &per_depth, cell, x) * unworn * log_slip.exp();
             radial.pressure[i] = interpolate(&nodes[1..n], &eased, cell, x) * (1.0 - x).powf(nu);
         }
         radial

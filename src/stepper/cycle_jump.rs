@@ -16,6 +16,7 @@ struct Stage {
     edge: f64,
     compression: Vec<f64>,
     dissipation: f64,
+    volume: f64,
 }
 
 const NODES: [&[f64]; 4] = [&[], &[0.5], &[0.0, 0.75], &WEIGHTS];
@@ -28,6 +29,7 @@ impl Stepper for CycleJump {
         let mut at = state.clone();
         for weights in NODES {
             at = advance(state, cycles, weights, &stages);
+            let drive = model.schedule().drive(state.cycles, at.cycles);
             if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
                 return Ok(Trial::failed(stages.len() as u64));
             }
@@ -35,9 +37,10 @@ impl Stepper for CycleJump {
             if !self.fields.are_physical() {
                 return Ok(Trial::failed(stages.len() as u64 + 1));
             }
-            let (edge, compression) = model.rates(&self.fields);
-            let dissipation = model.dissipation(&self.fields, &at.compression);
-            stages.push(Stage { edge, compression, dissipation });
+            let cycle = model.cycle(&drive, &at.compression, &self.fields);
+            let (edge, compression) = model.rates(&self.fields, &cycle);
+            at.least_stick_radius = state.least_stick_radius.min(cycle.stick_radius);
+            stages.push(Stage { edge, compression, dissipation: cycle.dissipation, volume: cycle.volume });
         }
         let difference = advance(
             &State { compression: vec![0.0; at.compression.len()], ..at.clone() },
@@ -75,6 +78,7 @@ fn advance(state: &State, cycles: f64, weights: &[f64], stages: &[Stage]) -> Sta
         next.cycles += step;
         next.edge += step * stage.edge;
         next.dissipated_energy += step * stage.dissipation;
+        next.volume_by_rate += step * stage.volume;
         for (q, rate) in next.compression.iter_mut().zip(&stage.compression) {
             *q += step * rate;
         }

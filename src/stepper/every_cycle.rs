@@ -4,7 +4,7 @@ use super::{Stepper, Trial};
 use crate::error::{Error, Result};
 use crate::model::{Fields, Model, State};
 
-/// Every period by itself: the slip depth at each radius grows by the factor `1 + κ p` of that period.
+/// Every period by itself: the slip depth at each radius grows by the factor `1 + W/S` of that period.
 ///
 /// The springs move with the contact edge, so `λ` is carried to their new places by its slope along the annulus; as a period moves the
 /// edge by little, what that leaves out is of second order in the wear of one period.
@@ -17,9 +17,11 @@ impl Stepper for EveryCycle {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let fields = &mut self.fields;
         model.evaluate(state.edge, &state.compression, fields);
+        let drive = model.schedule().drive(state.cycles, state.cycles);
+        let cycle = model.cycle(&drive, &state.compression, fields);
         let mut worn = fields.log_slip.clone();
-        for (log_slip, pressure) in worn.iter_mut().zip(&fields.pressure) {
-            *log_slip += (cycles * model.wear_factor() * pressure).ln_1p();
+        for (log_slip, growth) in worn.iter_mut().zip(&cycle.growth) {
+            *log_slip += (cycles * growth).ln_1p();
         }
         let along = model.along_annulus(&worn);
         let shifted = |edge: f64, i: usize| worn[i] + (edge / state.edge).ln() * along[i];
@@ -39,10 +41,15 @@ impl Stepper for EveryCycle {
                 "the wear of this cycle presses springs beyond the limiting shape",
             ));
         }
-        let dissipated_energy =
-            state.dissipated_energy + cycles * model.dissipation(fields, &state.compression);
-        let next =
-            State { cycles: state.cycles + cycles, edge, compression, dissipated_energy, ..state.clone() };
+        let next = State {
+            cycles: state.cycles + cycles,
+            edge,
+            compression,
+            dissipated_energy: state.dissipated_energy + cycles * cycle.dissipation,
+            volume_by_rate: state.volume_by_rate + cycles * cycle.volume,
+            least_stick_radius: state.least_stick_radius.min(cycle.stick_radius),
+            ..state.clone()
+        };
         Ok(Trial { state: Some(next), error: 0.0, rate_evaluations: evaluations })
     }
 

@@ -5,7 +5,7 @@ use faer::Mat;
 use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::linear::Factors;
-use crate::model::{Fields, Model, State};
+use crate::model::{CycleFields, Drive, Fields, Model, State};
 
 /// Singly diagonally implicit Runge-Kutta method, L-stable and stiffly accurate (Alexander, SIAM J. Numer. Anal. 14:1006, 1977), with an
 /// embedded method on its first two stages.
@@ -16,7 +16,7 @@ use crate::model::{Fields, Model, State};
 /// Each stage solves for the compressions and the edge at once,
 ///
 /// ```text
-/// λ - λ̂ - (1 - Ẑ/Z) ξ ∂λ/∂ξ - h γ κ p = 0 on the inner springs,    w = 0 at the edge,
+/// λ - λ̂ - (1 - Ẑ/Z) ξ ∂λ/∂ξ - h γ W/S = 0 on the inner springs,    w = 0 at the edge,
 /// ```
 ///
 /// where `λ̂` and `Ẑ` gather the stages before; Newton's matrix is factorised once a step and serves all stages while it converges.
@@ -24,6 +24,7 @@ use crate::model::{Fields, Model, State};
 pub struct Implicit {
     newton_tolerance: f64,
     fields: Fields,
+    cycle: CycleFields,
 }
 
 /// Times of the stages.
@@ -55,7 +56,8 @@ const SLOWEST: f64 = 0.5;
 impl Implicit {
     /// A stepper whose stages are solved well below the tolerance of the time stepping.
     pub fn new(tolerance: f64) -> Self {
-        Self { newton_tolerance: (1e-3 * tolerance).clamp(1e-12, 1e-8), fields: Fields::default() }
+        let newton_tolerance = (1e-3 * tolerance).clamp(1e-12, 1e-8);
+        Self { newton_tolerance, fields: Fields::default(), cycle: CycleFields::default() }
     }
 }
 
@@ -64,13 +66,15 @@ struct Stage {
     log_slip: Vec<f64>,
     edge: f64,
     dissipation: f64,
+    volume: f64,
 }
 
-/// What a stage is solved for: the values gathered so far, and the step times `γ`.
+/// What a stage is solved for: the values gathered so far, the step times `γ`, and what acts.
 struct Target {
     log_slip: Vec<f64>,
     edge: f64,
     step: f64,
+    drive: Drive,
 }
 
 impl Stepper for Implicit {
@@ -96,6 +100,7 @@ impl Stepper for Implicit {
                 log_slip: (0..start.len()).map(|i| gathered(start[i], &|s| s.log_slip[i])).collect(),
                 edge: gathered(state.edge, &|s| s.edge),
                 step: GAMMA * cycles,
+                drive: model.schedule().drive(state.cycles, state.cycles + TIMES[index] * cycles),
             };
             if !self.solve(model, &target, &mut at, &mut factors, &mut evaluations) {
                 return Ok(Trial::failed(evaluations));
@@ -104,7 +109,8 @@ impl Stepper for Implicit {
             stages.push(Stage {
                 log_slip: self.fields.log_slip.iter().zip(&target.log_slip).map(slope).collect(),
                 edge: (at.edge - target.edge) / target.step,
-                dissipation: model.dissipation(&self.fields, &at.compression),
+                dissipation: self.cycle.dissipation,
+                volume: self.cycle.volume,
             });
         }
         let weights = MATRIX[STAGES - 1];
@@ -115,8 +121,12 @@ impl Stepper for Implicit {
             *rate = (now - before) / cycles;
         }
         at.cycles = state.cycles + cycles;
-        at.dissipated_energy = state.dissipated_energy
-            + stages.iter().zip(weights).map(|(s, w)| cycles * w * s.dissipation).sum::<f64>();
+        let summed = |part: &dyn Fn(&Stage) -> f64| {
+            stages.iter().zip(weights).map(|(stage, weight)| cycles * weight * part(stage)).sum::<f64>()
+        };
+        at.dissipated_energy = state.dissipated_energy + summed(&|stage| stage.dissipation);
+        at.volume_by_rate = state.volume_by_rate + summed(&|stage| stage.volume);
+        at.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
         let difference = |i: usize| {
             let parts = stages.iter().zip(weights.iter().zip(EMBEDDED));
             parts.map(|(stage, (weight, embedded))| cycles * (weight - embedded) * stage.log_slip[i]).sum()
@@ -160,12 +170,12 @@ impl Implicit {
     ) -> bool {
         let inner = at.compression.len();
         let scale = model.contact().slip_compression();
-        model.evaluate(at.edge, &at.compression, &mut self.fields);
+        self.evaluate(model, target, at);
         for _ in 0..=RENEWALS {
-            let lu = factors.get_or_insert_with(|| Factors::new(self.matrix(model, target)));
+            let lu = factors.get_or_insert_with(|| Factors::new(self.matrix(model, target, &at.compression)));
             let mut before = f64::INFINITY;
             for _ in 0..ITERATIONS {
-                let mut change = residual(model, target, &self.fields);
+                let mut change = residual(model, target, &self.fields, &self.cycle.growth);
                 lu.solve(&mut change);
                 for (q, dq) in at.compression.iter_mut().zip(&change) {
                     *q -= dq;
@@ -174,7 +184,7 @@ impl Implicit {
                 if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
                     return false;
                 }
-                model.evaluate(at.edge, &at.compression, &mut self.fields);
+                self.evaluate(model, target, at);
                 *evaluations += 1;
                 if !self.fields.are_physical() {
                     return false;
@@ -195,27 +205,28 @@ impl Implicit {
         false
     }
 
+    /// Recomputes the fields and what a cycle does.
+    fn evaluate(&mut self, model: &Model, target: &Target, at: &State) {
+        model.evaluate(at.edge, &at.compression, &mut self.fields);
+        self.cycle = model.cycle(&target.drive, &at.compression, &self.fields);
+    }
+
     /// Newton's matrix at the current fields, columns the compressions and then the edge.
-    fn matrix(&self, model: &Model, target: &Target) -> Mat<f64> {
+    fn matrix(&self, model: &Model, target: &Target, compression: &[f64]) -> Mat<f64> {
         let fields = &self.fields;
         let n = model.springs();
         let inner = n - 1;
         let theta = 1.0 - target.edge / fields.edge;
         let mu = model.mu();
-        let growth = target.step * model.wear_factor();
-        let per_compression = growth * model.contact().half_space().normal_stiffness() / std::f64::consts::PI
-            * fields.edge.powf(-mu);
-        let pressure = model.operators().pressure();
-        let mut matrix =
-            Mat::from_fn(n, n, |i, j| if j < inner { -per_compression * pressure[(i, j)] } else { 0.0 });
+        let mut matrix = Mat::zeros(n, n);
+        model.add_growth_slopes(&target.drive, compression, fields, &self.cycle, -target.step, &mut matrix);
         model.add_log_slip_by_compression(fields, theta, &mut matrix);
         let by_edge = model.log_slip_by_edge(fields);
         let carried = model.along_annulus(&by_edge);
         let along = model.along_annulus(&fields.log_slip);
         for i in 0..inner {
-            matrix[(i, inner)] =
-                by_edge[i] - theta * carried[i] - along[i] * target.edge / (fields.edge * fields.edge)
-                    + growth * mu / fields.edge * fields.pressure[i];
+            matrix[(i, inner)] +=
+                by_edge[i] - theta * carried[i] - along[i] * target.edge / (fields.edge * fields.edge);
         }
         let scale = fields.edge.powf(mu) / fields.slip_depth[inner];
         for j in 0..inner {
@@ -235,13 +246,12 @@ fn extrapolate(from: &State, to: &mut State, factor: f64) {
 }
 
 /// What is left of the stage's equations, shape `(springs,)`; the last is `λ` at the edge.
-fn residual(model: &Model, target: &Target, fields: &Fields) -> Vec<f64> {
+fn residual(model: &Model, target: &Target, fields: &Fields, growth: &[f64]) -> Vec<f64> {
     let inner = model.springs() - 1;
     let theta = 1.0 - target.edge / fields.edge;
-    let growth = target.step * model.wear_factor();
     let mut left = model.along_annulus(&fields.log_slip);
     for (i, value) in left.iter_mut().enumerate().take(inner) {
-        *value = fields.log_slip[i] - target.log_slip[i] - theta * *value - growth * fields.pressure[i];
+        *value = fields.log_slip[i] - target.log_slip[i] - theta * *value - target.step * growth[i];
     }
     left[inner] = fields.log_slip[inner];
     left

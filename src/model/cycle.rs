@@ -1,0 +1,428 @@
+//! What one cycle does to the contact: slip of the springs, wear of the surface, dissipated energy.
+//!
+//! Eq. (20) carries the slip of the springs in each step of the period to the surface, Eq. (21) their compressions, and the law of wear
+//! makes of both the depth `W` worn in the cycle. The slip depth `S` of the model grows by `W`, its logarithm by `W/S`.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+
+use super::motion::Motion;
+use super::schedule::{Demand, Drive};
+use super::{Fields, Model};
+use crate::friction::{Coulomb, FrictionLaw};
+use crate::linear::dot;
+use crate::wear::{Archard, WearLaw};
+
+/// Change of the edge, relative, by which slopes are found.
+const DIFFERENCE: f64 = 1e-7;
+
+/// Pressure, relative to the mean one of the unworn contact, below which a power law of it goes on in proportion: else wear by `p^α` with
+/// `α < 1` would end at an instant, in a root.
+const LEAST_PRESSURE: f64 = 1e-9;
+
+/// Agreement of two amplitudes that are the same number by two ways.
+const SAME: f64 = 1e-13;
+
+/// What one cycle does.
+#[derive(Debug, Clone, Default)]
+pub struct CycleFields {
+    /// `W/S`, by which the logarithm of the slip depth grows in a cycle, at the springs.
+    pub growth: Vec<f64>,
+    /// Slip amplitude on the surface, m: a quarter of the path of slip in a cycle.
+    pub slip: Vec<f64>,
+    /// Energy that friction dissipates in a cycle, J.
+    pub dissipation: f64,
+    /// Volume worn in a cycle, m³.
+    pub volume: f64,
+    /// Tangential amplitude of the contact, m.
+    pub amplitude: f64,
+    /// Radius within which no spring slips, m.
+    pub stick_radius: f64,
+}
+
+/// Wear of the surface, from pressures and paths of slip: shape `(springs, steps)` each, one column of pressures if they are all the same.
+struct Worn {
+    /// Depth worn in a period, m.
+    depth: Vec<f64>,
+    /// Derivatives by the pressure in each step.
+    by_pressure: Mat<f64>,
+    /// Derivatives by the path in each step.
+    by_path: Mat<f64>,
+}
+
+/// What is on the surface in the steps of a period.
+struct Surface {
+    /// What the law of wear takes as pressure, Pa, `(springs, steps)` or `(springs, 1)`.
+    pressure: Mat<f64>,
+    /// Direction of the slip in each step, `(springs, steps · components)`.
+    direction: Mat<f64>,
+    /// Path of slip, m, `(springs, steps)`.
+    path: Mat<f64>,
+}
+
+impl Model {
+    /// What a cycle does to the contact whose fields are given.
+    pub fn cycle(&self, drive: &Drive, compression: &[f64], fields: &Fields) -> CycleFields {
+        if let Some(cycle) = self.plain_cycle(drive, compression, fields) {
+            return cycle;
+        }
+        let motion = self.motion(drive, compression, fields, false);
+        let surface = self.surface(drive, &motion, fields);
+        let worn = self.worn(&drive.wear, &surface, false);
+        let per_cycle = drive.cycles_per_period.recip();
+        let growth: Vec<f64> =
+            worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect();
+        let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
+        let dissipation = per_cycle * self.spring_energy(fields, &motion.dissipation);
+        let volume = match self.volume_per_energy(drive) {
+            Some(factor) => factor * dissipation,
+            None => per_cycle * self.volume(fields.edge, &worn.depth),
+        };
+        CycleFields {
+            growth,
+            slip: slip.collect(),
+            dissipation,
+            volume,
+            amplitude: motion.amplitude,
+            stick_radius: self.stick_radius(&motion, fields),
+        }
+    }
+
+    /// The cycle in which slip on the surface is `μ_f/M` times the slip depth and wear is in proportion to pressure and slip.
+    fn plain_cycle(&self, drive: &Drive, compression: &[f64], fields: &Fields) -> Option<CycleFields> {
+        let factor = self.slip_per_depth(drive)?;
+        let per_pressure = 4.0 * factor * self.archard(drive)?;
+        let dissipation = self.dissipation(fields, compression);
+        Some(CycleFields {
+            growth: fields.pressure.iter().map(|p| per_pressure * p).collect(),
+            slip: fields.slip_depth.iter().map(|s| factor * s).collect(),
+            dissipation,
+            volume: self.volume_per_energy(drive)? * dissipation,
+            amplitude: drive.amplitude,
+            stick_radius: self.stick_radius_squared.sqrt(),
+        })
+    }
+
+    /// Slip over slip depth, `μ_f/M`, if the amplitude is that for which the mesh was made and the law is Coulomb's.
+    fn slip_per_depth(&self, drive: &Drive) -> Option<f64> {
+        let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
+        let ratio = self.contact.half_space().stiffness_ratio();
+        let compression = ratio * drive.amplitude / coefficient;
+        let same = (compression / self.contact.slip_compression() - 1.0).abs() < SAME;
+        (same && drive.path.is_none() && drive.lift == 0.0 && drive.demand == Demand::Displacement)
+            .then_some(coefficient / ratio)
+    }
+
+    /// `k_w` where wear is in proportion to pressure and slip.
+    fn archard(&self, drive: &Drive) -> Option<f64> {
+        match (drive.wear, drive.friction) {
+            (WearLaw::Archard(Archard { coefficient }), _) => Some(coefficient),
+            (WearLaw::DissipatedEnergy { coefficient }, FrictionLaw::Coulomb(friction)) => {
+                Some(coefficient * friction.coefficient)
+            }
+            _ => None,
+        }
+    }
+
+    /// Worn volume over dissipated energy, 1/Pa, where they are in proportion.
+    pub(super) fn volume_per_energy(&self, drive: &Drive) -> Option<f64> {
+        match (drive.wear, drive.friction) {
+            (WearLaw::DissipatedEnergy { coefficient }, _) => Some(coefficient),
+            (WearLaw::Archard(Archard { coefficient }), FrictionLaw::Coulomb(friction)) => {
+                Some(coefficient / friction.coefficient)
+            }
+            _ => None,
+        }
+    }
+
+    /// Pressures and slip on the surface in each step of the period.
+    fn surface(&self, drive: &Drive, motion: &Motion, fields: &Fields) -> Surface {
+        let (n, inner) = (self.springs(), self.springs() - 1);
+        let (steps, components) = (motion.steps(), motion.components);
+        let columns = steps * components;
+        let mut pressure = Mat::zeros(n, motion.load.ncols());
+        let pressure_scale = self.pressure_scale(fields);
+        product(
+            &mut pressure,
+            self.operators.abel.pressure().subcols(0, inner),
+            motion.load.as_ref(),
+            pressure_scale,
+        );
+        if let WearLaw::NonLocal { length, .. } = drive.wear {
+            let mut smeared = Mat::zeros(n, pressure.ncols());
+            product(&mut smeared, self.smearing(fields, length).as_ref(), pressure.as_ref(), 1.0);
+            pressure = smeared;
+        }
+        let plain = self.slip_per_depth(drive);
+        let mut slip = Mat::zeros(n, columns);
+        let mut direction = Mat::from_fn(n, columns, |_, _| 1.0);
+        if let Some(factor) = plain {
+            slip = Mat::from_fn(n, 1, |i, _| 4.0 * factor * fields.slip_depth[i]);
+        } else {
+            let scale = fields.edge.powf(self.mu());
+            // Where slip reaches the inner end of the mesh, what a free spring would do is carried exactly.
+            let free: Vec<f64> =
+                (0..columns).map(|m| if motion.slip[(0, m)] == 0.0 { 0.0 } else { motion.free[m] }).collect();
+            let moved = Mat::from_fn(inner, columns, |j, m| {
+                (motion.slip[(j, m)] - free[m]) * fields.density_factor[j]
+            });
+            product(&mut slip, self.operators.abel.profile().subcols(0, inner), moved.as_ref(), scale);
+            for i in 0..n {
+                let uniform = self.uniform_slip(fields, i);
+                for m in 0..columns {
+                    slip[(i, m)] += free[m] * uniform;
+                }
+            }
+            // The stencils reach two springs ahead; where none of those inside slips, there is no slip.
+            for m in 0..columns {
+                let stuck = (0..inner).take_while(|j| motion.slip[(*j, m)] == 0.0).count();
+                (0..stuck).for_each(|i| slip[(i, m)] = 0.0);
+            }
+            if drive.path.is_some() {
+                let slipped =
+                    Mat::from_fn(inner, columns, |j, m| motion.slip[(j, m)] * fields.density_factor[j]);
+                product(
+                    &mut direction,
+                    self.positive.as_ref().expect("made for paths").subcols(0, inner),
+                    slipped.as_ref(),
+                    1.0,
+                );
+                normalise(&mut direction, components);
+            }
+        }
+        let along = |i: usize, m: usize| -> f64 {
+            let columns = components * m..components * (m + 1);
+            columns.map(|c| slip[(i, c)] * direction[(i, c)]).sum::<f64>().max(0.0)
+        };
+        let path = Mat::from_fn(n, steps, along);
+        Surface { pressure, direction, path }
+    }
+
+    /// Depth worn in a period.
+    fn worn(&self, law: &WearLaw, surface: &Surface, slopes: bool) -> Worn {
+        let (n, steps) = (surface.path.nrows(), surface.path.ncols());
+        let size = if slopes { n } else { 0 };
+        let mut worn = Worn {
+            depth: vec![0.0; n],
+            by_pressure: Mat::zeros(size, steps),
+            by_path: Mat::zeros(size, steps),
+        };
+        let least = LEAST_PRESSURE * self.contact.mean_pressure();
+        for i in 0..n {
+            let total: f64 = (0..steps).map(|m| surface.path[(i, m)]).sum();
+            for m in 0..steps {
+                let p = surface.pressure[(i, m.min(surface.pressure.ncols() - 1))];
+                let path = surface.path[(i, m)];
+                let (coefficient, value, slope) = match *law {
+                    WearLaw::Archard(Archard { coefficient })
+                    | WearLaw::DissipatedEnergy { coefficient }
+                    | WearLaw::NonLocal { coefficient, .. } => (coefficient, p, 1.0),
+                    WearLaw::Threshold { coefficient, pressure } => {
+                        (coefficient, (p - pressure).max(0.0), if p > pressure { 1.0 } else { 0.0 })
+                    }
+                    WearLaw::PowerLaw { coefficient, pressure_exponent, slip_exponent } => {
+                        let (value, slope) = eased_power(p, pressure_exponent, least);
+                        let lengthened = if total > 0.0 { total.powf(slip_exponent - 1.0) } else { 0.0 };
+                        (coefficient * lengthened, value, slope)
+                    }
+                };
+                worn.depth[i] += coefficient * value * path;
+                if slopes {
+                    worn.by_pressure[(i, m)] = coefficient * slope * path;
+                    worn.by_path[(i, m)] = coefficient * value;
+                }
+            }
+            if let (true, WearLaw::PowerLaw { slip_exponent, .. }) = (slopes && total > 0.0, law) {
+                let shared = (slip_exponent - 1.0) * worn.depth[i] / total;
+                for m in 0..steps {
+                    worn.by_path[(i, m)] += shared;
+                }
+            }
+        }
+        worn
+    }
+
+    /// Adds `factor` times the derivatives of the growth in a cycle by compressions and edge to a matrix with these columns.
+    pub fn add_growth_slopes(
+        &self,
+        drive: &Drive,
+        compression: &[f64],
+        fields: &Fields,
+        cycle: &CycleFields,
+        factor: f64,
+        matrix: &mut Mat<f64>,
+    ) {
+        let (n, inner) = (self.springs(), self.springs() - 1);
+        let pressure_scale = self.pressure_scale(fields);
+        let pressure = self.operators.abel.pressure();
+        if let (Some(slip), Some(wear)) = (self.slip_per_depth(drive), self.archard(drive)) {
+            let per_compression = factor * 4.0 * slip * wear * pressure_scale;
+            for j in 0..inner {
+                for i in 0..n {
+                    matrix[(i, j)] += per_compression * pressure[(i, j)];
+                }
+            }
+            for i in 0..n {
+                matrix[(i, inner)] -= factor * self.mu() / fields.edge * cycle.growth[i];
+            }
+            return;
+        }
+        let motion = self.motion(drive, compression, fields, true);
+        let surface = self.surface(drive, &motion, fields);
+        let worn = self.worn(&drive.wear, &surface, true);
+        let (steps, components) = (motion.steps(), motion.components);
+        let mut by_pressure = Mat::zeros(n, inner);
+        if motion.load.ncols() == 1 {
+            let total: Vec<f64> = (0..n).map(|i| worn.by_pressure.row(i).iter().sum()).collect();
+            by_pressure = Mat::from_fn(n, inner, |i, j| total[i] * motion.load_slope[(j, 0)]);
+        } else {
+            product(&mut by_pressure, worn.by_pressure.as_ref(), motion.load_slope.transpose(), 1.0);
+        }
+        let along = Mat::from_fn(n, steps * components, |i, c| {
+            worn.by_path[(i, c / components)] * surface.direction[(i, c)]
+        });
+        let mut by_slip = Mat::zeros(n, inner);
+        product(&mut by_slip, along.as_ref(), motion.slip_slope.transpose(), 1.0);
+        let mut smeared = Mat::zeros(0, 0);
+        let pressure = match drive.wear {
+            WearLaw::NonLocal { length, .. } => {
+                smeared = Mat::zeros(n, inner);
+                product(
+                    &mut smeared,
+                    self.smearing(fields, length).as_ref(),
+                    pressure.subcols(0, inner),
+                    1.0,
+                );
+                &smeared
+            }
+            _ => pressure,
+        };
+        let per_cycle = factor / drive.cycles_per_period;
+        let scale = fields.edge.powf(self.mu());
+        let profile = self.operators.abel.profile();
+        for j in 0..inner {
+            for i in 0..n {
+                let carried = scale * profile[(i, j)] * fields.density_factor[j];
+                let worn =
+                    by_pressure[(i, j)] * pressure_scale * pressure[(i, j)] + by_slip[(i, j)] * carried;
+                matrix[(i, j)] +=
+                    (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
+            }
+        }
+        if let Some(by_amplitude) = &motion.amplitude_slope {
+            // The amplitude follows from the balance of forces: all springs move a little farther.
+            let moved = self.carried(fields, (0..inner).map(|j| 4.0 * (by_amplitude.slips[j] - 1.0)));
+            for i in 0..n {
+                let slip = moved[i] + 4.0 * self.uniform_slip(fields, i);
+                let growth = per_cycle * worn.by_path[(i, 0)] * slip / fields.slip_depth[i];
+                for j in 0..inner {
+                    matrix[(i, j)] += growth * by_amplitude.by_compression[j];
+                }
+            }
+        }
+        let edge = fields.edge * (1.0 + DIFFERENCE);
+        let mut moved = Fields::default();
+        self.evaluate(edge, compression, &mut moved);
+        let after = self.cycle(drive, compression, &moved);
+        for i in 0..n {
+            matrix[(i, inner)] += factor * (after.growth[i] - cycle.growth[i]) / (edge - fields.edge);
+        }
+        drop(smeared);
+    }
+
+    /// `c_N/π Z^(-μ)`, the factor of Eq. (21).
+    pub(super) fn pressure_scale(&self, fields: &Fields) -> f64 {
+        self.contact.half_space().normal_stiffness() / std::f64::consts::PI * fields.edge.powf(-self.mu())
+    }
+
+    /// `F 1` at a spring.
+    pub(super) fn uniform_slip(&self, fields: &Fields, spring: usize) -> f64 {
+        fields.unworn[spring].limit_slip / self.contact.slip_compression()
+    }
+
+    /// `F` of values at the springs inside the edge, shape `(springs,)`.
+    pub(super) fn carried(&self, fields: &Fields, values: impl Iterator<Item = f64>) -> Vec<f64> {
+        let density: Vec<f64> =
+            values.zip(&fields.density_factor).map(|(value, factor)| value * factor).collect();
+        let mut depth = vec![0.0; self.springs()];
+        crate::linear::multiply(self.operators.abel.profile().as_ref(), &density, &mut depth);
+        let scale = fields.edge.powf(self.mu());
+        depth.iter_mut().for_each(|value| *value *= scale);
+        depth
+    }
+
+    /// Energy, J, of energies per normal stiffness of the springs, m².
+    fn spring_energy(&self, fields: &Fields, energies: &[f64]) -> f64 {
+        let densities: Vec<f64> =
+            energies.iter().zip(&fields.density_factor).map(|(e, factor)| e * factor).collect();
+        self.contact.half_space().normal_stiffness()
+            * fields.edge
+            * dot(self.operators.abel.spring_sum(), &densities)
+    }
+
+    /// Averages over a Gaussian weight along the radius, within the annulus: rows sum to one.
+    fn smearing(&self, fields: &Fields, length: f64) -> Mat<f64> {
+        let radii: Vec<f64> = self.spring_radii(fields);
+        let n = radii.len();
+        let inside = self.stick_radius_squared.sqrt();
+        let width = |j: usize| {
+            let before = if j == 0 { inside } else { radii[j - 1] };
+            0.5 * (radii[(j + 1).min(n - 1)] - before)
+        };
+        let widths: Vec<f64> = (0..n).map(width).collect();
+        let mut weights = Mat::from_fn(n, n, |i, j| {
+            let distance = (radii[i] - radii[j]) / length;
+            widths[j] * (-0.5 * distance * distance).exp()
+        });
+        for i in 0..n {
+            let sum: f64 = weights.row(i).iter().sum();
+            for j in 0..n {
+                weights[(i, j)] /= sum;
+            }
+        }
+        weights
+    }
+
+    /// Radii of the springs, m.
+    fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
+        let squared = |x: &f64| self.stick_radius_squared + fields.edge * x;
+        self.operators.abel.nodes()[1..].iter().map(|x| squared(x).sqrt()).collect()
+    }
+
+    /// Radius of the innermost spring that slips; the mesh begins where the first one does.
+    fn stick_radius(&self, motion: &Motion, fields: &Fields) -> f64 {
+        let slips = |j: &usize| (0..motion.slip.ncols()).any(|m| motion.slip[(*j, m)] != 0.0);
+        match (0..motion.slip.nrows()).find(slips) {
+            Some(0) => self.stick_radius_squared.sqrt(),
+            Some(j) => (self.stick_radius_squared + fields.edge * self.operators.abel.nodes()[j]).sqrt(),
+            None => (self.stick_radius_squared + fields.edge).sqrt(),
+        }
+    }
+}
+
+/// `to = scale · left · right`.
+fn product(to: &mut Mat<f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>, scale: f64) {
+    matmul(to.as_mut(), Accum::Replace, left, right, scale, Par::Seq);
+}
+
+/// Makes the vectors along each row unit vectors, or zero.
+fn normalise(vectors: &mut Mat<f64>, components: usize) {
+    for first in (0..vectors.ncols()).step_by(components) {
+        for i in 0..vectors.nrows() {
+            let norm = (first..first + components).map(|c| vectors[(i, c)].powi(2)).sum::<f64>().sqrt();
+            for c in first..first + components {
+                vectors[(i, c)] = if norm > 0.0 { vectors[(i, c)] / norm } else { 0.0 };
+            }
+        }
+    }
+}
+
+/// `p^α` and its slope, odd in `p`, in proportion to `p` well below `least`.
+fn eased_power(p: f64, exponent: f64, least: f64) -> (f64, f64) {
+    if exponent == 1.0 {
+        return (p, 1.0);
+    }
+    let squared = p * p + least * least;
+    let power = squared.powf(0.5 * (exponent - 1.0));
+    (p * power, power * (1.0 + (exponent - 1.0) * p * p / squared))
+}

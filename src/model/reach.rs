@@ -1,0 +1,115 @@
+//! How far wear can reach: the contact at the largest indentation of a run and the smallest stick radius.
+
+use super::schedule::Schedule;
+use crate::contact::InitialContact;
+use crate::error::Result;
+use crate::friction::FrictionLaw;
+use crate::loading::TangentialControl;
+use crate::quadrature::Rule;
+use crate::roots::bracketed;
+
+/// Share of the load that the core within which nothing is worn bears under full sliding: the springs need a smallest radius.
+const CORE: f64 = 1e-7;
+
+/// Nodes of the quadrature of the first cycle's force.
+const FORCE_NODES: usize = 100;
+
+/// Steps in the search for the last stick radius.
+const SEARCH: usize = 400;
+
+impl Schedule {
+    /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
+    ///
+    /// Under full sliding a core stays that bears 1e-7 of the load, of radius `10^(-7/(1+k)) a0`.
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] if nothing slips; those of [`InitialContact::at`].
+    pub fn reach(&self, contact: &InitialContact) -> Result<InitialContact> {
+        let ratio = contact.half_space().stiffness_ratio();
+        let depth = self.largest_indentation();
+        let compression = match self.conditions().tangential_control {
+            TangentialControl::Displacement => self
+                .extremes()
+                .map(|drive| match &drive.path {
+                    Some(path) => path.stick_compression(&drive.friction, ratio),
+                    None => drive.friction.compression_at(ratio * drive.amplitude) + drive.lift,
+                })
+                .fold(0.0, f64::max),
+            _ => self.last_slip_compression(contact)?,
+        };
+        let grading = contact.half_space().grading();
+        let profile = contact.equivalent_profile();
+        let radius = if depth == contact.indentation() {
+            contact.contact_radius()
+        } else {
+            profile.radius_at(depth)?
+        };
+        let core = radius * CORE.powf((1.0 + grading).recip());
+        let largest = depth - profile.value(core);
+        contact.at(depth, compression.min(largest))
+    }
+
+    /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the
+    /// balance of forces then gives; the whole indentation if stick cannot bear the load.
+    ///
+    /// ```text
+    /// F_x(c) = 2 μ_f c_N (d - g0(c)) c^(1+k)/(1+k),    F_x(c) = Q    or    U(c) + F_x(c)/k_r = U_r,  M U(c) = μ_f (d - g0(c))
+    /// ```
+    fn last_slip_compression(&self, contact: &InitialContact) -> Result<f64> {
+        let half_space = contact.half_space();
+        let ratio = half_space.stiffness_ratio();
+        let exponent = 1.0 + half_space.grading();
+        let profile = contact.equivalent_profile();
+        let mut largest = 0.0_f64;
+        for drive in self.extremes() {
+            let depth = self.largest_indentation() - drive.lift;
+            let excess = |radius: f64| {
+                let strength = drive.friction.static_strength(depth - profile.value(radius));
+                let force = 2.0 * half_space.normal_stiffness() * strength * radius.powf(exponent) / exponent;
+                drive.excess(force, strength / ratio)
+            };
+            // From the contact edge inwards: stick is lost from there.
+            let radius = profile.radius_at(depth)?;
+            let inwards = |i: usize| radius * (-16.0 * i as f64 / (SEARCH as f64 * exponent)).exp();
+            let first = (1..=SEARCH).find(|i| excess(inwards(*i)) >= 0.0);
+            let compression = match first {
+                Some(i) => {
+                    let edge = bracketed(excess, inwards(i), inwards(i - 1), 0.0)?;
+                    depth - profile.value(edge)
+                }
+                None => depth,
+            };
+            largest = largest.max(compression + drive.lift);
+        }
+        Ok(largest)
+    }
+}
+
+/// Amplitude of the tangential force, N, on the unworn contact under the law of friction at the start.
+///
+/// ```text
+/// F_x = 2 c_T ∫_0^a x^k min(U, μ_f(q) q/M) dx
+/// ```
+pub(super) fn first_force(
+    contact: &InitialContact,
+    friction: &FrictionLaw,
+    amplitude: f64,
+    depth: f64,
+) -> Result<f64> {
+    let half_space = contact.half_space();
+    let (ratio, exponent) = (half_space.stiffness_ratio(), 1.0 + half_space.grading());
+    let profile = contact.equivalent_profile();
+    let edge = profile.radius_at(depth)?;
+    let sticking = friction.compression_at(ratio * amplitude);
+    let stick = if sticking < depth { profile.radius_at(depth - sticking)? } else { 0.0 };
+    let stuck = ratio * amplitude * stick.powf(exponent) / exponent;
+    // In y = x^(1+k), which leaves no power of x.
+    let (low, high) = (stick.powf(exponent), edge.powf(exponent));
+    let rule = Rule::legendre(FORCE_NODES)?;
+    let strength = |part: f64| {
+        let x = (low + (high - low) * part).powf(exponent.recip());
+        friction.kinetic_strength(depth - profile.value(x))
+    };
+    let slipping = (high - low) / exponent * rule.mean(strength);
+    Ok(2.0 * half_space.normal_stiffness() * (stuck + slipping))
+}
