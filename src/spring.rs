@@ -2,12 +2,15 @@
 //!
 //! The spring carries the elastic deflection `e`, its force over its normal stiffness is `M e`, and it is held while `M |e|` stays below
 //! its strength. Within a substep the indenter moves straight and at one speed, compression and limit of the deflection are linear. On such
-//! a path the rules here are exact for any number of substeps, in one and in two directions:
+//! a path the deflection is exact for any number of substeps, in one and in two directions:
 //!
 //! ```text
 //! stick   e' = u'
 //! slip    |e| = l,  s' = λ e/l,  e' = u' - s'    λ = u'·e/l - l' >= 0, and λ grows while the path is straight
 //! ```
+//!
+//! Slip along a line is exact too. Where slip turns within a substep, what is recorded is its chord, and the energy is that of the mean force
+//! along it: second order, and still in balance with the work to round-off.
 //!
 //! The exponent of a load-dependent law makes the limit curved in the compression; taken as linear between the corners it is second order.
 
@@ -411,8 +414,12 @@ fn onset(deflection: [f64; 2], moved: [f64; 2], limits: [f64; 2]) -> f64 {
     // a θ² + 2 b θ + c = 0, c <= 0 and the sum of all positive; the root where it changes sign upwards
     let a = square(moved) - growth * growth;
     let b = dot(deflection, moved) - limits[0] * growth;
-    let c = (square(deflection) - limits[0] * limits[0]).min(0.0);
-    let root = (b * b - a * c).max(0.0).sqrt();
+    let size = length(deflection);
+    let c = ((size - limits[0]) * (size + limits[0])).min(0.0);
+    // b² - a c, in which nothing cancels where deflection and limit vanish together, as they do at lift-off of a path that returns.
+    let turn = (deflection[0] * moved[1] - deflection[1] * moved[0]).abs();
+    let reach = length(difference(scaled(limits[0], moved), scaled(growth, deflection)));
+    let root = ((reach - turn).max(0.0) * (reach + turn)).sqrt();
     let fraction = if b > 0.0 { -c / (b + root) } else { (root - b) / a };
     if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) }
 }
