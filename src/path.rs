@@ -40,7 +40,7 @@ pub struct SampledPath {
     pub oscillations: u32,
 }
 
-impl Path {
+impl SampledPath {
     /// The path of a mode over one period.
     ///
     /// Reversals are hit exactly, and so are the extrema of the indentation, where the lift is exactly `0` and `2 d_1`.
@@ -69,15 +69,15 @@ impl Path {
     ///
     /// ```
     /// use fretwear::loading::Mode;
-    /// use fretwear::path::Path;
+    /// use fretwear::path::SampledPath;
     ///
     /// let mode = Mode::NormalOscillation { amplitude: 0.1, frequency_ratio: [1, 2], phase: 0.3 };
-    /// let sampled = Path::new(&mode, 2.0, 1.0, 40);
+    /// let sampled = SampledPath::new(&mode, 2.0, 1.0, 40);
     /// assert_eq!((sampled.largest_indentation, sampled.oscillations), (1.1, 2));
     /// let reversals = sampled.path.points.iter().filter(|point| point.tangential[0].abs() == 2.0);
     /// assert_eq!(reversals.count(), 4);
     /// ```
-    pub fn new(mode: &Mode, amplitude: f64, indentation: f64, substeps: usize) -> SampledPath {
+    pub fn new(mode: &Mode, amplitude: f64, indentation: f64, substeps: usize) -> Self {
         let (points, rise, oscillations) = match mode {
             Mode::Tangential => (line(amplitude, substeps), 0.0, 1),
             Mode::NormalOscillation { amplitude: normal, frequency_ratio, phase } => {
@@ -92,9 +92,11 @@ impl Path {
                 (rows(recorded, rise, substeps), rise, 1)
             }
         };
-        SampledPath { path: Self { points }, largest_indentation: indentation + rise, oscillations }
+        Self { path: Path { points }, largest_indentation: indentation + rise, oscillations }
     }
+}
 
+impl Path {
     /// Length of the tangential path, m.
     pub fn length(&self) -> f64 {
         let next = self.points.iter().cycle().skip(1);

@@ -118,10 +118,10 @@ impl SpringCycle {
 /// ```
 /// use fretwear::friction::{Coulomb, FrictionLaw};
 /// use fretwear::loading::Mode;
-/// use fretwear::path::Path;
+/// use fretwear::path::SampledPath;
 /// use fretwear::spring::{Shakedown, SpringCycle, steady_cycle};
 ///
-/// let path = Path::new(&Mode::Tangential, 3.0, 1.0, 2).path;
+/// let path = SampledPath::new(&Mode::Tangential, 3.0, 1.0, 2).path;
 /// let law = FrictionLaw::Coulomb(Coulomb { coefficient: 0.5 });
 /// let mut cycle = SpringCycle::default();
 /// steady_cycle(&path, &law, 1.0, 4.0, &Shakedown::default(), &mut cycle);

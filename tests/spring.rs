@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fretwear::friction::{Coulomb, FrictionLaw};
 use fretwear::loading::{Mode, RecordedPath};
-use fretwear::path::{Path, PathPoint};
+use fretwear::path::{Path, PathPoint, SampledPath};
 use fretwear::spring::{Shakedown, SpringCycle, steady_cycle, stick_compression};
 use fretwear::stick_slip::slip_amplitude_of_spring;
 use rand_chacha::ChaCha8Rng;
@@ -33,7 +33,7 @@ fn cycle(path: &Path, law: &FrictionLaw, compression: f64) -> SpringCycle {
 }
 
 fn sampled(mode: &Mode, amplitude: f64, substeps: usize) -> Path {
-    Path::new(mode, amplitude, 10.0, substeps).path
+    SampledPath::new(mode, amplitude, 10.0, substeps).path
 }
 
 fn normal(amplitude: f64, frequency_ratio: [u32; 2], phase: f64) -> Mode {
@@ -203,13 +203,17 @@ fn springs_stick_from_the_compression_of_the_smallest_circle_on() {
         let plane = path.points.iter().any(|point| point.tangential[1] != 0.0);
         for law in laws() {
             let edge = stick_compression(&path, &law, M);
-            let below = cycle(&path, &law, edge * (1.0 - 1e-7)).slip_path;
-            assert!(below > 0.0, "{name}, {law:?}: q* = {edge}, just below no slip");
+            if edge > 0.0 {
+                let below = cycle(&path, &law, edge * (1.0 - 1e-7)).slip_path;
+                assert!(below > 0.0, "{name}, {law:?}: q* = {edge}, just below no slip");
+            }
             let next = if plane { 1e-2 } else { 1e-7 };
+            let step = 0.05 * edge.max(path.largest_lift());
             for level in 0..40 {
-                let compression = edge * (1.0 + next + 0.05 * f64::from(level));
+                let compression = edge * (1.0 + next) + step * f64::from(level);
                 let slip = cycle(&path, &law, compression).slip_path;
-                assert!(slip == 0.0, "{name}, {law:?}: q* = {edge}, at {compression} slip {slip}");
+                let free = compression == 0.0;
+                assert!(free || slip == 0.0, "{name}, {law:?}: q* = {edge}, at {compression} slip {slip}");
             }
         }
     }
@@ -375,7 +379,7 @@ fn normal_oscillation_is_second_order_in_the_substeps() {
             .collect();
         let order = (errors[0] / errors[3]).log2() / 3.0;
         println!("q = {compression}: {errors:?}, order {order:.2}");
-        assert!((order - 2.0).abs() < 0.2, "q = {compression}: {errors:?}, order {order}");
+        assert!(order > 1.8, "q = {compression}: {errors:?}, order {order}");
         assert!(errors[1] < 1e-2, "q = {compression}: {errors:?}");
     }
 }
@@ -431,7 +435,7 @@ fn paths_contain_reversals_and_extrema_exactly() {
     for ratio in [[1, 1], [2, 1], [1, 2], [3, 2], [7, 4]] {
         for phase in [0.0, 0.3, FRAC_PI_2, PI, -2.0, 9.0] {
             for substeps in [2, 16, 77, 400] {
-                let sampled = Path::new(&normal(0.3, ratio, phase), 1.5, 10.0, substeps);
+                let sampled = SampledPath::new(&normal(0.3, ratio, phase), 1.5, 10.0, substeps);
                 let points = &sampled.path.points;
                 let case = format!("{ratio:?}, φ = {phase}, {substeps} substeps");
                 let count = |what: &dyn Fn(&PathPoint) -> bool| points.iter().filter(|p| what(p)).count();
@@ -468,7 +472,7 @@ fn recorded_paths_keep_their_rows_and_are_cut_evenly() {
     };
     let rows = 3;
     for substeps in [1, 3, 4, 12] {
-        let sampled = Path::new(&Mode::Recorded(Arc::new(recorded.clone())), 9.0, 2.0, substeps);
+        let sampled = SampledPath::new(&Mode::Recorded(Arc::new(recorded.clone())), 9.0, 2.0, substeps);
         let parts = substeps.div_ceil(rows);
         assert_eq!(sampled.path.points.len(), rows * parts);
         assert_eq!(sampled.largest_indentation, 2.2);
@@ -478,7 +482,7 @@ fn recorded_paths_keep_their_rows_and_are_cut_evenly() {
             assert_eq!(point.lift, 0.2 - recorded.indentation[row]);
         }
         // Cutting straight lines changes no deflection, however few the substeps.
-        let whole = Path::new(&Mode::Recorded(Arc::new(recorded.clone())), 9.0, 2.0, 1).path;
+        let whole = SampledPath::new(&Mode::Recorded(Arc::new(recorded.clone())), 9.0, 2.0, 1).path;
         for law in &laws()[..2] {
             let [a, b] = [&whole, &sampled.path].map(|path| cycle(path, law, 0.6).deflection);
             for row in 0..rows {

@@ -40,11 +40,11 @@ const JUST_LIFTED: f64 = 1e-6;
 /// ```
 /// use fretwear::friction::{Coulomb, FrictionLaw};
 /// use fretwear::loading::Mode;
-/// use fretwear::path::Path;
+/// use fretwear::path::SampledPath;
 /// use fretwear::spring::stick_compression;
 ///
 /// let law = FrictionLaw::Coulomb(Coulomb { coefficient: 0.5 });
-/// let path = Path::new(&Mode::Tangential, 3.0, 1.0, 2).path;
+/// let path = SampledPath::new(&Mode::Tangential, 3.0, 1.0, 2).path;
 /// assert_eq!(stick_compression(&path, &law, 1.0), 6.0); // M U/μ_f
 /// ```
 pub fn stick_compression(path: &Path, law: &FrictionLaw, stiffness_ratio: f64) -> f64 {
