@@ -162,15 +162,21 @@ pub fn steady_cycle(
         } else {
             0.0
         };
-        let limits = std::mem::take(&mut out.limit);
-        let (start, _) = straight_period(path, &limits, compression, first, |_, _| {});
-        out.clear();
-        let mut slip_path = 0.0;
-        let (_, loaded) = straight_period(path, &limits, compression, start, |deflection, passed| {
-            slip_path += passed.slip[0].abs();
-            out.push([deflection, 0.0], passed);
-        });
-        out.limit = limits;
+        let count = path.points.len();
+        out.slip.resize(count, [0.0; 2]);
+        out.deflection.resize(count, [0.0; 2]);
+        let (slip, deflections) = (&mut out.slip[..count], &mut out.deflection[..count]);
+        let (start, _) = straight_period(path, &out.limit, compression, first, |_, _, _| {});
+        let (mut slip_path, mut dissipation, mut work) = (0.0, 0.0, 0.0);
+        let (_, loaded) =
+            straight_period(path, &out.limit, compression, start, |substep, deflection, passed| {
+                slip[substep] = passed.slip;
+                deflections[substep] = [deflection, 0.0];
+                slip_path += passed.slip[0].abs();
+                dissipation += passed.dissipation;
+                work += passed.work;
+            });
+        (out.dissipation, out.work, out.jump_loss) = (dissipation, work, 0.0);
         out.periods = 1;
         out.finish(stiffness_ratio, slip_path, negligible(loaded));
         return;
@@ -241,24 +247,29 @@ fn straight_period(
     limits: &[f64],
     compression: f64,
     mut deflection: f64,
-    mut record: impl FnMut(f64, &Passed),
+    mut record: impl FnMut(usize, f64, &Passed),
 ) -> (f64, f64) {
     let mut loaded = 0.0;
-    let mut from = (path.points[0].tangential[0], compression - path.points[0].lift, limits[0]);
-    let corners = path.points.iter().zip(limits);
-    for (point, &limit) in corners.clone().skip(1).chain(corners.take(1)) {
-        let to = (point.tangential[0], compression - point.lift, limit);
+    let count = path.points.len();
+    let limits = &limits[..count];
+    let place = |i: usize| {
+        let point = &path.points[i];
+        (point.tangential[0], compression - point.lift, limits[i])
+    };
+    let mut from = place(0);
+    for substep in 0..count {
+        let to = place(if substep + 1 < count { substep + 1 } else { 0 });
         match loaded_part([from.1, to.1], [from.2, to.2]) {
             ControlFlow::Continue(part) => {
                 let moved = part.fraction * (to.0 - from.0);
                 loaded += moved.abs();
                 let passed;
                 (deflection, passed) = straight_substep(deflection, moved, part.limits);
-                record(deflection, &passed);
+                record(substep, deflection, &passed);
             }
             ControlFlow::Break(()) => {
                 deflection = 0.0;
-                record(0.0, &Passed::default());
+                record(substep, 0.0, &Passed::default());
             }
         }
         from = to;
