@@ -7,12 +7,16 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use fretwear::abel::AbelOperators;
 use fretwear::closed_form::{HypergeometricLimit, LimitingShape};
 use fretwear::contact::InitialContact;
+use fretwear::friction::{Coulomb, FrictionLaw};
 use fretwear::grid::{Clustering, slip_annulus};
 use fretwear::half_space::Poisson;
+use fretwear::loading::Mode;
 use fretwear::model::{Fields, Model};
+use fretwear::path::SampledPath;
 use fretwear::run::Run;
 use fretwear::scene::Scene;
 use fretwear::simulation::{End, Plan, Simulation};
+use fretwear::spring::{Shakedown, SpringCycle, steady_cycle, stick_compression};
 use fretwear::stepper::{Implicit, Stepper};
 use fretwear::transforms::Transforms;
 use fretwear::wear_map::{Control, Medium, OptimumCurve, WearMap};
@@ -112,6 +116,36 @@ fn closed_form(criterion: &mut Criterion) {
     });
 }
 
+/// One spring through one period; over the substeps it is the cost of a substep, with one period of shakedown or some.
+fn springs(criterion: &mut Criterion) {
+    let normal = Mode::NormalOscillation { amplitude: 0.2, frequency_ratio: [1, 1], phase: 0.9 };
+    let orbit = Mode::Orbit { transverse_amplitude: 1.5, phase: 0.0, centre: [0.0; 2] };
+    let coulomb = FrictionLaw::Coulomb(Coulomb { coefficient: 0.5 });
+    let kinetic = FrictionLaw::StaticKinetic { static_coefficient: 0.6, kinetic_coefficient: 0.5 };
+    let load = FrictionLaw::LoadDependent { coefficient: 0.5, exponent: -0.2, reference: 1.0 };
+    for (name, mode, law) in [
+        ("tangential", &Mode::Tangential, coulomb),
+        ("normal oscillation", &normal, coulomb),
+        ("normal oscillation, load-dependent", &normal, load),
+        ("tangential, static and kinetic", &Mode::Tangential, kinetic),
+        ("orbit", &orbit, coulomb),
+    ] {
+        for substeps in [2, 128] {
+            let path = SampledPath::new(mode, 2.0, 2.0, substeps).path;
+            let mut cycle = SpringCycle::default();
+            let shakedown = Shakedown::default();
+            let case = format!("{name}/{} substeps", path.points.len());
+            criterion.bench_function(&format!("spring: {case}"), |bench| {
+                bench.iter(|| steady_cycle(&path, &law, 1.0, black_box(1.5), &shakedown, &mut cycle));
+            });
+            println!("    periods of shakedown: {}", cycle.periods);
+            criterion.bench_function(&format!("stick compression: {case}"), |bench| {
+                bench.iter(|| stick_compression(black_box(&path), &law, 1.0));
+            });
+        }
+    }
+}
+
 /// Maps in closed form: one thread and all threads in the same run.
 fn maps(criterion: &mut Criterion) {
     let medium = Medium::new(2.0, Poisson::Similar).expect("a paraboloid");
@@ -141,6 +175,6 @@ fn settings() -> Criterion {
 criterion_group! {
     name = costs;
     config = settings();
-    targets = closed_form, maps, parts, whole_scene
+    targets = closed_form, springs, maps, parts, whole_scene
 }
 criterion_main!(costs);

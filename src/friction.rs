@@ -62,6 +62,32 @@ impl FrictionLaw {
         }
     }
 
+    /// Derivative of [`FrictionLaw::kinetic_strength`] by the compression; zero without contact.
+    ///
+    /// At `q = 0` it is infinite for a negative exponent of the load.
+    pub fn kinetic_strength_slope(&self, compression: f64) -> f64 {
+        if compression < 0.0 {
+            return 0.0;
+        }
+        match *self {
+            Self::Coulomb(Coulomb { coefficient }) => coefficient,
+            Self::StaticKinetic { kinetic_coefficient, .. } => kinetic_coefficient,
+            Self::LoadDependent { coefficient, exponent, reference } => {
+                coefficient * (1.0 + exponent) * (compression / reference).powf(exponent)
+            }
+        }
+    }
+
+    /// Static over kinetic strength, at least one, the same at every compression.
+    pub fn static_factor(&self) -> f64 {
+        match *self {
+            Self::StaticKinetic { static_coefficient, kinetic_coefficient } => {
+                static_coefficient / kinetic_coefficient
+            }
+            _ => 1.0,
+        }
+    }
+
     /// Compression, m, at which a spring that sticks bears `strength`, m: the inverse of [`FrictionLaw::static_strength`].
     pub fn compression_at(&self, strength: f64) -> f64 {
         match *self {

@@ -91,7 +91,7 @@
 //! | jobs | [`submit`], [`sweep`], [`report`], [`progress`], [`run`], [`wear_map`] |
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
-//! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`conditions`], [`wear`], [`path`], [`friction`], [`loading`], [`history`], [`indenter`], [`half_space`] |
+//! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`conditions`], [`wear`], [`spring`], [`path`], [`friction`], [`loading`], [`history`], [`indenter`], [`half_space`] |
 //! | numerics | [`transforms`], [`abel`], [`chebyshev`], [`linear`], [`quadrature`], [`roots`], [`grid`], [`error`] |
 //!
 //! SI units everywhere, nothing is scaled behind the scenes; the library neither prints nor exits.
@@ -120,6 +120,7 @@ pub mod scene;
 pub mod simulation;
 pub mod slip_depth;
 pub mod snapshot;
+pub mod spring;
 pub mod stepper;
 pub mod stick_slip;
 pub mod submit;

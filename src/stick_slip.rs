@@ -1,6 +1,7 @@
 //! Which springs stick and which slip under tangential oscillation.
 
 use crate::error::Result;
+use crate::friction::FrictionLaw;
 use crate::indenter::EquivalentProfile;
 
 /// What tangential oscillation does to the contact.
@@ -111,4 +112,42 @@ pub fn stick_logarithm(
     let fraction = drop / (contact_radius * contact_radius);
     // A pointed profile (n << 1) loses nearly all of its radius well before half of the indentation.
     if fraction > 0.5 { direct() } else { Ok(-0.5 * (-fraction).ln_1p()) }
+}
+
+/// Slip amplitude `σ` of one spring under tangential oscillation at constant indentation, m, and its derivative by the compression.
+///
+/// ```text
+/// σ = U - μ_k(q) q/M  if  M U > μ_s(q) q,  else 0
+/// ```
+///
+/// A period slips `4σ`. The spring was pressed on in the middle of the oscillation, so one that never reached its static limit sticks, and
+/// with static and kinetic friction `σ` jumps where it does. The derivative is that on the side of the spring; it is infinite at `q = 0` for
+/// friction whose coefficient falls with the load.
+///
+/// # Arguments
+/// * `law` -- friction of the spring
+/// * `stiffness_ratio` -- `M`
+/// * `amplitude` -- `U`, m
+/// * `compression` -- `q`, m; without contact the slip is `U`
+///
+/// ```
+/// use fretwear::friction::{Coulomb, FrictionLaw};
+/// use fretwear::stick_slip::slip_amplitude_of_spring;
+///
+/// let law = FrictionLaw::Coulomb(Coulomb { coefficient: 0.5 });
+/// assert_eq!(slip_amplitude_of_spring(&law, 2.0, 3.0, 4.0), (2.0, -0.25));
+/// assert_eq!(slip_amplitude_of_spring(&law, 2.0, 3.0, 12.0), (0.0, 0.0));
+/// ```
+pub fn slip_amplitude_of_spring(
+    law: &FrictionLaw,
+    stiffness_ratio: f64,
+    amplitude: f64,
+    compression: f64,
+) -> (f64, f64) {
+    if stiffness_ratio * amplitude > law.static_strength(compression) {
+        let value = amplitude - law.kinetic_strength(compression) / stiffness_ratio;
+        (value, -law.kinetic_strength_slope(compression) / stiffness_ratio)
+    } else {
+        (0.0, 0.0)
+    }
 }

@@ -18,6 +18,7 @@ const STOREYS: [(&str, &[&str]); 6] = [
             "stick_slip",
             "conditions",
             "wear",
+            "spring",
             "path",
             "friction",
             "loading",
