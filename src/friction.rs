@@ -34,6 +34,16 @@ pub enum FrictionLaw {
 }
 
 impl FrictionLaw {
+    /// Coulomb's law that stands for this one in the closed form, the limits of the regimes and the dimensionless time: that of the spring
+    /// at rest, and of the compression of reference.
+    pub fn reference(&self) -> Coulomb {
+        match *self {
+            Self::Coulomb(law) => law,
+            Self::StaticKinetic { static_coefficient, .. } => Coulomb { coefficient: static_coefficient },
+            Self::LoadDependent { coefficient, .. } => Coulomb { coefficient },
+        }
+    }
+
     /// What a spring of compression `q`, m, that sticks can bear at most, over its normal stiffness: `μ_s(q) q`, m; zero without contact.
     ///
     /// ```

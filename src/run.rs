@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::loading;
 use crate::model::{Model, OperatorStore};
-use crate::scene::{Output, Scene, Stepper as StepperChoice};
+use crate::scene::{Cycle, Output, Scene, Stepper as StepperChoice};
 use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
     Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
@@ -165,7 +165,7 @@ impl Run {
         let checkpoint =
             file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
         let name = format!("{} (its scene)", path.display());
-        let scene = Scene::from_stored(&file.header.scene, &name, file.header.table.clone())?;
+        let scene = Scene::from_stored(&file.header.scene, &name, file.header.table.clone(), None)?;
         let parts = Parts::new(&scene, shared)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
@@ -257,6 +257,7 @@ struct Parts {
 
 impl Parts {
     fn new(scene: &Scene, shared: &Shared) -> Result<Self> {
+        check_conditions(scene)?;
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
         let numerics = scene.numerics();
@@ -281,6 +282,19 @@ impl Parts {
         let plan = plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole);
         Ok(Self { model, stepper, tolerance, plan, limit })
     }
+}
+
+/// Refuses what the time stepping does not know yet.
+fn check_conditions(scene: &Scene) -> Result<()> {
+    let mut unknown = scene.conditions().departures();
+    if scene.numerics().cycle == Some(Cycle::Resolved) {
+        unknown.push("a resolved cycle");
+    }
+    if unknown.is_empty() {
+        return Ok(());
+    }
+    let why = format!("not offered by this version yet with {}; limit and check are", unknown.join(", "));
+    Err(Error::Inconsistent { what: "time stepping", why })
 }
 
 /// Refuses contacts without partial slip, which has a slip annulus to follow.
