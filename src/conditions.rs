@@ -1,12 +1,14 @@
 //! Everything that may differ from plain tangential oscillation under the laws of Coulomb and Archard.
 
+use serde::Serialize;
+
 use crate::friction::{Coulomb, FrictionLaw};
 use crate::history::History;
 use crate::loading::{Block, Clock, Mode, TangentialControl};
 use crate::wear::{Archard, WearLaw};
 
 /// Laws, mode, blocks and control of a run, beside its contact.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Conditions {
     /// The law of friction at the start.
     pub friction: FrictionLaw,

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Serialize, Serializer};
+
 use crate::error::{Error, Result};
 
 /// The normal load of the first cycle; its indentation `d` is then held, unless the force is.
@@ -71,7 +73,8 @@ pub struct Loading {
 }
 
 /// What the indenter does over one period, of which the tangential oscillation `u_x = U cos ωt` is a part.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(tag = "mode", rename_all = "kebab-case")]
 pub enum Mode {
     /// Nothing else.
     #[default]
@@ -95,7 +98,18 @@ pub enum Mode {
         centre: [f64; 2],
     },
     /// A recorded period.
+    #[serde(rename = "path", serialize_with = "without_rows")]
     Recorded(Arc<RecordedPath>),
+}
+
+/// Name and number of rows of a path, which are enough to tell it.
+fn without_rows<S: Serializer>(path: &RecordedPath, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Summary<'a> {
+        source: &'a str,
+        rows: usize,
+    }
+    Summary { source: &path.source, rows: path.x.len() }.serialize(serializer)
 }
 
 /// A period as recorded: closed, straight between its rows, starting at the first one.
@@ -181,7 +195,8 @@ impl RecordedPath {
 }
 
 /// What decides the tangential amplitude in each cycle.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[serde(tag = "control", rename_all = "kebab-case")]
 pub enum TangentialControl {
     /// The amplitude of the displacement is as given.
     #[default]
@@ -191,12 +206,13 @@ pub enum TangentialControl {
     /// The displacement given is that of the far end of a spring in series with the contact.
     Rig {
         /// Tangential stiffness, N/m, positive.
+        #[serde(rename = "rig_stiffness")]
         stiffness: f64,
     },
 }
 
 /// Some cycles in which amplitude and indentation are multiplied by factors.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Block {
     /// How long it lasts, in cycles or as dimensionless time by [`Clock`]; positive.
     pub duration: f64,
@@ -207,7 +223,8 @@ pub struct Block {
 }
 
 /// The unit of the times of blocks and histories.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Clock {
     /// Cycles.
     #[default]

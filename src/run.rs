@@ -127,6 +127,7 @@ impl Run {
             loop_displacement: loop_displacement(simulation.model()),
             limit: Some(limit_curves(simulation.model(), &parts.limit)),
             table: scene.table().cloned(),
+            path: scene.path().cloned(),
         };
         let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
         Ok(Self { simulation, recorder, limit: parts.limit })
@@ -165,7 +166,12 @@ impl Run {
         let checkpoint =
             file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
         let name = format!("{} (its scene)", path.display());
-        let scene = Scene::from_stored(&file.header.scene, &name, file.header.table.clone(), None)?;
+        let scene = Scene::from_stored(
+            &file.header.scene,
+            &name,
+            file.header.table.clone(),
+            file.header.path.clone(),
+        )?;
         let parts = Parts::new(&scene, shared)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
@@ -423,6 +429,7 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
     Snapshot {
         cycles: state.cycles,
         tau: state.cycles * contact.tau_per_cycle(),
+        regime: contact.regime(),
         wear_volume: if unworn { 0.0 } else { model.wear_volume(fields) },
         contact_radius: model.contact_radius(state),
         stick_radius: contact.stick_radius().unwrap_or(0.0),

@@ -276,7 +276,12 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "stiffness_ratio",
             &["half_space.stiffness_ratio", "beside half_space.modulus"],
         ),
-        (FORCE, "", "[loading]", &["loading.indentation or loading.initial_force", "exactly one"]),
+        (
+            FORCE,
+            "",
+            "[loading]",
+            &["loading.indentation, loading.initial_force or loading.normal_force", "exactly one"],
+        ),
         (
             FORCE,
             "initial_force = 50\nindentation = 1e-6",

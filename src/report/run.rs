@@ -11,7 +11,7 @@ use crate::run::RunResult;
 pub struct RunReport {
     /// The result file.
     pub output: String,
-    /// Why the run stopped: `end`, `rate`, `interrupted` or `worn-out`.
+    /// Why the run stopped: `end`, `rate`, `interrupted`, `worn-out` or `unending`.
     pub stop_reason: &'static str,
     /// Estimated error of the worn volume, relative to that of the limit.
     pub error_estimate: Option<f64>,
@@ -88,6 +88,7 @@ impl RunReport {
         let stopped = match self.stop_reason {
             "end" => "at its end".to_owned(),
             "rate" => "when the rate of worn volume had fallen as asked".to_owned(),
+            "unending" => "because the rate of worn volume asked for is never reached".to_owned(),
             "worn-out" => "with no pressure left outside the stick zone".to_owned(),
             _ => format!("by a signal; go on with fretwear run --resume {}", self.output),
         };
