@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// A factor that depends on the dimensionless time or on the number of cycles.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-#[serde(tag = "form", rename_all = "kebab-case")]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum History {
     /// Always 1.
     #[default]

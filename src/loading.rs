@@ -74,7 +74,7 @@ pub struct Loading {
 
 /// What the indenter does over one period, of which the tangential oscillation `u_x = U cos ωt` is a part.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-#[serde(tag = "mode", rename_all = "kebab-case")]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Mode {
     /// Nothing else.
     #[default]
@@ -196,7 +196,7 @@ impl RecordedPath {
 
 /// What decides the tangential amplitude in each cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[serde(tag = "control", rename_all = "kebab-case")]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum TangentialControl {
     /// The amplitude of the displacement is as given.
     #[default]
