@@ -16,7 +16,7 @@ pub enum Regime {
 }
 
 impl Regime {
-    /// All regimes, by growing slip.
+    /// All regimes, by growing slip; each at the place of its own number.
     pub const ALL: [Self; 3] = [Self::Stick, Self::PartialSlip, Self::FullSliding];
 
     /// Regime of an indentation `d` and a [`slip_compression`] `q_c`, m: full sliding from `q_c = d` on.

@@ -10,7 +10,7 @@ use fretwear::friction::{Coulomb, FrictionLaw};
 use fretwear::history::History;
 use fretwear::loading::{Amplitude, Block, Clock, Mode, TangentialControl};
 use fretwear::report::{CheckReport, json};
-use fretwear::scene::Scene;
+use fretwear::scene::{Scene, Study};
 use fretwear::wear::{Archard, WearLaw};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
@@ -231,6 +231,21 @@ fn a_recorded_path_is_read_and_comes_back_from_its_stored_rows() {
 
     let lifted = read_path("0,0,0\n2e-6,0,1e-7\n1e-6,0,-1e-7\n", "").unwrap();
     assert_eq!(lifted.path().expect("a path").indentation, [0.0, 1e-7, -1e-7]);
+}
+
+#[test]
+fn the_hash_of_a_study_changes_with_the_recorded_path_of_its_scenes() {
+    let folder = folder_with("0,0\n1e-6,0\n0,0\n");
+    let base = scene(FRICTION, WEAR, &format!("{BARE}[loading.path]\nfile = \"path.csv\"\n"));
+    let text =
+        "scene = \"base.toml\"\n[[axes]]\nkey = \"friction.coulomb.coefficient\"\nvalues = [0.5, 0.6]\n";
+    let study =
+        || Study::from_texts(text, "study.toml", &base, &folder.path().join("base.toml")).expect("a study");
+    assert_eq!(study().scene(1).expect("a scene").path().expect("a path").x, [0.0, 1e-6, 0.0]);
+    let before = study().hash();
+    assert_eq!(before, study().hash());
+    fs::write(folder.path().join("path.csv"), "0,0\n2e-6,0\n0,0\n").expect("the path");
+    assert_ne!(before, study().hash());
 }
 
 #[test]

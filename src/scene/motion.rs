@@ -173,15 +173,15 @@ pub(super) fn mode<'c>(
         }
         Some(("orbit", entry)) => orbit(&entry.section()?, contact()?.amplitude()),
         Some((_, entry)) => {
-            let path = motion.path.clone().ok_or_else(|| entry.misplaced("is not there"))?;
-            let least = path.indentation.iter().fold(f64::INFINITY, |least: f64, it| least.min(*it));
-            // Without a column of its own the indentation is never in question.
-            let depth = if path.changes_indentation() { shallowest(contact()?) } else { 1.0 };
-            if depth + least <= 0.0 {
-                return Err(entry.misplaced(format_args!(
-                    "lifts the indenter by {:e} m from an indentation of {depth:e} m: the contact would open; lift it less",
-                    -least
-                )));
+            let path = motion.path.clone().expect("read with the rest of the table");
+            if path.changes_indentation() {
+                let depth = shallowest(contact()?);
+                let lift = path.indentation.iter().fold(0.0, |most: f64, it| most.max(-it));
+                if lift >= depth {
+                    return Err(entry.misplaced(format_args!(
+                        "lifts the indenter by {lift:e} m from an indentation of {depth:e} m: the contact would open; lift it less"
+                    )));
+                }
             }
             Ok(Mode::Recorded(path))
         }

@@ -61,13 +61,10 @@ impl Run<'_> {
                 put_text(&dataset, "coordinates", "cycles tau")?;
             }
         }
-        let flags: Vec<i32> = (0..).take(Regime::ALL.len()).collect();
-        let flag = |regime: Regime| Regime::ALL.iter().zip(&flags).find(|(it, _)| **it == regime);
-        let values: Vec<i32> =
-            self.snapshots.iter().filter_map(|it| flag(it.regime)).map(|(_, flag)| *flag).collect();
+        let values: Vec<i32> = self.snapshots.iter().map(|it| it.regime as i32).collect();
         let dataset = put_array(file, REGIME, &[time], &values)?;
         put_text(&dataset, "coordinates", "cycles tau")?;
-        put_integers(&dataset, FLAG_VALUES, &flags)?;
+        put_integers(&dataset, FLAG_VALUES, &Regime::ALL.map(|regime| regime as i32))?;
         put_text(&dataset, FLAG_MEANINGS, &Regime::ALL.map(Regime::name).join(" "))
     }
 
