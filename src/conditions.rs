@@ -1,12 +1,14 @@
 //! Everything that may differ from plain tangential oscillation under the laws of Coulomb and Archard.
 
+use serde::Serialize;
+
 use crate::friction::{Coulomb, FrictionLaw};
 use crate::history::History;
 use crate::loading::{Block, Clock, Mode, TangentialControl};
 use crate::wear::{Archard, WearLaw};
 
 /// Laws, mode, blocks and control of a run, beside its contact.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Conditions {
     /// The law of friction at the start.
     pub friction: FrictionLaw,
@@ -45,5 +47,61 @@ impl Conditions {
             tangential_control: TangentialControl::default(),
             holds_normal_force: false,
         }
+    }
+
+    /// What differs from plain tangential oscillation under Coulomb's and Archard's laws, in words; nothing for a plain scene.
+    ///
+    /// ```
+    /// use fretwear::conditions::Conditions;
+    /// use fretwear::friction::Coulomb;
+    /// use fretwear::wear::Archard;
+    ///
+    /// let mut conditions = Conditions::plain(Coulomb { coefficient: 0.6 }, Archard { coefficient: 1e-14 });
+    /// assert!(conditions.is_plain());
+    /// conditions.holds_normal_force = true;
+    /// assert_eq!(conditions.departures(), ["a held normal force"]);
+    /// ```
+    pub fn departures(&self) -> Vec<&'static str> {
+        let friction = match self.friction {
+            FrictionLaw::Coulomb(_) => None,
+            FrictionLaw::StaticKinetic { .. } => Some("static and kinetic friction"),
+            FrictionLaw::LoadDependent { .. } => Some("friction that depends on the load"),
+        };
+        let wear = match self.wear {
+            // Under Coulomb's law that of the dissipated energy is Archard's.
+            WearLaw::Archard(_) | WearLaw::DissipatedEnergy { .. } => None,
+            WearLaw::PowerLaw { .. } => Some("wear by a power law"),
+            WearLaw::Threshold { .. } => Some("wear above a threshold"),
+            WearLaw::NonLocal { .. } => Some("wear that is not local"),
+        };
+        let mode = match self.mode {
+            Mode::Tangential => None,
+            Mode::NormalOscillation { .. } => Some("a normal oscillation"),
+            Mode::Orbit { .. } => Some("an orbit"),
+            Mode::Recorded(_) => Some("a recorded path"),
+        };
+        let control = match self.tangential_control {
+            TangentialControl::Displacement => None,
+            TangentialControl::Force => Some("a held tangential force"),
+            TangentialControl::Rig { .. } => Some("a compliant rig"),
+        };
+        let given = |it: bool, words: &'static str| it.then_some(words);
+        let changes = |history: &History, words| given(*history != History::Constant, words);
+        let departures = [
+            friction,
+            changes(&self.friction_history, "friction that changes along the cycles"),
+            wear,
+            changes(&self.wear_history, "a wear coefficient that changes along the cycles"),
+            mode,
+            given(!self.blocks.is_empty(), "blocks"),
+            control,
+            given(self.holds_normal_force, "a held normal force"),
+        ];
+        departures.into_iter().flatten().collect()
+    }
+
+    /// Whether nothing differs from plain tangential oscillation under Coulomb's and Archard's laws.
+    pub fn is_plain(&self) -> bool {
+        self.departures().is_empty()
     }
 }

@@ -1,7 +1,9 @@
 //! Friction laws: which spring sticks and which slips, and how hard it is held.
 
+use serde::Serialize;
+
 /// Coulomb's law: a spring sticks while its tangential force is below `μ_f` times its normal force [S, Eq. (11)].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Coulomb {
     /// Coefficient of friction `μ_f`, positive and finite.
     pub coefficient: f64,
@@ -11,7 +13,8 @@ pub struct Coulomb {
 ///
 /// Only Coulomb's law is exact in the method of dimensionality reduction. The others are laws of the one-dimensional model: they hold for
 /// its springs, not point by point for the surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "law", rename_all = "kebab-case")]
 pub enum FrictionLaw {
     /// One coefficient.
     Coulomb(Coulomb),
@@ -29,11 +32,22 @@ pub enum FrictionLaw {
         /// `m > -1`, of either sign: then `μ_f(q) q` increases, without which no spring sticks inside one that slips.
         exponent: f64,
         /// `q_0`, m.
+        #[serde(rename = "reference_compression")]
         reference: f64,
     },
 }
 
 impl FrictionLaw {
+    /// Coulomb's law that stands for this one in the closed form, the limits of the regimes and the dimensionless time: that of the spring
+    /// at rest, and of the compression of reference.
+    pub fn reference(&self) -> Coulomb {
+        match *self {
+            Self::Coulomb(law) => law,
+            Self::StaticKinetic { static_coefficient, .. } => Coulomb { coefficient: static_coefficient },
+            Self::LoadDependent { coefficient, .. } => Coulomb { coefficient },
+        }
+    }
+
     /// What a spring of compression `q`, m, that sticks can bear at most, over its normal stiffness: `μ_s(q) q`, m; zero without contact.
     ///
     /// ```

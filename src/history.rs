@@ -1,7 +1,10 @@
 //! What changes along the cycles.
 
+use serde::Serialize;
+
 /// A factor that depends on the dimensionless time or on the number of cycles.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum History {
     /// Always 1.
     #[default]
@@ -9,6 +12,7 @@ pub enum History {
     /// From 1 to `last`, `last + (1 - last) e^(-t/time)`.
     Exponential {
         /// The factor after a long time, at least 0.
+        #[serde(rename = "final_factor")]
         last: f64,
         /// `t` at which the difference has fallen to `1/e`, positive.
         time: f64,

@@ -2,6 +2,10 @@
 
 use std::sync::Arc;
 
+use serde::{Serialize, Serializer};
+
+use crate::error::{Error, Result};
+
 /// The normal load of the first cycle; its indentation `d` is then held, unless the force is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
@@ -57,7 +61,7 @@ pub enum Duration {
     UntilRate(f64),
 }
 
-/// Tangential oscillation at constant indentation.
+/// Load, amplitude and end of plain tangential oscillation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loading {
     /// The normal load.
@@ -69,7 +73,8 @@ pub struct Loading {
 }
 
 /// What the indenter does over one period, of which the tangential oscillation `u_x = U cos ωt` is a part.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Mode {
     /// Nothing else.
     #[default]
@@ -93,7 +98,18 @@ pub enum Mode {
         centre: [f64; 2],
     },
     /// A recorded period.
+    #[serde(rename = "path", serialize_with = "without_rows")]
     Recorded(Arc<RecordedPath>),
+}
+
+/// Name and number of rows of a path, which are enough to tell it.
+fn without_rows<S: Serializer>(path: &RecordedPath, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Summary<'a> {
+        source: &'a str,
+        rows: usize,
+    }
+    Summary { source: &path.source, rows: path.x.len() }.serialize(serializer)
 }
 
 /// A period as recorded: closed, straight between its rows, starting at the first one.
@@ -109,8 +125,78 @@ pub struct RecordedPath {
     pub indentation: Vec<f64>,
 }
 
+impl RecordedPath {
+    /// Fewest rows of a path.
+    pub const FEWEST_ROWS: usize = 3;
+
+    /// Most rows of a path.
+    pub const MOST_ROWS: usize = 10_000;
+
+    /// Path through rows.
+    ///
+    /// # Arguments
+    /// * `source` -- where the rows come from, in words; the name of the file as a rule
+    /// * `x`, `y`, `indentation` -- m, shape `(row,)` each, as the fields
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] names `loading.path` and what is wrong with the rows.
+    ///
+    /// # Examples
+    /// ```
+    /// use fretwear::loading::RecordedPath;
+    ///
+    /// let path = RecordedPath::new("triangle", vec![0.0, 3e-6, 0.0], vec![0.0, 0.0, 4e-6], vec![0.0; 3])?;
+    /// assert!((path.amplitude() / 2.5e-6 - 1.0).abs() < 1e-15);
+    /// # Ok::<(), fretwear::Error>(())
+    /// ```
+    pub fn new(source: impl Into<String>, x: Vec<f64>, y: Vec<f64>, indentation: Vec<f64>) -> Result<Self> {
+        let refused = |why: String| Err(Error::Inconsistent { what: "loading.path", why });
+        let rows = x.len();
+        if y.len() != rows || indentation.len() != rows {
+            return refused(format!(
+                "it has {rows} values of x, {} of y and {} of the indentation",
+                y.len(),
+                indentation.len()
+            ));
+        }
+        if !(Self::FEWEST_ROWS..=Self::MOST_ROWS).contains(&rows) {
+            let (fewest, most) = (Self::FEWEST_ROWS, Self::MOST_ROWS);
+            return refused(format!("it has {rows} rows; give from {fewest} to {most}"));
+        }
+        // What is formed from them must not overflow.
+        let sound = |value: f64| value.abs() < 1e100;
+        if let Some(value) = [&x, &y, &indentation].into_iter().flatten().find(|it| !sound(**it)) {
+            return refused(format!("it holds {value:e} m; check the units"));
+        }
+        if x.iter().all(|it| *it == x[0]) && y.iter().all(|it| *it == y[0]) {
+            return refused(
+                "all its rows are at the same x and y: the indenter does not move along the surface".into(),
+            );
+        }
+        Ok(Self { source: source.into(), x, y, indentation })
+    }
+
+    /// Half of the largest distance between two rows along the surface, m: of a straight path to and fro its amplitude.
+    pub fn amplitude(&self) -> f64 {
+        let place = |row: usize| [self.x[row], self.y[row]];
+        let mut largest = 0.0f64;
+        for row in 0..self.x.len() {
+            let [x, y] = place(row);
+            largest =
+                (0..row).map(place).fold(largest, |most, [u, v]| most.max((x - u).powi(2) + (y - v).powi(2)));
+        }
+        0.5 * largest.sqrt()
+    }
+
+    /// Whether the indentation changes along the path.
+    pub fn changes_indentation(&self) -> bool {
+        self.indentation.iter().any(|it| *it != 0.0)
+    }
+}
+
 /// What decides the tangential amplitude in each cycle.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum TangentialControl {
     /// The amplitude of the displacement is as given.
     #[default]
@@ -120,12 +206,13 @@ pub enum TangentialControl {
     /// The displacement given is that of the far end of a spring in series with the contact.
     Rig {
         /// Tangential stiffness, N/m, positive.
+        #[serde(rename = "rig_stiffness")]
         stiffness: f64,
     },
 }
 
 /// Some cycles in which amplitude and indentation are multiplied by factors.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Block {
     /// How long it lasts, in cycles or as dimensionless time by [`Clock`]; positive.
     pub duration: f64,
@@ -136,7 +223,8 @@ pub struct Block {
 }
 
 /// The unit of the times of blocks and histories.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Clock {
     /// Cycles.
     #[default]

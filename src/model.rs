@@ -2,10 +2,10 @@
 //!
 //! The springs sit at fixed fractions `ξ` of the slip annulus `c < x <= a`, whose outer edge moves with the wear: `x² = c² + Z ξ`,
 //! `Z = a² - c²`. Archard's law for the slip depth `S = F(q_c - q)` at a fixed radius is `dS/dN = κ p S`, so the state that evolves is
-//! the logarithm `λ = ln(S/S_0)`, and on the moving springs
+//! the logarithm `λ = ln(S/S_0)`, and on the moving springs, with `W` the depth worn in a cycle (`κ p S` here),
 //!
 //! ```text
-//! dλ/dN - ξ (∂λ/∂ξ) (dZ/dN)/Z = κ p,     κ = 4 k_w μ_f/M,     w = S - S_0,     w = 0 at the edge
+//! dλ/dN - ξ (∂λ/∂ξ) (dZ/dN)/Z = W/S,     κ = 4 k_w μ_f/M,     w = S - S_0,     w = 0 at the edge
 //! ```
 //!
 //! Compressions and edge are what is stored ([`State`]); everything else is recomputed from them ([`Fields`]).
@@ -35,6 +35,7 @@ use crate::stick_slip::Regime;
 pub use cycle::CycleFields;
 pub use operators::OperatorStore;
 use operators::Operators;
+use reach::Reach;
 pub use output::RadialFields;
 pub use schedule::{Demand, Drive, Resolution, Schedule};
 
@@ -110,8 +111,8 @@ pub struct Model {
     /// `c^(k-1)`.
     stick_density_factor: f64,
     stick_force: f64,
-    wear_factor: f64,
     depth_scale: f64,
+    slides: bool,
 }
 
 impl Model {
@@ -140,7 +141,9 @@ impl Model {
         store: &OperatorStore,
     ) -> Result<Self> {
         let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
-        let contact = &if uniform { contact.clone() } else { schedule.reach(contact)? };
+        let Reach { contact, slides } =
+            if uniform { Reach { contact: contact.clone(), slides: false } } else { schedule.reach(contact)? };
+        let contact = &contact;
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
         let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
             what: "slip annulus",
@@ -168,8 +171,6 @@ impl Model {
             * (profile.load_integral(stick_radius)
                 + 2.0 * compression * stick_radius.powf(1.0 + grading) / (1.0 + grading));
         let depth_scale = radial_unworn.iter().map(|u| u.limit_slip - u.slip).fold(0.0, f64::max);
-        let wear_factor =
-            4.0 * contact.wear().coefficient * contact.friction().coefficient / half_space.stiffness_ratio();
         let positive = schedule.resolves().then(|| {
             let profile = operators.abel.profile();
             Mat::from_fn(springs, springs, |i, j| profile[(i, j)].abs())
@@ -184,14 +185,19 @@ impl Model {
             stick_radius_squared,
             stick_density_factor: stick_radius_squared.powf(-0.5 * (1.0 - grading)),
             stick_force,
-            wear_factor,
             depth_scale,
+            slides,
         })
     }
 
     /// The unworn contact.
     pub fn contact(&self) -> &InitialContact {
         &self.contact
+    }
+
+    /// Whether the contact slides as a whole in some cycle, so that only the core of the mesh is not worn.
+    pub fn slides(&self) -> bool {
+        self.slides
     }
 
     /// What acts when.
@@ -217,11 +223,6 @@ impl Model {
     /// Largest depth of the limit on the springs, m: what tolerances are relative to.
     pub fn depth_scale(&self) -> f64 {
         self.depth_scale
-    }
-
-    /// `κ = 4 k_w μ_f/M`, 1/Pa: slip depth grows by `κ p` of itself in a cycle under Archard's law.
-    pub fn wear_factor(&self) -> f64 {
-        self.wear_factor
     }
 
     /// Radii of the output, m, shape `(springs,)`, increasing from just outside the stick radius to the limiting contact radius.

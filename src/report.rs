@@ -3,6 +3,7 @@
 //! Each report is data in SI with a `text`, and is turned to JSON by [`json`]. Nothing here prints.
 
 mod check;
+mod conditions;
 mod info;
 mod limit;
 mod map;

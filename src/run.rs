@@ -11,9 +11,10 @@ use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
+use crate::indenter::Indenter;
 use crate::loading;
 use crate::model::{Model, OperatorStore, Resolution, Schedule};
-use crate::scene::{Output, Scene, Stepper as StepperChoice};
+use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice};
 use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
     Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
@@ -44,17 +45,19 @@ pub struct RunResult {
     pub last: Snapshot,
     /// What a restart would need.
     pub checkpoint: Checkpoint,
-    /// The limiting shape.
-    pub limit: LimitingShape,
+    /// The limiting shape, where there is a closed form.
+    pub limit: Option<LimitingShape>,
     /// Distance of the last profile from it.
-    pub distance: LimitDistance,
+    pub distance: Option<LimitDistance>,
+    /// The unworn indenter.
+    pub indenter: Indenter,
 }
 
 /// A run that is ready to go.
 pub struct Run {
     simulation: Simulation,
     recorder: Recorder,
-    limit: LimitingShape,
+    limit: Option<LimitingShape>,
 }
 
 /// What runs of many scenes in one process share.
@@ -125,8 +128,9 @@ impl Run {
             scene: scene.text().to_owned(),
             radius: simulation.model().radii(),
             loop_displacement: loop_displacement(simulation.model()),
-            limit: Some(limit_curves(simulation.model(), &parts.limit)),
+            limit: parts.limit.as_ref().map(|limit| limit_curves(simulation.model(), limit)),
             table: scene.table().cloned(),
+            path: scene.path().cloned(),
         };
         let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
         Ok(Self { simulation, recorder, limit: parts.limit })
@@ -165,7 +169,12 @@ impl Run {
         let checkpoint =
             file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
         let name = format!("{} (its scene)", path.display());
-        let scene = Scene::from_stored(&file.header.scene, &name, file.header.table.clone())?;
+        let scene = Scene::from_stored(
+            &file.header.scene,
+            &name,
+            file.header.table.clone(),
+            file.header.path.clone(),
+        )?;
         let parts = Parts::new(&scene, shared)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
@@ -189,7 +198,8 @@ impl Run {
             return Ok(Resumed::Complete(Box::new(RunResult {
                 output: path.to_owned(),
                 stop_reason: file.stop_reason,
-                distance: LimitDistance::new(&limit_curves(&parts.model, &parts.limit), &last),
+                distance: distance(&parts.model, parts.limit.as_ref(), &last),
+                indenter: parts.model.contact().indenter().clone(),
                 last,
                 checkpoint,
                 limit: parts.limit,
@@ -238,11 +248,12 @@ impl Run {
         }
         outcome?;
         let last = snapshot(&simulation);
-        let distance = LimitDistance::new(&limit_curves(simulation.model(), &limit), &last);
+        let distance = distance(simulation.model(), limit.as_ref(), &last);
+        let indenter = simulation.model().contact().indenter().clone();
         let output = recorder.writer.path().to_owned();
         let (header, snapshots) = recorder.writer.into_parts();
         let file = RunFile::finished(header, snapshots, checkpoint.clone(), stop_reason);
-        Ok((RunResult { output, stop_reason, last, checkpoint, limit, distance }, file))
+        Ok((RunResult { output, stop_reason, last, checkpoint, limit, distance, indenter }, file))
     }
 }
 
@@ -252,7 +263,7 @@ struct Parts {
     stepper: Box<dyn Stepper + Send>,
     tolerance: f64,
     plan: Plan,
-    limit: LimitingShape,
+    limit: Option<LimitingShape>,
 }
 
 impl Parts {
@@ -266,16 +277,9 @@ impl Parts {
             StepperChoice::Implicit => Clustering::Cubic,
             StepperChoice::EveryCycle | StepperChoice::CycleJump => Clustering::Quadratic,
         };
-        let schedule = Schedule::new(
-            &contact,
-            &crate::conditions::Conditions::plain(*scene.friction(), *scene.wear()),
-            Resolution::default(),
-        )?;
+        let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
         let model = Model::under(&contact, schedule, springs, clustering, &shared.operators)?;
-        let limit = LimitingShape::from_contact(&contact)?.ok_or_else(|| Error::Inconsistent {
-            what: "limiting shape",
-            why: "there is none under full sliding".into(),
-        })?;
+        let limit = if model.slides() { None } else { LimitingShape::from_contact(model.contact())? };
         let tolerance = numerics.tolerance.unwrap_or_else(|| tolerance_for(numerics.accuracy));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
@@ -288,20 +292,20 @@ impl Parts {
     }
 }
 
-/// Refuses contacts without partial slip, which has a slip annulus to follow.
+/// Refuses contacts in which nothing slips and so nothing wears, where the first cycle tells.
 fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
+    if contact.regime() != Regime::Stick || !scene.conditions().is_plain() {
+        return Ok(());
+    }
     let amplitude = contact.amplitude();
-    let why = match contact.regime() {
-        Regime::PartialSlip => return Ok(()),
-        Regime::Stick => {
-            format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more")
-        }
-        Regime::FullSliding => format!(
-            "{amplitude:e} m makes the whole contact slide, and only partial slip is simulated; ask for less than {:e} m",
-            contact.amplitude_full_sliding()
-        ),
-    };
+    let why =
+        format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more");
     Err(Error::Inconsistent { what: scene.loading().amplitude.key(), why })
+}
+
+/// How periods are passed through.
+fn resolution(numerics: &Numerics) -> Resolution {
+    Resolution { resolved: numerics.cycle == Some(Cycle::Resolved), substeps: numerics.substeps }
 }
 
 /// Springs that keep the error of the worn volume, of third order, below `accuracy` in the scenes measured (docs/numerics.md).
@@ -383,6 +387,11 @@ fn geometric(first: f64, last: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| last * (-ratio * (count - 1 - i) as f64).exp()).collect()
 }
 
+/// Distance of a snapshot from the limit.
+fn distance(model: &Model, limit: Option<&LimitingShape>, last: &Snapshot) -> Option<LimitDistance> {
+    limit.map(|limit| LimitDistance::new(&limit_curves(model, limit), last))
+}
+
 fn limit_curves(model: &Model, limit: &LimitingShape) -> LimitCurves {
     let wear_depth: Vec<f64> =
         model.offsets().into_iter().map(|offset| limit.wear_depth_at_offset(offset)).collect();
@@ -414,6 +423,7 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
     Snapshot {
         cycles: state.cycles,
         tau: state.cycles * contact.tau_per_cycle(),
+        regime: contact.regime(),
         wear_volume: if unworn { 0.0 } else { model.wear_volume(fields) },
         contact_radius: model.contact_radius(state),
         stick_radius: contact.stick_radius().unwrap_or(0.0),

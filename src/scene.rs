@@ -33,16 +33,21 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::conditions::Conditions;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::friction::Coulomb;
 use crate::half_space::HalfSpace;
 use crate::indenter::{Indenter, TabulatedProfile};
-use crate::loading::Loading;
+use crate::loading::{Loading, Mode, RecordedPath};
 use crate::wear::Archard;
 
+mod columns;
 mod document;
+mod laws;
 mod map;
+mod motion;
+mod path_file;
 mod profile_file;
 pub mod quantity;
 pub mod sampling;
@@ -56,6 +61,9 @@ pub use study::{Input, KeptSnapshots, MOST_SCENES, Study, Task};
 
 /// Most snapshots a scene may ask for.
 pub const MOST_SNAPSHOTS: usize = 100_000;
+
+/// Most substeps of one period that a scene may ask for.
+pub const MOST_SUBSTEPS: usize = 100_000;
 
 /// Size of the largest scene read, bytes; one with [`MOST_SNAPSHOTS`] times in it has 2 MB.
 const LARGEST: u64 = 10_000_000;
@@ -83,6 +91,45 @@ impl Stepper {
     }
 }
 
+/// How the slip of one cycle is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cycle {
+    /// By a formula, which is exact for tangential oscillation.
+    ClosedForm,
+    /// By following the springs through the period, in substeps.
+    Resolved,
+}
+
+impl Cycle {
+    /// The word of the scene: `closed-form` or `resolved`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Cycle::ClosedForm => "closed-form",
+            Cycle::Resolved => "resolved",
+        }
+    }
+}
+
+/// From when on a resolved cycle wears.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WearFrom {
+    /// From the periodic cycle into which stick and slip settle on a frozen shape.
+    #[default]
+    Shakedown,
+    /// From the first cycle after pressing on.
+    FirstCycle,
+}
+
+impl WearFrom {
+    /// The word of the scene: `shakedown` or `first-cycle`.
+    pub fn name(self) -> &'static str {
+        match self {
+            WearFrom::Shakedown => "shakedown",
+            WearFrom::FirstCycle => "first-cycle",
+        }
+    }
+}
+
 /// The table `[numerics]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Numerics {
@@ -94,6 +141,12 @@ pub struct Numerics {
     pub stepper: Stepper,
     /// Tolerance of the time stepping relative to the limit's largest depth, in (0, 0.1], if given by hand.
     pub tolerance: Option<f64>,
+    /// How the slip of one cycle is found; none is by formula where that is exact, else resolved.
+    pub cycle: Option<Cycle>,
+    /// Substeps of one period where it is resolved, from 2 to [`MOST_SUBSTEPS`], if given by hand.
+    pub substeps: Option<usize>,
+    /// From when on a resolved cycle wears.
+    pub wear_from: WearFrom,
     /// Wall time between checkpoints, s, in [0, 1e9].
     pub checkpoint_interval: f64,
 }
@@ -106,6 +159,9 @@ impl Default for Numerics {
             springs: None,
             stepper: Stepper::default(),
             tolerance: None,
+            cycle: None,
+            substeps: None,
+            wear_from: WearFrom::default(),
             checkpoint_interval: 30.0,
         }
     }
@@ -129,12 +185,12 @@ impl Default for Output {
     }
 }
 
-/// Where the rows of a measured profile are.
+/// Where the rows of a measured profile and of a recorded path are.
 enum Rows<'a> {
-    /// In a file, relative to this folder.
+    /// In files, relative to this folder.
     In(&'a Path),
     /// In memory, if at all.
-    Stored(Option<Arc<TabulatedProfile>>),
+    Stored { table: Option<Arc<TabulatedProfile>>, path: Option<Arc<RecordedPath>> },
 }
 
 /// A valid description of a run.
@@ -146,6 +202,7 @@ pub struct Scene {
     friction: Coulomb,
     wear: Archard,
     loading: Loading,
+    conditions: Conditions,
     numerics: Numerics,
     output: Output,
     text: String,
@@ -153,7 +210,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads a scene from its TOML text; the file of a measured profile is taken relative to the current directory.
+    /// Reads a scene from its TOML text; the files that it names are taken relative to the current directory.
     ///
     /// # Arguments
     /// * `text` -- the TOML
@@ -161,17 +218,23 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Scene`], whose message shows file, line and column, the line with the bad place marked, the key, and the cure;
-    /// [`Error::File`] where the file of a measured profile cannot be used.
+    /// [`Error::File`] where the file of a measured profile or of a recorded path cannot be used.
     pub fn from_toml(text: &str, name: &str) -> Result<Self> {
         Self::with_rows(text, name, &Rows::In(Path::new("")))
     }
 
-    /// Reads a scene as [`Scene::from_toml`] does, but takes the rows of a measured profile as they were stored with it.
+    /// Reads a scene as [`Scene::from_toml`] does, but takes the rows of a measured profile and of a recorded path as they were stored
+    /// with it.
     ///
     /// # Errors
     /// As [`Scene::from_toml`]; also if the scene asks for rows and there are none.
-    pub fn from_stored(text: &str, name: &str, table: Option<Arc<TabulatedProfile>>) -> Result<Self> {
-        Self::with_rows(text, name, &Rows::Stored(table))
+    pub fn from_stored(
+        text: &str,
+        name: &str,
+        table: Option<Arc<TabulatedProfile>>,
+        path: Option<Arc<RecordedPath>>,
+    ) -> Result<Self> {
+        Self::with_rows(text, name, &Rows::Stored { table, path })
     }
 
     fn with_rows(text: &str, name: &str, rows: &Rows) -> Result<Self> {
@@ -183,7 +246,7 @@ impl Scene {
         sections::scene(&document::Section::root(source, document.get_ref()), text, rows)
     }
 
-    /// Reads a scene from a file; that of a measured profile is taken relative to its folder.
+    /// Reads a scene from a file; the files that it names are taken relative to its folder.
     ///
     /// # Errors
     /// [`Error::File`] if it cannot be read as text, else as [`Scene::from_toml`].
@@ -215,17 +278,31 @@ impl Scene {
         &self.half_space
     }
 
-    /// Friction law.
+    /// The recorded path, if the indenter follows one.
+    pub fn path(&self) -> Option<&Arc<RecordedPath>> {
+        match &self.conditions.mode {
+            Mode::Recorded(path) => Some(path),
+            _ => None,
+        }
+    }
+
+    /// Laws, mode, blocks and control: plain tangential oscillation under Coulomb's and Archard's laws, or something else.
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
+    }
+
+    /// Coulomb's law that stands for the law of friction in the unworn contact, the closed form and the dimensionless time
+    /// ([`FrictionLaw::reference`](crate::friction::FrictionLaw::reference)).
     pub fn friction(&self) -> &Coulomb {
         &self.friction
     }
 
-    /// Wear law.
+    /// Archard's law that stands for the law of wear in the closed form and the dimensionless time ([`InitialContact::reference_wear`]).
     pub fn wear(&self) -> &Archard {
         &self.wear
     }
 
-    /// Load, amplitude and duration.
+    /// Load, amplitude and duration; along a recorded path the amplitude is half of its width.
     pub fn loading(&self) -> &Loading {
         &self.loading
     }

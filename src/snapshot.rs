@@ -26,15 +26,17 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::indenter::TabulatedProfile;
+use crate::loading::RecordedPath;
 use crate::model::State;
 use crate::simulation::Progress;
+use crate::stick_slip::Regime;
 
 /// What does not change during a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RunHeader {
     /// Title of the scene.
     pub title: Option<String>,
-    /// The scene as TOML text, complete: a restart needs nothing else but the rows of a measured profile.
+    /// The scene as TOML text, complete: a restart needs nothing else but the rows of a measured profile and of a recorded path.
     pub scene: String,
     /// Radius of the nodes, m, shape `(node,)`, increasing.
     pub radius: Vec<f64>,
@@ -44,6 +46,8 @@ pub struct RunHeader {
     pub limit: Option<LimitCurves>,
     /// The rows of a measured profile, if the indenter is one.
     pub table: Option<Arc<TabulatedProfile>>,
+    /// The rows of a recorded path, if the indenter follows one.
+    pub path: Option<Arc<RecordedPath>>,
 }
 
 /// The limiting shape on the nodes of a run [S, Eqs. (3) and (9)].
@@ -96,6 +100,8 @@ pub struct Snapshot {
     pub cycles: f64,
     /// Dimensionless time `τ`.
     pub tau: f64,
+    /// What the oscillation does to the contact.
+    pub regime: Regime,
     /// Worn volume, m³.
     pub wear_volume: f64,
     /// Contact radius, m.
@@ -148,12 +154,14 @@ pub enum StopReason {
     Interrupted,
     /// No pressure is left anywhere.
     WornOut,
+    /// The rate asked for is never reached: the contact goes on wearing.
+    Unending,
 }
 
 impl StopReason {
-    const ALL: [Self; 4] = [Self::End, Self::Rate, Self::Interrupted, Self::WornOut];
+    const ALL: [Self; 5] = [Self::End, Self::Rate, Self::Interrupted, Self::WornOut, Self::Unending];
 
-    /// Name in files and JSON: `end`, `rate`, `interrupted` or `worn-out`.
+    /// Name in files and JSON: `end`, `rate`, `interrupted`, `worn-out` or `unending`.
     ///
     /// ```
     /// use fretwear::snapshot::StopReason;
@@ -166,6 +174,7 @@ impl StopReason {
             Self::Rate => "rate",
             Self::Interrupted => "interrupted",
             Self::WornOut => "worn-out",
+            Self::Unending => "unending",
         }
     }
 

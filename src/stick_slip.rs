@@ -5,17 +5,21 @@ use crate::friction::FrictionLaw;
 use crate::indenter::EquivalentProfile;
 
 /// What tangential oscillation does to the contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Regime {
     /// No spring slips: the amplitude is zero.
     Stick,
     /// The springs beyond the stick radius slip.
+    #[default]
     PartialSlip,
     /// Every spring slips; there is no limiting shape.
     FullSliding,
 }
 
 impl Regime {
+    /// All regimes, by growing slip; each at the place of its own number.
+    pub const ALL: [Self; 3] = [Self::Stick, Self::PartialSlip, Self::FullSliding];
+
     /// Regime of an indentation `d` and a [`slip_compression`] `q_c`, m: full sliding from `q_c = d` on.
     pub fn new(indentation: f64, slip_compression: f64) -> Self {
         if slip_compression >= indentation {

@@ -1,9 +1,11 @@
 //! Wear laws: the depth worn per slipped distance.
 
+use serde::Serialize;
+
 use crate::friction::Coulomb;
 
 /// Archard's law: the depth worn per slipped distance is `k_w p`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Archard {
     /// Wear coefficient `k_w`, 1/Pa, positive and finite; the same number as the volume per load and distance in m³/(N m).
     ///
@@ -36,7 +38,8 @@ impl Archard {
 }
 
 /// A law of wear, every number positive and finite; `p` is the pressure, `s` the slip, both on the surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "law", rename_all = "kebab-case")]
 pub enum WearLaw {
     /// `dw = k_w p |ds|`.
     Archard(Archard),

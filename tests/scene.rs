@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use fretwear::conditions::Conditions;
 use fretwear::half_space::HalfSpace;
 use fretwear::indenter::Indenter;
 use fretwear::loading::{Amplitude, Duration, Load};
+use fretwear::report::CheckReport;
 use fretwear::scene::quantity::{Dimension, parse};
-use fretwear::scene::{Numerics, Output, Scene, Stepper};
+use fretwear::scene::{Cycle, Numerics, Output, Scene, Stepper, WearFrom};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 
@@ -230,14 +232,9 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "[friction.coulomb]",
             "[friction.stribeck]",
             "stribeck",
-            &["friction.stribeck", "offers coulomb only"],
+            &["friction.stribeck", "offers coulomb, static-kinetic, load-dependent or history"],
         ),
-        (
-            "[wear.archard]",
-            "[wear.power]",
-            "[wear.power]",
-            &["wear.power", "this version offers archard or dissipated-energy"],
-        ),
+        ("[wear.archard]", "[wear.power]", "[wear.power]", &["wear.power", "did you mean power-law?"]),
         (FRICTION, "coeficient = 0.6", "coeficient", &["friction.coulomb.coeficient", "coefficient"]),
         (ACCURACY, "stepper = \"implict\"", "stepper", &["numerics.stepper", "did you mean implicit?"]),
         (
@@ -279,7 +276,12 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "stiffness_ratio",
             &["half_space.stiffness_ratio", "beside half_space.modulus"],
         ),
-        (FORCE, "", "[loading]", &["loading.indentation or loading.initial_force", "exactly one"]),
+        (
+            FORCE,
+            "",
+            "[loading]",
+            &["loading.indentation, loading.initial_force or loading.normal_force", "exactly one"],
+        ),
         (
             FORCE,
             "initial_force = 50\nindentation = 1e-6",
@@ -319,31 +321,11 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "",
             &["loading is missing"],
         ),
-        // Of the contract, but not of this version.
-        (
-            FORCE,
-            "normal_force = 50",
-            "normal_force",
-            &["this version does not offer loading.normal_force", "initial_force"],
-        ),
         (
             FORCE,
             "initial_force = 50\nnormal_force = 50",
             "normal_force",
             &["loading.initial_force and loading.normal_force exclude"],
-        ),
-        (
-            ACCURACY,
-            "cycle = \"resolved\"",
-            "cycle = ",
-            &["numerics.cycle = \"resolved\" is not offered by this version"],
-        ),
-        (CYCLES, "cycles = 1\nblocks = []", "blocks", &["this version does not offer loading.blocks"]),
-        (
-            CYCLES,
-            "cycles = 1\n[loading.orbit]",
-            "[loading.orbit]",
-            &["this version does not offer loading.orbit"],
         ),
         // The other shapes and bodies.
         (
@@ -504,6 +486,7 @@ fn every_field_arrives() {
     assert_eq!(scene.loading().duration, Duration::Cycles(1e6));
     assert_eq!(scene.text(), VALID);
     assert!(scene.warnings().is_empty());
+    assert_eq!(*scene.conditions(), Conditions::plain(*scene.friction(), *scene.wear()));
 }
 
 #[test]
@@ -514,6 +497,9 @@ fn numerics_and_output_have_defaults_that_serve() {
         springs: None,
         stepper: Stepper::Implicit,
         tolerance: None,
+        cycle: None,
+        substeps: None,
+        wear_from: WearFrom::Shakedown,
         checkpoint_interval: 30.0,
     };
     assert_eq!(*bare.numerics(), numerics);
@@ -539,6 +525,7 @@ fn every_alternative_is_read() {
 
     let load = |line: &str| read(&edited("initial_force = \"50 N\"", line)).loading().load;
     assert_eq!(load("indentation = \"3 um\""), Load::Indentation(3e-6));
+    assert_eq!(load("normal_force = \"3 N\""), Load::NormalForce(3.0));
     let amplitude = |line: &str| read(&edited("amplitude = \"1 um\"", line)).loading().amplitude;
     assert_eq!(amplitude("amplitude = 0"), Amplitude::Displacement(0.0));
     assert_eq!(amplitude("amplitude_ratio = 0.5"), Amplitude::Ratio(0.5));
@@ -552,6 +539,11 @@ fn every_alternative_is_read() {
     assert_eq!(numerics("tolerance = 1e-6").tolerance, Some(1e-6));
     assert_eq!(numerics("stepper = \"every-cycle\"").stepper, Stepper::EveryCycle);
     assert_eq!(numerics("stepper = \"cycle-jump\"").stepper, Stepper::CycleJump);
+    assert_eq!(numerics("cycle = \"closed-form\"").cycle, Some(Cycle::ClosedForm));
+    assert_eq!(numerics("cycle = \"resolved\"\nsubsteps = 200").cycle, Some(Cycle::Resolved));
+    assert_eq!(numerics("cycle = \"resolved\"\nsubsteps = 200").substeps, Some(200));
+    assert_eq!(numerics("wear_from = \"shakedown\"").wear_from, WearFrom::Shakedown);
+    assert_eq!(numerics("wear_from = \"first-cycle\"").wear_from, WearFrom::FirstCycle);
     assert_eq!(
         numerics("cycle = \"closed-form\"\ncheckpoint_interval = \"1 min\"").checkpoint_interval,
         60.0
@@ -653,7 +645,11 @@ fn the_scenes_that_come_with_the_program_are_valid_and_without_warnings() {
     assert!(names.len() >= 4);
     for path in names {
         let scene = Scene::read(&path).unwrap_or_else(|error| panic!("{error}"));
-        assert!(scene.warnings().is_empty() && scene.title().is_some(), "{}", path.display());
+        // Of one that is not plain the limit is.
+        let expected = usize::from(!scene.conditions().is_plain());
+        assert_eq!(scene.warnings().len(), expected, "{}: {:?}", path.display(), scene.warnings());
+        assert!(scene.title().is_some(), "{}", path.display());
+        CheckReport::new(&scene).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
 }
 

@@ -7,12 +7,14 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::str::FromStr;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use fretwear::loading::RecordedPath;
 use fretwear::model::State;
 use fretwear::simulation::Progress;
 use fretwear::snapshot::{Checkpoint, LimitCurves, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
+use fretwear::stick_slip::Regime;
 use hdf5::types::VarLenUnicode;
 use support::command::names;
 
@@ -41,7 +43,15 @@ fn header(nodes: usize) -> RunHeader {
         loop_displacement: curve(POINTS, 6),
         limit: Some(LimitCurves { profile: curve(nodes, 1), wear_depth: curve(nodes, 2) }),
         table: None,
+        path: Some(Arc::new(recorded_path())),
     }
+}
+
+/// Values that a path may have and a careless conversion would change.
+fn recorded_path() -> RecordedPath {
+    let x = vec![-0.0, 5e-324, 0.1, f64::MIN_POSITIVE / 3.0];
+    RecordedPath::new("path, µm.csv", x, vec![1e-6, 0.0, -1e99, 2.0], vec![0.0, 1e-9, 0.1, -0.0])
+        .expect("a path")
 }
 
 /// Points of a fretting loop.
@@ -51,6 +61,7 @@ fn snapshot(nodes: usize, seed: usize) -> Snapshot {
     Snapshot {
         cycles: seed as f64,
         tau: awkward(seed),
+        regime: Regime::ALL[seed % 3],
         wear_volume: awkward(seed + 1),
         contact_radius: awkward(seed + 2),
         stick_radius: awkward(seed + 3),
@@ -101,6 +112,7 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
     let Snapshot {
         cycles,
         tau,
+        regime,
         wear_volume,
         contact_radius,
         stick_radius,
@@ -131,6 +143,7 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
         .into_iter()
         .chain([loop_force, profile, wear_depth, pressure, slip].into_iter().flatten())
         .map(|it| it.to_bits())
+        .chain([*regime as u64])
         .collect()
 }
 
@@ -165,6 +178,13 @@ fn every_value_comes_back_bit_for_bit() {
     let (limit, expected) = (run.header.limit.expect("a limit"), header(31).limit.expect("a limit"));
     assert_eq!(to_bits(&limit.profile), to_bits(&expected.profile));
     assert_eq!(to_bits(&limit.wear_depth), to_bits(&expected.wear_depth));
+    let (found, expected) = (run.header.path.expect("a path"), recorded_path());
+    assert_eq!(found.source, expected.source);
+    for (found, expected) in
+        [(&found.x, &expected.x), (&found.y, &expected.y), (&found.indentation, &expected.indentation)]
+    {
+        assert_eq!(to_bits(found), to_bits(expected));
+    }
     assert_eq!(run.snapshots.len(), 12);
     for (time, found) in run.snapshots.iter().enumerate() {
         assert_eq!(bits(found), bits(&snapshot(31, time)), "snapshot {time}");
@@ -186,7 +206,13 @@ fn what_a_run_may_lack_comes_back_as_lacking() {
     let path = folder.path().join("run.h5");
     let bare = RunHeader { radius: vec![1e-3], ..RunHeader::default() };
     let mut writer = RunWriter::create(&path, bare.clone(), false).expect("a new file");
-    for reason in [StopReason::End, StopReason::Rate, StopReason::Interrupted, StopReason::WornOut] {
+    for reason in [
+        StopReason::End,
+        StopReason::Rate,
+        StopReason::Interrupted,
+        StopReason::WornOut,
+        StopReason::Unending,
+    ] {
         writer.save(&Checkpoint::default(), reason, false).expect("a save");
         let run = RunFile::open(&path).expect("the file");
         assert_eq!((&run.header, run.stop_reason, run.complete), (&bare, reason, false));
@@ -277,7 +303,11 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
         ("indentation", time, Some("cycles tau"), "m"),
         ("normal_force", time, Some("cycles tau"), "N"),
         ("dissipated_energy", time, Some("cycles tau"), "J"),
+        ("regime", time, Some("cycles tau"), "1"),
         ("radius", node, None, "m"),
+        ("path_x", &["path_row"], None, "m"),
+        ("path_y", &["path_row"], None, "m"),
+        ("path_indentation", &["path_row"], None, "m"),
         ("limit_profile", node, Some("radius"), "m"),
         ("limit_wear_depth", node, Some("radius"), "m"),
         ("profile", both, Some("cycles tau radius"), "m"),
@@ -299,7 +329,7 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
             assert_eq!(attached, 1, "scale of {name}, axis {axis}");
         }
     }
-    for (name, length) in [("time", 12), ("node", 31), ("checkpoint/spring", 57)] {
+    for (name, length) in [("time", 12), ("node", 31), ("path_row", 4), ("checkpoint/spring", 57)] {
         let scale = file.dataset(name).expect(name);
         assert_eq!(scale.read_raw::<i64>().expect(name), (0..length).collect::<Vec<i64>>());
         // SAFETY: the identifier is open for the call, under the library's lock.
@@ -309,15 +339,21 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
     let loops = file.group("loops").expect("the group");
     let in_groups = [group, loops].map(|it| it.datasets().expect("datasets")).concat();
     let all = [file.datasets().expect("datasets"), in_groups].concat();
-    assert_eq!(all.len(), 19 + 15 + 3, "{all:?}");
+    assert_eq!(all.len(), 20 + 4 + 15 + 3, "{all:?}");
     for dataset in all {
         for attribute in ["units", "long_name"] {
             let found = text(&dataset, attribute).unwrap_or_default();
             assert!(!found.is_empty(), "{attribute} of {}", dataset.name());
         }
     }
+    let regime = file.dataset("regime").expect("the regime");
+    let flags = regime.attr("flag_values").and_then(|it| it.read_raw::<i32>()).expect("numbers");
+    assert_eq!(flags, [0, 1, 2]);
+    assert_eq!(text(&regime, "flag_meanings").as_deref(), Some("stick partial-slip full-sliding"));
+    assert_eq!(regime.read_raw::<i32>().expect("numbers")[..4], [0, 1, 2, 0]);
+    assert_eq!(text(&file.dataset("path_x").expect("a path"), "source").as_deref(), Some("path, µm.csv"));
     assert_eq!(text(&file, "format").as_deref(), Some("fretwear-run"));
-    assert_eq!(file.attr("format_version").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 2);
+    assert_eq!(file.attr("format_version").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 3);
     assert_eq!(file.attr("complete").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 1);
 }
 
@@ -447,11 +483,11 @@ fn edited_files_are_refused_by_the_name_of_what_is_wrong() {
         file.new_attr::<i64>().create(name)?.write_scalar(&value)
     }
     type Edit = fn(&hdf5::File) -> hdf5::Result<()>;
-    let edits: [(&str, Edit); 21] = [
-        ("format_version 1, this program reads 2; use the fretwear", |file| {
-            put_integer(file, "format_version", 1)
+    let edits: [(&str, Edit); 26] = [
+        ("format_version 2, this program reads 3; use the fretwear", |file| {
+            put_integer(file, "format_version", 2)
         }),
-        ("attribute format_version", |file| put_text(file, "format_version", "2")),
+        ("attribute format_version", |file| put_text(file, "format_version", "3")),
         ("no attribute format", |file| put_text(file, "format", "netcdf")),
         ("attribute scene", |file| file.delete_attr("scene")),
         ("attribute scene: is not UTF-8 text", |file| put_integer(file, "scene", 1)),
@@ -471,6 +507,14 @@ fn edited_files_are_refused_by_the_name_of_what_is_wrong() {
         ("/pressure: does not hold values of type f64", |file| replace::<f32>(file, "pressure", &[12, 31])),
         ("/checkpoint/steps: does not hold values of type u64", |file| {
             replace::<f64>(file, "checkpoint/steps", &[])
+        }),
+        ("/regime: 3 is no regime", |file| file.dataset("regime")?.write_raw(&[3i32; 12])),
+        ("/regime: -1 is no regime", |file| file.dataset("regime")?.write_raw(&[-1i32; 12])),
+        ("dataset /regime is missing", |file| file.unlink("regime")),
+        ("dataset /path_indentation is missing", |file| file.unlink("path_indentation")),
+        ("/path_x: loading.path: all its rows are at the same x and y", |file| {
+            file.dataset("path_x")?.write_raw(&[0.0; 4])?;
+            file.dataset("path_y")?.write_raw(&[0.0; 4])
         }),
         ("/checkpoint: ", |file| replace::<f64>(file, "checkpoint", &[])),
         // Nothing was ever stored of these: reading them would fill the memory with zeros.

@@ -95,7 +95,7 @@ impl Model {
     fn resolved_motion(&self, drive: &Drive, path: &Path, compression: &[f64], slopes: bool) -> Motion {
         let ratio = self.contact.half_space().stiffness_ratio();
         let steps = path.points.len();
-        let components = if path.is_straight() { 1 } else { 2 };
+        let components = if is_straight(path) { 1 } else { 2 };
         let (inner, columns) = (compression.len(), steps * components);
         let mut spring = SpringCycle::default();
         let shakedown = Shakedown::default();
@@ -221,4 +221,9 @@ fn bearing(drive: &Drive, compression: f64) -> f64 {
         // Round-off about zero in the limit is better left as it is.
         _ => compression,
     }
+}
+
+/// Whether the path has no component along y.
+fn is_straight(path: &Path) -> bool {
+    path.points.iter().all(|point| point.tangential[1] == 0.0)
 }

@@ -7,6 +7,7 @@ use crate::friction::FrictionLaw;
 use crate::loading::TangentialControl;
 use crate::quadrature::Rule;
 use crate::roots::bracketed;
+use crate::spring::stick_compression;
 
 /// Share of the load that the core within which nothing is worn bears under full sliding: the springs need a smallest radius.
 const CORE: f64 = 1e-7;
@@ -17,6 +18,15 @@ const FORCE_NODES: usize = 100;
 /// Steps in the search for the last stick radius.
 const SEARCH: usize = 400;
 
+/// Where springs slip and wear in some cycle of a run.
+#[derive(Debug, Clone)]
+pub struct Reach {
+    /// The contact at the largest indentation, with the smallest stick radius.
+    pub contact: InitialContact,
+    /// Whether no stick radius is left in some cycle.
+    pub slides: bool,
+}
+
 impl Schedule {
     /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
     ///
@@ -24,14 +34,14 @@ impl Schedule {
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if nothing slips; those of [`InitialContact::at`].
-    pub fn reach(&self, contact: &InitialContact) -> Result<InitialContact> {
+    pub fn reach(&self, contact: &InitialContact) -> Result<Reach> {
         let ratio = contact.half_space().stiffness_ratio();
         let depth = self.largest_indentation();
         let compression = match self.conditions().tangential_control {
             TangentialControl::Displacement => self
                 .extremes()
                 .map(|drive| match &drive.path {
-                    Some(path) => path.stick_compression(&drive.friction, ratio),
+                    Some(path) => stick_compression(path, &drive.friction, ratio),
                     None => drive.friction.compression_at(ratio * drive.amplitude) + drive.lift,
                 })
                 .fold(0.0, f64::max),
@@ -46,7 +56,8 @@ impl Schedule {
         };
         let core = radius * CORE.powf((1.0 + grading).recip());
         let largest = depth - profile.value(core);
-        contact.at(depth, compression.min(largest))
+        let slides = compression > largest;
+        Ok(Reach { contact: contact.at(depth, compression.min(largest))?, slides })
     }
 
     /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::friction::FrictionLaw;
 use crate::history::History;
 use crate::loading::{Block, Clock, Mode, TangentialControl};
-use crate::path::Path;
+use crate::path::{Path, SampledPath};
 use crate::wear::WearLaw;
 
 /// What is asked of the contact tangentially in one cycle.
@@ -92,7 +92,7 @@ impl Schedule {
     /// What acts on a contact under some conditions.
     ///
     /// # Errors
-    /// Those of [`Path::sampled`] and of the indentation of each block.
+    /// Those of the indentation of a block.
     pub fn new(contact: &InitialContact, conditions: &Conditions, resolution: Resolution) -> Result<Self> {
         let whole = Block { duration: f64::INFINITY, amplitude_factor: 1.0, indentation_factor: 1.0 };
         let blocks = if conditions.blocks.is_empty() { vec![whole] } else { conditions.blocks.clone() };
@@ -135,7 +135,7 @@ impl Schedule {
                 let fewest = if conditions.mode == Mode::Tangential { FEWEST_SUBSTEPS } else { SUBSTEPS };
                 let mode = scaled(&conditions.mode, block.amplitude_factor);
                 let sampled =
-                    Path::sampled(&mode, amplitude, indentation, resolution.substeps.unwrap_or(fewest))?;
+                    SampledPath::new(&mode, amplitude, indentation, resolution.substeps.unwrap_or(fewest));
                 depth = sampled.largest_indentation;
                 drive.cycles_per_period = f64::from(sampled.oscillations);
                 drive.path = Some(Arc::new(sampled.path));

@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::text::{Rows, Scale, indenter, number};
-use super::unsigned_zero;
+use super::{conditions, unsigned_zero};
 use crate::closed_form::LimitingShape;
+use crate::conditions::Conditions;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::indenter::Indenter;
@@ -50,9 +51,11 @@ pub struct CheckReport {
     pub tangential_stiffness: f64,
     /// `M`.
     pub stiffness_ratio: f64,
-    /// `μ_f`.
+    /// Laws, mode, blocks and control.
+    pub conditions: Conditions,
+    /// `μ_f`, of Coulomb's law that stands for the law of friction.
     pub friction_coefficient: f64,
-    /// `k_w`, 1/Pa.
+    /// `k_w`, 1/Pa, of Archard's law that stands for the law of wear.
     pub wear_coefficient: f64,
     /// `d`, m.
     pub indentation: f64,
@@ -113,6 +116,7 @@ impl CheckReport {
             normal_stiffness: half_space.normal_stiffness(),
             tangential_stiffness: half_space.stiffness_ratio() * half_space.normal_stiffness(),
             stiffness_ratio: half_space.stiffness_ratio(),
+            conditions: scene.conditions().clone(),
             friction_coefficient: contact.friction().coefficient,
             wear_coefficient: contact.wear().coefficient,
             indentation: contact.indentation(),
@@ -148,6 +152,7 @@ impl CheckReport {
         rows.row("stiffness ratio M", number(self.stiffness_ratio));
         rows.row("friction coefficient", number(self.friction_coefficient));
         rows.row("wear coefficient", format!("{} 1/Pa", number(self.wear_coefficient)));
+        conditions::put(&mut rows, &self.conditions);
         rows.gap();
         rows.row("indentation d", Scale::LENGTH.show(self.indentation));
         rows.row("normal force F_N, unworn", Scale::FORCE.show(self.normal_force));

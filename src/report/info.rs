@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::text::{Rows, Scale, number, table};
+use super::text::{Rows, Scale, number, recorded_path, table};
 use crate::error::Result;
 use crate::snapshot::{ArraySummary, Checkpoint, LimitDistance, RunFile, Snapshot, largest};
 
@@ -17,13 +17,16 @@ pub struct InfoReport {
     pub title: Option<String>,
     /// Whether the run reached its end.
     pub complete: bool,
-    /// Why it stopped: `end`, `rate`, `interrupted` or `worn-out`.
+    /// Why it stopped: `end`, `rate`, `interrupted`, `worn-out` or `unending`.
     pub stop_reason: &'static str,
     /// Version of the program that wrote the file.
     pub program_version: String,
     /// The measured profile of the indenter in words, where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub table: Option<String>,
+    /// The recorded path that the indenter follows, in words, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
     /// Number of radial nodes.
     pub nodes: usize,
     /// Innermost node, m.
@@ -90,6 +93,7 @@ impl InfoReport {
             stop_reason: run.stop_reason.name(),
             program_version: run.program_version.clone(),
             table: run.header.table.as_deref().map(table),
+            path: run.header.path.as_deref().map(recorded_path),
             nodes: run.header.radius.len(),
             radius_first: run.header.radius.first().copied(),
             radius_last: run.header.radius.last().copied(),
@@ -129,6 +133,9 @@ impl InfoReport {
         rows.row("written by fretwear", &self.program_version);
         if let Some(table) = &self.table {
             rows.row("indenter", table);
+        }
+        if let Some(path) = &self.path {
+            rows.row("mode", path);
         }
         let length = |value: f64| Scale::LENGTH.show(value);
         if let Some((first, last)) = self.radius_first.zip(self.radius_last) {

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::text::{Rows, Scale, indenter, number};
+use crate::closed_form::LimitingShape;
 use crate::indenter::Indenter;
 use crate::run::RunResult;
 
@@ -11,7 +12,7 @@ use crate::run::RunResult;
 pub struct RunReport {
     /// The result file.
     pub output: String,
-    /// Why the run stopped: `end`, `rate`, `interrupted` or `worn-out`.
+    /// Why the run stopped: `end`, `rate`, `interrupted`, `worn-out` or `unending`.
     pub stop_reason: &'static str,
     /// Estimated error of the worn volume, relative to that of the limit.
     pub error_estimate: Option<f64>,
@@ -46,7 +47,7 @@ pub struct RunReport {
     /// Energy dissipated by friction, J.
     pub dissipated_energy: f64,
     #[serde(skip)]
-    contact_radius_limit: f64,
+    contact_radius_limit: Option<f64>,
     #[serde(skip)]
     table: Option<String>,
 }
@@ -70,12 +71,12 @@ impl RunReport {
             contact_radius: last.contact_radius,
             stick_radius: last.stick_radius,
             wear_volume: last.wear_volume,
-            wear_volume_limit: Some(limit.wear_volume()),
-            limit_distance: Some(distance.distance),
-            limit_distance_relative: distance.distance_relative,
+            wear_volume_limit: limit.as_ref().map(LimitingShape::wear_volume),
+            limit_distance: distance.map(|it| it.distance),
+            limit_distance_relative: distance.and_then(|it| it.distance_relative),
             dissipated_energy: last.dissipated_energy,
-            contact_radius_limit: limit.contact_radius_limit(),
-            table: matches!(limit.indenter(), Indenter::Table(_)).then(|| indenter(limit.indenter())),
+            contact_radius_limit: limit.as_ref().map(LimitingShape::contact_radius_limit),
+            table: matches!(result.indenter, Indenter::Table(_)).then(|| indenter(&result.indenter)),
         }
     }
 
@@ -88,6 +89,7 @@ impl RunReport {
         let stopped = match self.stop_reason {
             "end" => "at its end".to_owned(),
             "rate" => "when the rate of worn volume had fallen as asked".to_owned(),
+            "unending" => "because the rate of worn volume asked for is never reached".to_owned(),
             "worn-out" => "with no pressure left outside the stick zone".to_owned(),
             _ => format!("by a signal; go on with fretwear run --resume {}", self.output),
         };
@@ -101,9 +103,11 @@ impl RunReport {
             self.wear_volume_limit
                 .map_or(volume(self.wear_volume), |it| of_limit(volume(self.wear_volume), volume(it))),
         );
+        let length = |value: f64| Scale::LENGTH.show(value);
         rows.row(
             "contact radius",
-            of_limit(Scale::LENGTH.show(self.contact_radius), Scale::LENGTH.show(self.contact_radius_limit)),
+            self.contact_radius_limit
+                .map_or(length(self.contact_radius), |it| of_limit(length(self.contact_radius), length(it))),
         );
         rows.row("stick radius", Scale::LENGTH.show(self.stick_radius));
         rows.row("normal force", Scale::FORCE.show(self.normal_force));

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::indenter::{Indenter, TabulatedProfile};
+use crate::loading::RecordedPath;
 
 /// A kind of quantity and the units it is shown in, by growing size in SI.
 #[derive(Debug, Clone, Copy)]
@@ -80,6 +81,11 @@ pub(super) fn table(table: &TabulatedProfile) -> String {
         Scale::LENGTH.show(table.largest_radius()),
         Scale::LENGTH.show(table.heights().iter().copied().fold(0.0, f64::max)),
     )
+}
+
+/// `path path.csv, 360 rows`.
+pub(super) fn recorded_path(path: &RecordedPath) -> String {
+    format!("path {}, {} rows", path.source, path.x.len())
 }
 
 /// Rows of a name and a value.

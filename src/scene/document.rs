@@ -175,6 +175,35 @@ impl<'a> Section<'a> {
         Ok((given.pop(), choice))
     }
 
+    /// Refuses keys that have no meaning beside another.
+    pub(super) fn refuse_beside(&self, keys: &[&str], other: &Entry) -> Result<()> {
+        match keys.iter().find_map(|key| self.optional(key)) {
+            Some(stray) => {
+                let message = format!("has no meaning beside {}; remove one of the two", other.path);
+                Err(stray.misplaced(message))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The key `file`: the name of a file.
+    pub(super) fn file_name(&self, cure: &str) -> Result<&'a str> {
+        let file = self.required("file", cure)?;
+        match file.string()? {
+            "" => Err(file.error("is no name of a file")),
+            name => Ok(name),
+        }
+    }
+
+    /// A unit of length, the metre if it is not given.
+    pub(super) fn length_unit(&self, key: &str) -> Result<&'a str> {
+        let Some(entry) = self.optional(key) else { return Ok("m") };
+        let unit = entry.string()?;
+        quantity::parse(&format!("1 {unit}"), Dimension::LENGTH)
+            .map_err(|why| entry.explained(why + "; give a unit of length alone, such as \"um\""))?;
+        Ok(unit)
+    }
+
     /// Shows an error of the library, which names a quantity as `table.key`, at that key of this table.
     pub(super) fn locate(&self, error: Error) -> Error {
         match error {
@@ -238,12 +267,6 @@ impl<'a> Entry<'a> {
         self.error(format_args!("is outside {range}"))
     }
 
-    /// The error that this version does not offer the key.
-    pub(super) fn not_offered(&self, cure: &str) -> Error {
-        self.source
-            .error(self.key_place.clone(), format_args!("this version does not offer {}; {cure}", self.path))
-    }
-
     /// The error that the key has no place beside another.
     pub(super) fn misplaced(&self, message: impl Display) -> Error {
         self.source.error(self.key_place.clone(), format_args!("{} {message}", self.path))
@@ -305,6 +328,14 @@ impl<'a> Entry<'a> {
         match self.value {
             DeValue::String(text) => Ok(text),
             _ => Err(self.wrong_type("expected a string")),
+        }
+    }
+
+    /// The value as `true` or `false`.
+    pub(super) fn boolean(&self) -> Result<bool> {
+        match self.value {
+            DeValue::Boolean(value) => Ok(*value),
+            _ => Err(self.wrong_type("expected true or false")),
         }
     }
 

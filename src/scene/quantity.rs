@@ -26,6 +26,8 @@ impl Dimension {
     pub const LENGTH: Self = Self::new(1.0, 0.0, 0.0);
     /// Second.
     pub const TIME: Self = Self::new(0.0, 0.0, 1.0);
+    /// N/m, of a spring between two bodies.
+    pub const STIFFNESS: Self = Self::new(0.0, 1.0, -2.0);
     /// Newton.
     pub const FORCE: Self = Self::new(1.0, 1.0, -2.0);
     /// Pascal.
@@ -73,11 +75,12 @@ impl Dimension {
 
     /// What a user calls it, and an example.
     fn name(self) -> Option<(&'static str, &'static str)> {
-        const NAMES: [(Dimension, &str, &str); 11] = [
+        const NAMES: [(Dimension, &str, &str); 12] = [
             (Dimension::NUMBER, "a plain number", "0.6"),
             (Dimension::LENGTH, "a length", "5 mm"),
             (Dimension::TIME, "a time", "30 s"),
             (Dimension::FORCE, "a force", "50 N"),
+            (Dimension::STIFFNESS, "a stiffness", "5 MN/m"),
             (Dimension::PRESSURE, "a pressure", "210 GPa"),
             (Dimension::INVERSE_PRESSURE, "an inverse pressure", "1e-14 1/Pa"),
             (Dimension::ANGLE, "an angle", "80 deg"),

@@ -1,17 +1,21 @@
 //! The tables of a scene, one function each: keys, units, ranges.
 
+use std::cell::OnceCell;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use super::document::{Entry, Section};
-use super::quantity::{Dimension, parse};
-use super::{MOST_SNAPSHOTS, Numerics, Output, Rows, Scene, Stepper, profile_file};
+use super::laws::{self, OneClock};
+use super::quantity::Dimension;
+use super::{Cycle, MOST_SNAPSHOTS, MOST_SUBSTEPS, Numerics, Output, Rows, Scene, Stepper, WearFrom};
+use super::{motion, profile_file};
+use crate::conditions::Conditions;
+use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::friction::Coulomb;
 use crate::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
 use crate::indenter::{Indenter, TabulatedProfile};
-use crate::loading::{Amplitude, Duration, Load, Loading};
-use crate::wear::Archard;
+use crate::loading::{Duration, Loading, Mode};
+use crate::wear::{Archard, WearLaw};
 
 /// Reads the whole document; the text is kept as it is.
 pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
@@ -33,13 +37,13 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     let indenter = indenter(&shape, rows, &mut warnings)?;
     let bodies = table(root, "half_space", "add [half_space] with grading, modulus and poisson_ratio")?;
     let half_space = contact(root, &bodies, &mut warnings)?;
-    let friction = friction(&table(root, "friction", "add [friction.coulomb] with coefficient")?)?;
-    let wear = wear(&table(root, "wear", "add [wear.archard] with coefficient")?, &friction)?;
-    let loading = loading(&table(root, "loading", "add [loading] with load, amplitude and duration")?)?;
+    let Physics { loading, wear, conditions } = physics(root, &indenter, &half_space, rows)?;
+    let friction = conditions.friction.reference();
     let numerics = match root.optional("numerics") {
-        Some(entry) => numerics(&entry.section()?, &mut warnings)?,
+        Some(entry) => numerics(&entry.section()?, &conditions, &mut warnings)?,
         None => Numerics::default(),
     };
+    warnings.extend(warning_of_another_limit(&conditions));
     let output = match root.optional("output") {
         Some(entry) => output(&entry.section()?, loading.duration)?,
         None => Output::default(),
@@ -51,10 +55,82 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
         friction,
         wear,
         loading,
+        conditions,
         numerics,
         output,
         text: text.into(),
         warnings,
+    })
+}
+
+/// Laws, loading and conditions.
+struct Physics {
+    loading: Loading,
+    wear: Archard,
+    conditions: Conditions,
+}
+
+fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &Rows) -> Result<Physics> {
+    let mut clock = OneClock::default();
+    let friction_table = table(root, "friction", "add [friction.coulomb] with coefficient")?;
+    let friction = laws::friction(&friction_table)?;
+    let friction_history = laws::history(&friction_table, false, &mut clock)?;
+    let wear_table = table(root, "wear", "add [wear.archard] with coefficient")?;
+    let wear = laws::wear(&wear_table)?;
+    let wear_history = laws::history(&wear_table, true, &mut clock)?;
+    let section = table(root, "loading", "add [loading] with load, amplitude and duration")?;
+    let motion = motion::motion(&section, rows, &mut clock)?;
+
+    // Formed only where something refers to it. Whatever the wear coefficient, it is the same contact.
+    let coulomb = friction.reference();
+    let provisional = Archard { coefficient: half_space.normal_stiffness().recip() };
+    let formed = OnceCell::new();
+    let contact = || {
+        if formed.get().is_none() {
+            let contact = InitialContact::new(indenter, half_space, &coulomb, &provisional, &motion.loading);
+            let _ = formed.set(contact.map_err(|error| section.error(error))?);
+        }
+        Ok(formed.get().expect("formed above"))
+    };
+    let mode = motion::mode(&section, &motion, contact)?;
+    let friction = friction.finish(|| contact().map(InitialContact::indentation))?;
+    motion::check(&section, &motion, &friction)?;
+    let reference_wear = match wear {
+        WearLaw::Archard(law) => law,
+        WearLaw::DissipatedEnergy { coefficient } => Archard::from_dissipated_energy(coefficient, &coulomb),
+        _ => contact()?.reference_wear(&wear),
+    };
+    if !reference_wear.coefficient.is_normal() {
+        return Err(wear_table.error(format_args!(
+            "the law comes to a wear coefficient of {:e} 1/Pa at the pressure and slip of this contact, which cannot be computed with; check \
+             the units of its coefficient",
+            reference_wear.coefficient
+        )));
+    }
+    let conditions = Conditions {
+        friction,
+        friction_history,
+        wear,
+        wear_history,
+        clock: clock.clock(),
+        mode,
+        holds_normal_force: motion.holds_normal_force(),
+        blocks: motion.blocks,
+        repeat: motion.repeat,
+        tangential_control: motion.control,
+    };
+    Ok(Physics { loading: motion.loading, wear: reference_wear, conditions })
+}
+
+/// The closed form knows nothing of what is not plain.
+fn warning_of_another_limit(conditions: &Conditions) -> Option<String> {
+    let departures = conditions.departures();
+    (!departures.is_empty()).then(|| {
+        format!(
+            "the closed-form limit is that of plain tangential oscillation as in the first cycle, under Coulomb's and Archard's laws; this \
+             scene has {}, with which the final shape may be another",
+            departures.join(", ")
+        )
     })
 }
 
@@ -106,23 +182,12 @@ fn indenter(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Resul
 fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Arc<TabulatedProfile>> {
     const UNITS: [&str; 2] = ["radius_unit", "profile_unit"];
     section.only(&["file", UNITS[0], UNITS[1]], &[])?;
-    let file = section.required("file", "for example \"profile.csv\", two columns r and f")?;
-    let name = file.string()?;
-    if name.is_empty() {
-        return Err(file.error("is no name of a file"));
-    }
-    let unit = |key: &str| {
-        let Some(entry) = section.optional(key) else { return Ok("m") };
-        let unit = entry.string()?;
-        parse(&format!("1 {unit}"), Dimension::LENGTH)
-            .map_err(|why| entry.explained(why + "; give a unit of length alone, such as \"um\""))?;
-        Ok(unit)
-    };
-    let units = [unit(UNITS[0])?, unit(UNITS[1])?];
+    let name = section.file_name("for example \"profile.csv\", two columns r and f")?;
+    let units = [section.length_unit(UNITS[0])?, section.length_unit(UNITS[1])?];
     match rows {
         Rows::In(folder) => profile_file::read(&folder.join(name), name, units, warnings).map(Arc::new),
-        Rows::Stored(Some(table)) => Ok(Arc::clone(table)),
-        Rows::Stored(None) => {
+        Rows::Stored { table: Some(table), .. } => Ok(Arc::clone(table)),
+        Rows::Stored { table: None, .. } => {
             Err(section.error("its rows are not stored in the result; run the scene again"))
         }
     }
@@ -172,11 +237,7 @@ fn body(section: &Section, grading: Option<f64>, warnings: &mut Vec<String>) -> 
     };
     let (form, entry) = section.one_of(&["modulus", "normal_stiffness"])?;
     let foreign: &[&str] = if form == "modulus" { &["stiffness_ratio"] } else { &MODULUS };
-    if let Some(stray) = foreign.iter().find_map(|key| section.optional(key)) {
-        return Err(
-            stray.misplaced(format_args!("has no meaning beside {}; remove one of the two", entry.path()))
-        );
-    }
+    section.refuse_beside(foreign, &entry)?;
     let body = match form {
         "modulus" => {
             let modulus = entry.positive(Dimension::PRESSURE)?;
@@ -221,71 +282,11 @@ fn warn_if_formal(section: &Section, poisson: Poisson, grading: f64, warnings: &
     }
 }
 
-fn friction(section: &Section) -> Result<Coulomb> {
-    section.only(&["coulomb"], &[])?;
-    let law = section.one_of(&["coulomb"])?.1.section()?;
-    Ok(Coulomb { coefficient: coefficient(&law, Dimension::NUMBER, "for example 0.6")? })
-}
-
-fn wear(section: &Section, friction: &Coulomb) -> Result<Archard> {
-    const LAWS: [&str; 2] = ["archard", "dissipated-energy"];
-    section.only(&LAWS, &[])?;
-    let (law, entry) = section.one_of(&LAWS)?;
-    // Volume per load and distance, and volume per energy, have the same dimension.
-    let coefficient = |example: &str| coefficient(&entry.section()?, Dimension::INVERSE_PRESSURE, example);
-    Ok(match law {
-        "archard" => Archard { coefficient: coefficient("for example \"1e-14 1/Pa\"")? },
-        _ => Archard::from_dissipated_energy(coefficient("for example \"2e-5 mm^3/J\"")?, friction),
-    })
-}
-
-/// The positive coefficient of a law.
-fn coefficient(law: &Section, dimension: Dimension, example: &str) -> Result<f64> {
-    law.only(&["coefficient"], &[])?;
-    law.required("coefficient", example)?.positive(dimension)
-}
-
-fn loading(section: &Section) -> Result<Loading> {
-    const LOADS: [&str; 3] = ["indentation", "initial_force", "normal_force"];
-    const AMPLITUDES: [&str; 3] = ["amplitude", "amplitude_ratio", "stick_ratio"];
-    const DURATIONS: [&str; 3] = ["cycles", "tau", "until_rate"];
-    const MODES: [&str; 3] = ["normal_oscillation", "orbit", "blocks"];
-    section.only(&[LOADS, AMPLITUDES, DURATIONS].concat(), &MODES)?;
-    if let (Some(("normal_force", entry)), _) = section.at_most_one_of(&LOADS)? {
-        return Err(
-            entry.not_offered("initial_force sets the indentation of the first cycle, which is then held")
-        );
-    }
-    let load = match section.one_of(&LOADS[..2])? {
-        ("indentation", entry) => Load::Indentation(entry.positive(Dimension::LENGTH)?),
-        (_, entry) => Load::InitialForce(entry.positive(Dimension::FORCE)?),
-    };
-    let not_negative = |value: f64| value >= 0.0;
-    let amplitude = match section.one_of(&AMPLITUDES)? {
-        ("amplitude", entry) => {
-            Amplitude::Displacement(entry.quantity_in(Dimension::LENGTH, "[0, inf)", not_negative)?)
-        }
-        ("amplitude_ratio", entry) => {
-            Amplitude::Ratio(entry.quantity_in(Dimension::NUMBER, "[0, inf)", not_negative)?)
-        }
-        (_, entry) => {
-            let within = |ratio: f64| ratio > 0.0 && ratio <= 1.0;
-            Amplitude::StickRatio(entry.quantity_in(Dimension::NUMBER, "(0, 1]", within)?)
-        }
-    };
-    let duration = match section.one_of(&DURATIONS)? {
-        ("cycles", entry) => Duration::Cycles(entry.positive(Dimension::NUMBER)?),
-        ("tau", entry) => Duration::Tau(entry.positive(Dimension::NUMBER)?),
-        (_, entry) => {
-            let within = |rate: f64| rate > 0.0 && rate < 1.0;
-            Duration::UntilRate(entry.quantity_in(Dimension::NUMBER, "(0, 1)", within)?)
-        }
-    };
-    Ok(Loading { load, amplitude, duration })
-}
-
-fn numerics(section: &Section, warnings: &mut Vec<String>) -> Result<Numerics> {
-    section.only(&["accuracy", "springs", "stepper", "tolerance", "cycle", "checkpoint_interval"], &[])?;
+fn numerics(section: &Section, conditions: &Conditions, warnings: &mut Vec<String>) -> Result<Numerics> {
+    const SPACE: [&str; 2] = ["accuracy", "springs"];
+    const TIME: [&str; 3] = ["stepper", "tolerance", "checkpoint_interval"];
+    const CYCLE: [&str; 3] = ["cycle", "substeps", "wear_from"];
+    section.only(&[&SPACE[..], &TIME, &CYCLE].concat(), &[])?;
     let mut numerics = Numerics::default();
     let fraction = |entry: &Entry, range: &str, least: f64| {
         entry.quantity_in(Dimension::NUMBER, range, |value| value > 0.0 && value >= least && value <= 0.1)
@@ -304,10 +305,22 @@ fn numerics(section: &Section, warnings: &mut Vec<String>) -> Result<Numerics> {
     if let Some(entry) = section.optional("tolerance") {
         numerics.tolerance = Some(fraction(&entry, "(0, 0.1]", 0.0)?);
     }
-    if let Some(entry) = section.optional("cycle")
-        && entry.word(&["closed-form", "resolved"])? == 1
-    {
-        return Err(entry.error("is not offered by this version; leave it out or write \"closed-form\""));
+    if let Some(entry) = section.optional("cycle") {
+        let cycles = [Cycle::ClosedForm, Cycle::Resolved];
+        let cycle = cycles[entry.word(&cycles.map(Cycle::name))?];
+        if cycle == Cycle::ClosedForm && conditions.mode != Mode::Tangential {
+            return Err(entry.error(
+                "holds for tangential oscillation alone; leave it out or write \"resolved\" beside another mode",
+            ));
+        }
+        numerics.cycle = Some(cycle);
+    }
+    if let Some(entry) = section.optional("substeps") {
+        numerics.substeps = Some(entry.whole(2..=MOST_SUBSTEPS)?);
+    }
+    if let Some(entry) = section.optional("wear_from") {
+        let starts = [WearFrom::Shakedown, WearFrom::FirstCycle];
+        numerics.wear_from = starts[entry.word(&starts.map(WearFrom::name))?];
     }
     if let Some(entry) = section.optional("checkpoint_interval") {
         // The upper end, some thirty years, keeps it within what a clock can count.

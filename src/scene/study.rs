@@ -200,7 +200,7 @@ impl Study {
     }
 
     /// SHA-256 of everything that a result depends on, in hexadecimal digits: version of the program, study, base scene, and the files of
-    /// measured profiles that the scenes name.
+    /// measured profiles and recorded paths that the scenes name.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
         let mut add = |part: &[u8]| {
@@ -208,21 +208,24 @@ impl Study {
             hasher.update(part);
         };
         [env!("CARGO_PKG_VERSION"), &self.text, &self.base_text].iter().for_each(|part| add(part.as_bytes()));
-        for file in self.profile_files() {
+        for file in self.files() {
             // A file that cannot be read is an error of the scenes that name it.
             add(&std::fs::read(self.folder.join(file)).unwrap_or_default());
         }
         hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
-    /// The files of measured profiles, of the base scene and along the axes.
-    fn profile_files(&self) -> Vec<&str> {
-        let table = self.base.get("indenter").and_then(|it| it.get("table")).and_then(|it| it.get("file"));
-        let along = self.axes.iter().flat_map(|axis| {
-            let place = axis.keys.iter().position(|key| key == "indenter.table.file");
-            axis.rows.iter().filter_map(move |row| place.map(|place| &row[place]))
-        });
-        table.into_iter().chain(along).filter_map(Value::as_str).collect()
+    /// The files of measured profiles and recorded paths, of the base scene and along the axes.
+    fn files(&self) -> Vec<&str> {
+        let named = |table: &'static str, key: &'static str| {
+            let in_base = self.base.get(table).and_then(|it| it.get(key)).and_then(|it| it.get("file"));
+            let along = self.axes.iter().flat_map(move |axis| {
+                let place = axis.keys.iter().position(|it| *it == format!("{table}.{key}.file"));
+                axis.rows.iter().filter_map(move |row| place.map(|place| &row[place]))
+            });
+            in_base.into_iter().chain(along).filter_map(Value::as_str)
+        };
+        named("indenter", "table").chain(named("loading", "path")).collect()
     }
 
     /// The keys that vary, axes before samples.

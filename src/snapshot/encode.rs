@@ -2,9 +2,12 @@
 
 use hdf5::{Group, Result};
 
-use super::labelled::{Dimension, bytes_of, create_group, file_in_memory, put_array, put_integer, put_text};
+use super::labelled::{
+    Dimension, bytes_of, create_group, file_in_memory, put_array, put_integer, put_integers, put_text,
+};
 use super::layout::*;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
+use crate::stick_slip::Regime;
 
 /// Everything that one save stores.
 pub(super) struct Run<'a> {
@@ -35,6 +38,7 @@ impl Run<'_> {
         self.put_node_curves(group, &node)?;
         self.put_curves(group, &time, &node)?;
         self.put_table(group)?;
+        self.put_path(group)?;
         self.put_loops(group, &time)?;
         self.put_checkpoint(group)
     }
@@ -57,7 +61,11 @@ impl Run<'_> {
                 put_text(&dataset, "coordinates", "cycles tau")?;
             }
         }
-        Ok(())
+        let values: Vec<i32> = self.snapshots.iter().map(|it| it.regime as i32).collect();
+        let dataset = put_array(file, REGIME, &[time], &values)?;
+        put_text(&dataset, "coordinates", "cycles tau")?;
+        put_integers(&dataset, FLAG_VALUES, &Regime::ALL.map(|regime| regime as i32))?;
+        put_text(&dataset, FLAG_MEANINGS, &Regime::ALL.map(Regime::name).join(" "))
     }
 
     fn put_node_curves(&self, file: &Group, node: &Dimension) -> Result<()> {
@@ -87,7 +95,15 @@ impl Run<'_> {
         put_array(file, TABLE_RADIUS, &[&row], table.radii())?;
         let profile = put_array(file, TABLE_PROFILE, &[&row], table.heights())?;
         put_text(&profile, "coordinates", TABLE_RADIUS.name)?;
-        put_text(&profile, TABLE_SOURCE, table.source())
+        put_text(&profile, SOURCE, table.source())
+    }
+
+    fn put_path(&self, file: &Group) -> Result<()> {
+        let Some(path) = &self.header.path else { return Ok(()) };
+        let row = Dimension::create(file, PATH_ROW, path.x.len(), false)?;
+        put_text(&*put_array(file, PATH_X, &[&row], &path.x)?, SOURCE, &path.source)?;
+        put_array(file, PATH_Y, &[&row], &path.y)?;
+        put_array(file, PATH_INDENTATION, &[&row], &path.indentation).map(drop)
     }
 
     fn put_loops(&self, file: &Group, time: &Dimension) -> Result<()> {

@@ -92,6 +92,11 @@ pub(super) fn put_integer(place: &Location, name: &str, value: i32) -> Result<()
     place.new_attr::<i32>().create(name)?.write_scalar(&value)
 }
 
+/// Writes whole numbers as an attribute.
+pub(super) fn put_integers(place: &Location, name: &str, values: &[i32]) -> Result<()> {
+    place.new_attr::<i32>().shape(values.len()).create(name)?.write_raw(values)
+}
+
 impl Dimension {
     /// Creates the index coordinate `0, 1, …` of `length` entries.
     pub(super) fn create(group: &Group, label: Label, length: usize, resizable: bool) -> Result<Self> {

@@ -5,7 +5,7 @@ use super::{Checkpoint, Snapshot};
 /// Value of the root attribute `format`.
 pub const FORMAT: &str = "fretwear-run";
 /// Value of the root attribute `format_version` that this program writes and reads.
-pub const FORMAT_VERSION: i32 = 2;
+pub const FORMAT_VERSION: i32 = 3;
 /// Group that holds what a restart needs.
 pub const CHECKPOINT: &str = "checkpoint";
 
@@ -40,6 +40,12 @@ pub const LOOP_DISPLACEMENT: Label<'static> =
 pub const LOOP_FORCE: Label<'static> = label("tangential_force", "N", "tangential force along one cycle");
 /// Index coordinate along the springs, shape `(spring,)`, in the group of the checkpoint.
 pub const SPRING: Label = label("spring", "1", "index of the spring");
+/// What the oscillation does to the contact, a place in [`Regime::ALL`](crate::stick_slip::Regime::ALL), shape `(time,)`.
+pub const REGIME: Label = label("regime", "1", "what the oscillation does to the contact");
+/// Attribute of the regimes: the numbers there are.
+pub const FLAG_VALUES: &str = "flag_values";
+/// Attribute of the regimes: what the numbers mean, one word each.
+pub const FLAG_MEANINGS: &str = "flag_meanings";
 /// Radius of the nodes, shape `(node,)`.
 pub const RADIUS: Label = label("radius", "m", "distance from the axis");
 /// Limiting profile, shape `(node,)`.
@@ -52,8 +58,17 @@ pub const TABLE_ROW: Label = label("table_row", "1", "index of the row of the me
 pub const TABLE_RADIUS: Label = label("table_radius", "m", "radius of the rows of the measured profile");
 /// Height of the rows, shape `(table_row,)`; its attribute `source` names the file that they came from.
 pub const TABLE_PROFILE: Label = label("table_profile", "m", "measured profile of the unworn indenter");
-/// Attribute of the heights of the rows.
-pub const TABLE_SOURCE: &str = "source";
+/// Attribute of the heights of the rows, and of the path along x.
+pub const SOURCE: &str = "source";
+/// Index coordinate along the rows of a recorded path, shape `(path_row,)`; absent, as what belongs to it, without one.
+pub const PATH_ROW: Label = label("path_row", "1", "index of the row of the recorded path");
+/// Path along x, shape `(path_row,)`; its attribute `source` names the file that the rows came from.
+pub const PATH_X: Label = label("path_x", "m", "tangential displacement along x over one period");
+/// Path along y, shape `(path_row,)`.
+pub const PATH_Y: Label = label("path_y", "m", "tangential displacement along y over one period");
+/// Indentation along the path over that of the scene, shape `(path_row,)`.
+pub const PATH_INDENTATION: Label =
+    label("path_indentation", "m", "indentation over that of the scene over one period");
 /// Compression of the springs, shape `(spring,)`, in the group of the checkpoint.
 pub const COMPRESSION: Label = label("compression", "m", "compression of the springs");
 /// Mean rate of the compressions in the last step, shape `(spring,)`, in the group of the checkpoint.

@@ -13,6 +13,8 @@ use super::layout::*;
 use super::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::indenter::TabulatedProfile;
+use crate::loading::RecordedPath;
+use crate::stick_slip::Regime;
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 const NOT_A_RUN: &str = "give a file that `fretwear run` wrote";
@@ -157,8 +159,9 @@ impl Source {
             None
         };
         let table = if file.link_exists(TABLE_PROFILE.name) { Some(self.table(file)?) } else { None };
+        let path = if file.link_exists(PATH_X.name) { Some(self.path(file)?) } else { None };
         let loop_displacement = self.values(&self.loops(file)?, LOOP_DISPLACEMENT, &[None])?;
-        Ok(RunHeader { title, scene, radius, loop_displacement, limit, table })
+        Ok(RunHeader { title, scene, radius, loop_displacement, limit, table, path })
     }
 
     fn loops(&self, file: &Group) -> Result<Group> {
@@ -170,9 +173,19 @@ impl Source {
         let height = self.values(file, TABLE_PROFILE, &[Some(radius.len())])?;
         let name = format!("/{}", TABLE_PROFILE.name);
         let dataset = file.dataset(TABLE_PROFILE.name).map_err(|error| self.damaged(&name, &error))?;
-        let source = self.text(&dataset, TABLE_SOURCE)?;
+        let source = self.text(&dataset, SOURCE)?;
         let table = TabulatedProfile::new(source, radius, height);
         table.map(Arc::new).map_err(|error| self.damaged(&name, &error))
+    }
+
+    fn path(&self, file: &Group) -> Result<Arc<RecordedPath>> {
+        let x: Vec<f64> = self.values(file, PATH_X, &[None])?;
+        let rows = [Some(x.len())];
+        let [y, indentation] = [PATH_Y, PATH_INDENTATION].map(|label| self.values(file, label, &rows));
+        let name = format!("/{}", PATH_X.name);
+        let dataset = file.dataset(PATH_X.name).map_err(|error| self.damaged(&name, &error))?;
+        let path = RecordedPath::new(self.text(&dataset, SOURCE)?, x, y?, indentation?);
+        path.map(Arc::new).map_err(|error| self.damaged(&name, &error))
     }
 
     fn snapshots(&self, file: &Group, nodes: usize, points: usize) -> Result<Vec<Snapshot>> {
@@ -185,6 +198,12 @@ impl Source {
             for (snapshot, value) in snapshots.iter_mut().zip(values) {
                 *(field.of_mut)(snapshot) = value;
             }
+        }
+        let regimes: Vec<i32> = self.values(file, REGIME, &[times])?;
+        for (snapshot, flag) in snapshots.iter_mut().zip(regimes) {
+            let regime = usize::try_from(flag).ok().and_then(|place| Regime::ALL.get(place));
+            snapshot.regime = *regime
+                .ok_or_else(|| self.damaged(&format!("/{}", REGIME.name), &format!("{flag} is no regime")))?;
         }
         for field in &CURVES {
             let values: Vec<f64> = self.values(file, field.label, &[times, Some(nodes)])?;

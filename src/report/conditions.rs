@@ -1,0 +1,125 @@
+//! Laws, mode, blocks and control in words.
+
+use super::text::{Rows, Scale, number, recorded_path};
+use crate::conditions::Conditions;
+use crate::friction::{Coulomb, FrictionLaw};
+use crate::history::History;
+use crate::loading::{Block, Clock, Mode, TangentialControl};
+use crate::wear::{Archard, WearLaw};
+
+/// Blocks and times of which all are listed.
+const MOST_LISTED: usize = 6;
+
+/// Rows of a table for people.
+pub(super) fn put(rows: &mut Rows, conditions: &Conditions) {
+    let clock = match conditions.clock {
+        Clock::Cycles => "cycles",
+        Clock::Tau => "τ",
+    };
+    rows.row("friction law", friction(&conditions.friction));
+    changing(rows, "its coefficients", &conditions.friction_history, clock);
+    rows.row("wear law", wear(&conditions.wear));
+    changing(rows, "its coefficient", &conditions.wear_history, clock);
+    rows.row("mode", mode(&conditions.mode));
+    let normal = if conditions.holds_normal_force { "normal force" } else { "indentation" };
+    let tangential = match conditions.tangential_control {
+        TangentialControl::Displacement => "amplitude held".to_owned(),
+        TangentialControl::Force => "tangential force of the first cycle held".to_owned(),
+        TangentialControl::Rig { stiffness } => {
+            format!("amplitude held behind a spring of {} N/m", number(stiffness))
+        }
+    };
+    rows.row("control", format!("{normal} held, {tangential}"));
+    if !conditions.blocks.is_empty() {
+        let blocks = conditions.blocks.iter().map(|it| block(it, clock));
+        let after = if conditions.repeat { "repeated" } else { "once, the last goes on" };
+        rows.row("blocks", format!("{}; {after}", listed(blocks)));
+    }
+}
+
+/// The first few, and how many there are more.
+fn listed(items: impl ExactSizeIterator<Item = String>) -> String {
+    let more = items.len().saturating_sub(MOST_LISTED);
+    let first: Vec<String> = items.take(MOST_LISTED).collect();
+    match more {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}
+
+fn block(block: &Block, clock: &str) -> String {
+    let Block { duration, amplitude_factor, indentation_factor } = *block;
+    let mut words = format!("{} {clock} at {} of the amplitude", number(duration), number(amplitude_factor));
+    if indentation_factor != 1.0 {
+        words += &format!(" and {} of the indentation", number(indentation_factor));
+    }
+    words
+}
+
+fn friction(law: &FrictionLaw) -> String {
+    match *law {
+        FrictionLaw::Coulomb(Coulomb { coefficient }) => format!("Coulomb, {}", number(coefficient)),
+        FrictionLaw::StaticKinetic { static_coefficient, kinetic_coefficient } => {
+            format!("static {}, kinetic {}", number(static_coefficient), number(kinetic_coefficient))
+        }
+        FrictionLaw::LoadDependent { coefficient, exponent, reference } => {
+            format!("{} (q/{})^{}", number(coefficient), Scale::LENGTH.show(reference), number(exponent))
+        }
+    }
+}
+
+fn wear(law: &WearLaw) -> String {
+    match *law {
+        WearLaw::Archard(Archard { coefficient }) => format!("Archard, {} 1/Pa", number(coefficient)),
+        WearLaw::DissipatedEnergy { coefficient } => {
+            format!("dissipated energy, {} m³/J", number(coefficient))
+        }
+        WearLaw::PowerLaw { coefficient, pressure_exponent, slip_exponent } => format!(
+            "power law, {} p^{} s^{} (SI)",
+            number(coefficient),
+            number(pressure_exponent),
+            number(slip_exponent)
+        ),
+        WearLaw::Threshold { coefficient, pressure } => {
+            format!("Archard above {}, {} 1/Pa", Scale::PRESSURE.show(pressure), number(coefficient))
+        }
+        WearLaw::NonLocal { coefficient, length } => format!(
+            "Archard on the pressure averaged over {}, {} 1/Pa",
+            Scale::LENGTH.show(length),
+            number(coefficient)
+        ),
+    }
+}
+
+fn changing(rows: &mut Rows, what: &str, history: &History, clock: &str) {
+    match history {
+        History::Constant => {}
+        History::Exponential { last, time } => {
+            rows.row(what, format!("to {} of the first, by 1/e in {} {clock}", number(*last), number(*time)))
+        }
+        History::Table { times, factors } => {
+            let points = times.iter().zip(factors);
+            let points = points.map(|(time, factor)| format!("{} at {}", number(*factor), number(*time)));
+            rows.row(what, format!("of the first: {} {clock}", listed(points)));
+        }
+    }
+}
+
+fn mode(mode: &Mode) -> String {
+    match mode {
+        Mode::Tangential => "tangential oscillation".into(),
+        Mode::NormalOscillation { amplitude, frequency_ratio: [over, under], phase } => format!(
+            "normal oscillation too, {}, {over} in {under}, phase {} rad",
+            Scale::LENGTH.show(*amplitude),
+            number(*phase)
+        ),
+        Mode::Orbit { transverse_amplitude, phase, centre: [x, y] } => format!(
+            "orbit, {} transverse, phase {} rad, centre {}, {}",
+            Scale::LENGTH.show(*transverse_amplitude),
+            number(*phase),
+            Scale::LENGTH.show(*x),
+            Scale::LENGTH.show(*y)
+        ),
+        Mode::Recorded(path) => recorded_path(path),
+    }
+}
