@@ -149,7 +149,7 @@ impl UniversalityReport {
             let _ = writeln!(text, "Predicted {predicted}: distance {tolerance}");
             let _ = writeln!(
                 text,
-                "  {:<width$}  {:>10}  {:>9}  {:>9}  {:>7}  {:>10}  {:<9} {:>8}  verdict",
+                "  {:<width$}  {:>10}  {:>11}  {:>9}  {:>9}  {:>10}  {:<9} {:>8}  verdict",
                 "case", "distance", "ΔV/(a0²d)", "ΔV/ΔV∞", "c/a0", "τ", "stopped", "wall"
             );
             rows.iter().for_each(|row| row.line(width, &mut text));
@@ -167,18 +167,17 @@ impl UniversalityReport {
 
 impl UniversalityRow {
     fn line(&self, width: usize, text: &mut String) {
-        let shown =
-            |value: Option<f64>, digits: usize| value.map_or("-".into(), |value| format!("{value:.digits$}"));
+        let shown = |value: Option<f64>| value.map_or("-".into(), number);
         let distance = self.distance.map_or("-".into(), |it| format!("{it:.3e}"));
         let wrong = if self.agrees { "" } else { " (not as predicted)" };
         let _ = writeln!(
             text,
-            "  {:<width$}  {distance:>10}  {:>9}  {:>9}  {:>7}  {:>10}  {:<9} {:>8}  {}{wrong}",
+            "  {:<width$}  {distance:>10}  {:>11}  {:>9}  {:>9}  {:>10}  {:<9} {:>8}  {}{wrong}",
             self.name,
-            shown(self.wear_volume_relative, 6),
-            shown(self.wear_volume_ratio, 6),
-            shown(self.stick_ratio, 4),
-            self.tau.map_or("-".into(), number),
+            shown(self.wear_volume_relative),
+            shown(self.wear_volume_ratio),
+            shown(self.stick_ratio),
+            shown(self.tau),
             self.stop_reason.unwrap_or("-"),
             self.wall_seconds.map_or("-".into(), |it| format!("{it:.1} s")),
             self.verdict
