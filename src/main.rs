@@ -194,7 +194,7 @@ struct Check {
 
 #[derive(Args)]
 struct Info {
-    /// A result file that `fretwear run`, `sweep`, `merge` or `map` wrote
+    /// A result file that `fretwear run`, `sweep`, `merge`, `map` or `universality` wrote
     #[arg(value_name = "FILE.h5")]
     file: PathBuf,
     /// Print one JSON object in SI units

@@ -107,6 +107,27 @@ fn a_pair_left_out_costs_no_other_pair() {
 }
 
 #[test]
+fn the_studies_of_the_data_folder_can_be_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/studies");
+    let small = UniversalityStudy::read(&folder.join("universality.toml")).unwrap();
+    for case in small.cases() {
+        for text in [Some(&case.scene), case.finer.as_ref()].into_iter().flatten() {
+            study_scene(&small, &case.name, text);
+        }
+    }
+    let full = UniversalityStudy::read(&folder.join("universality_full.toml")).unwrap();
+    let [within, outside] = Prediction::ALL
+        .map(|predicted| full.cases().iter().filter(|case| case.predicted == predicted).count());
+    assert!((48..=52).contains(&within), "8 media with 6 modes are 48 pairs: {within} cases");
+    assert_eq!(outside, 10);
+}
+
+fn study_scene(study: &UniversalityStudy, name: &str, text: &str) {
+    let scene = study.scene(name, text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.title(), Some(name));
+}
+
+#[test]
 fn patches_replace_what_excludes_them_and_nothing_else() {
     let study = study(CASES);
     let names: Vec<&str> = study.cases().iter().map(|case| case.name.as_str()).collect();
@@ -207,11 +228,11 @@ fn cases_reach_the_limit_of_their_own_run_or_do_not() {
         let distance = end.distance.unwrap();
         assert!(row.agrees(), "{}: {distance:e}", row.case.name);
         if row.case.predicted == Prediction::Within {
-            // Measured: 2.8e-9 at most, what is left of the transient.
-            assert!(distance < 1e-8, "{}: {distance:e}", row.case.name);
-            assert!((end.wear_volume / end.wear_volume_limit - 1.0).abs() < 1e-9, "{}", row.case.name);
+            // Measured: 1e-7 is left of the transient, 4e-7 is the quadrature over thirty springs, 0.004 the way between two of them.
+            assert!(distance < 4e-7, "{}: {distance:e}", row.case.name);
+            assert!((end.wear_volume / end.wear_volume_limit - 1.0).abs() < 2e-6, "{}", row.case.name);
             let gaps = end.curve.iter().zip(&end.curve_limit).map(|(a, b)| (a - b).abs());
-            assert!(gaps.fold(0.0, f64::max) < 0.05, "between thirty nodes: {}", row.case.name);
+            assert!(gaps.fold(0.0, f64::max) < 0.01, "{}", row.case.name);
         }
         let ratio = if row.case.name.contains("cone") { 0.5 } else { 0.5f64.sqrt() };
         assert!((end.stick_ratio() - ratio).abs() < 1e-14, "{}: c/a0 = {}", row.case.name, end.stick_ratio());
@@ -314,7 +335,7 @@ fn cases_are_listed_and_their_scenes_run_by_themselves() {
 fn a_stopped_study_goes_on_where_it_was() {
     // Every cycle by itself: long enough to be stopped on the way.
     let slow = "[[cases]]\nname = \"slow\"\npredicted = \"outside\"\n\
-                patch = { loading = { tau = 10 }, numerics = { springs = 200, stepper = \"every-cycle\" }, \
+                patch = { loading = { tau = 10 }, numerics = { springs = 100, stepper = \"every-cycle\" }, \
                 wear = { archard = { coefficient = 3e-4 } } }\n";
     let (folder, output) = place(&format!("{CASES}{slow}"));
     let arguments = ["universality", "study.toml", "-o", "out", "--quiet", "--threads", "1"];

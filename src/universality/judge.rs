@@ -92,7 +92,7 @@ impl Judgement {
         let contact = scene.contact()?;
         let limit = limit(scene, indentation, stick_radius)?;
         let wear_depth_limit = limit.wear_depth_max();
-        // The node next to c knows its distance from the c of the run, not from one that was formed anew.
+        // From the c of the run as it is, not from the one that the limit forms anew: next to c the last digit of a radius shows.
         let depth_limit = |r: f64| limit.wear_depth_at_offset((r - stick_radius) * (r + stick_radius));
         let gaps = run.header.radius.iter().zip(&last.wear_depth).map(|(r, w)| (w - depth_limit(*r)).abs());
         let gap = gaps.fold(0.0, f64::max);
