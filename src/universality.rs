@@ -1,6 +1,6 @@
 //! Laws, modes and media against one limit, with negative controls.
 //!
-//! [S] claims that the worn shape tends to Eq. (9) whatever the local law of wear, the law of friction with stick and the mode of
+//! \[S\] claims that the worn shape tends to Eq. (9) whatever the local law of wear, the law of friction with stick and the mode of
 //! oscillation. Each case of a study is run to near its end, and its last shape compared with Eq. (9) for what *its own run* shows: the
 //! permanent stick radius, which is the smallest of all snapshots, and the largest indentation of all snapshots. Whether the distance is
 //! within a tolerance is compared with what was predicted.

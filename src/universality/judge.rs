@@ -171,3 +171,60 @@ fn depth_at(radii: &[f64], depths: &[f64], r: f64) -> f64 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::snapshot::{Checkpoint, RunHeader};
+
+    #[test]
+    fn the_limit_is_that_of_the_smallest_stick_radius_and_the_largest_indentation() {
+        let scene = Scene::from_toml(
+            "indenter = { cone = { slope = 1 } }\n\
+             half_space = { grading = 0.3, normal_stiffness = 1, stiffness_ratio = 1 }\n\
+             friction = { coulomb = { coefficient = 1 } }\nwear = { archard = { coefficient = 1 } }\n\
+             loading = { indentation = 1, stick_ratio = 0.7, tau = 1 }",
+            "cone.toml",
+        )
+        .unwrap();
+        // In the middle of the run it is pressed deepest, at another time least sticks.
+        let course = [(0.5, 1.0), (0.45, 1.1), (0.5, 1.2), (0.6, 1.0)];
+        let (indenter, grading, c, d) = (scene.indenter(), 0.3, 0.45, 1.2);
+        let lift = indenter.equivalent_profile(grading).unwrap().value(c);
+        let limit = LimitingShape::new(indenter, grading, d, d - lift).unwrap();
+        let radius: Vec<f64> = (1..200).map(|i| 0.3 + 0.006 * f64::from(i)).collect();
+        let run = |error: f64| {
+            let wear_depth: Vec<f64> = radius.iter().map(|r| (1.0 + error) * limit.wear_depth(*r)).collect();
+            let of = |&(stick_radius, indentation): &(f64, f64)| Snapshot {
+                stick_radius,
+                indentation,
+                wear_depth: wear_depth.clone(),
+                ..Snapshot::default()
+            };
+            let header = RunHeader { radius: radius.clone(), ..RunHeader::default() };
+            let snapshots = course.iter().map(of).collect();
+            RunFile::finished(header, snapshots, Checkpoint::default(), StopReason::End)
+        };
+        let exact = Judgement::new(&scene, &run(0.0)).unwrap();
+        assert!(exact.distance.unwrap() < 1e-13, "{exact:?}");
+        assert_eq!((exact.stick_radius, exact.indentation), (c, d));
+        let off = Judgement::new(&scene, &run(1e-3)).unwrap().distance.unwrap();
+        assert!((off / 1e-3 - 1.0).abs() < 1e-3, "the deepest of the nodes is off by a thousandth: {off:e}");
+
+        let tolerances = Tolerances::default();
+        let verdict = |distance| Verdict::new(&Ok(Judgement { distance, ..exact.clone() }), tolerances);
+        assert_eq!(
+            [Some(1e-6), Some(1.1e-6), Some(1e-3), None].map(verdict),
+            [Verdict::Obeys, Verdict::Unclear, Verdict::Violates, Verdict::Unclear]
+        );
+    }
+
+    #[test]
+    fn without_permanent_stick_there_is_no_limit() {
+        let scene = Scene::read(std::path::Path::new("data/scenes/paraboloid.toml")).unwrap();
+        let snapshots = vec![Snapshot { indentation: 1e-6, ..Snapshot::default() }];
+        let run = RunFile::finished(RunHeader::default(), snapshots, Checkpoint::default(), StopReason::End);
+        let error = Judgement::new(&scene, &run).unwrap_err().to_string();
+        assert!(error.contains("nothing sticks"), "{error}");
+    }
+}
