@@ -6,14 +6,16 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 use fretwear::progress::{Progress, SceneProgress};
-use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile};
+use fretwear::report::{
+    self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile, UniversalityReport,
+};
 use fretwear::run::{Resumed, RunResult};
-use fretwear::scene::{MapScene, Scene, Study};
+use fretwear::scene::{MapScene, Scene, Study, UniversalityStudy};
 use fretwear::simulation::Observer;
 use fretwear::snapshot::{ArraySummary, StopReason};
 use fretwear::submit::{self, Engine, SubmitReport, Wishes};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
-use fretwear::{Error, Result};
+use fretwear::{Error, Result, universality};
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
 75 stopped by a signal with a checkpoint written.\nResults go to stdout, everything else to stderr.";
@@ -41,6 +43,8 @@ enum Command {
     Merge(Merge),
     /// Compare gradings: wear maps, the optimal grading and worn profiles in closed form
     Map(Map),
+    /// Run laws, modes and media against one limit, with cases that are not to reach it
+    Universality(Universality),
     /// Validate a scene and show what follows from it, without running anything
     Check(Check),
     /// Prepare a study for a cluster: measure, propose shards, write job scripts and hand them to the engine
@@ -151,6 +155,34 @@ struct Map {
 }
 
 #[derive(Args)]
+struct Universality {
+    /// The study, a TOML file
+    #[arg(value_name = "STUDY.toml")]
+    study: PathBuf,
+    /// Directory for universality.h5 and universality.csv, made if it is missing
+    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["list", "scene"])]
+    output: Option<PathBuf>,
+    /// Print the names of the cases and what is predicted of them, and run nothing
+    #[arg(long, conflicts_with_all = ["output", "scene"])]
+    list: bool,
+    /// Print the complete scene of a case, and run nothing
+    #[arg(long, value_name = "CASE", conflicts_with = "output")]
+    scene: Option<String>,
+    /// Threads, each of which runs one case at a time; by default all cores
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Print one JSON object
+    #[arg(long, conflicts_with_all = ["list", "scene"])]
+    json: bool,
+    /// Show no progress and no summary
+    #[arg(long)]
+    quiet: bool,
+    /// Overwrite files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Args)]
 struct Check {
     /// The scene, a TOML file
     #[arg(value_name = "SCENE.toml")]
@@ -162,7 +194,7 @@ struct Check {
 
 #[derive(Args)]
 struct Info {
-    /// A result file that `fretwear run`, `sweep`, `merge` or `map` wrote
+    /// A result file that `fretwear run`, `sweep`, `merge`, `map` or `universality` wrote
     #[arg(value_name = "FILE.h5")]
     file: PathBuf,
     /// Print one JSON object in SI units
@@ -230,6 +262,7 @@ fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep(&arguments),
         Command::Merge(arguments) => merge(&arguments),
         Command::Map(arguments) => map(&arguments).map(done),
+        Command::Universality(arguments) => universality(&arguments),
         Command::Check(arguments) => check(&arguments).map(done),
         Command::Submit(arguments) => submit(&arguments),
         Command::Info(arguments) => info(&arguments).map(done),
@@ -374,6 +407,52 @@ fn map(arguments: &Map) -> Result<String> {
     let scene = arguments.map.as_deref().map(MapScene::read).transpose()?.unwrap_or_default();
     let report = MapReport::write(&scene, &arguments.output, arguments.force)?;
     Ok(if arguments.json { report::json(&report) } else { report.text() })
+}
+
+fn universality(arguments: &Universality) -> Result<(String, ExitCode)> {
+    let study = UniversalityStudy::read(&arguments.study)?;
+    if let Some(name) = &arguments.scene {
+        let case = study.case(name)?;
+        return Ok(done(case.scene.clone()));
+    }
+    let Some(folder) = &arguments.output else {
+        let lines = study.cases().iter().map(|case| format!("{}: {}\n", case.predicted.name(), case.name));
+        return Ok(done(lines.collect()));
+    };
+    let options =
+        universality::Options { threads: arguments.threads.map(usize::from), overwrite: arguments.force };
+    let ready = universality::Universality::new(&study, folder, &options)?;
+    let shown = !arguments.quiet && !arguments.json;
+    if shown {
+        complain("note", &format!("{} cases in {} runs", study.cases().len(), ready.runs()));
+    }
+    let progress = shown.then(SceneProgress::default);
+    let outcome = ready.execute(progress.as_ref());
+    drop(progress);
+    let outcome = match outcome {
+        Ok(Some(outcome)) => outcome,
+        Ok(None) => {
+            complain("note", "stopped; the same command goes on from here");
+            return Ok((String::new(), ExitCode::from(INTERRUPTED)));
+        }
+        // The input was in order: what stops a study that has begun is a failure of the study.
+        Err(error) => {
+            complain("error", &error.to_string());
+            return Ok((String::new(), ExitCode::FAILURE));
+        }
+    };
+    let report = UniversalityReport::new(&study, &outcome);
+    let text = match (arguments.json, arguments.quiet) {
+        (true, _) => report::json(&report),
+        (false, true) => String::new(),
+        (false, false) => report.text(),
+    };
+    if report.agreeing == report.count {
+        return Ok(done(text));
+    }
+    let wrong = report.count - report.agreeing;
+    complain("error", &format!("{wrong} of {} cases are not as predicted", report.count));
+    Ok((text, ExitCode::FAILURE))
 }
 
 fn check(arguments: &Check) -> Result<String> {

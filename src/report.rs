@@ -9,6 +9,7 @@ mod limit;
 mod map;
 mod run;
 mod text;
+mod universality;
 
 pub use check::CheckReport;
 pub use info::{InfoReport, arrays_text};
@@ -16,6 +17,7 @@ pub use limit::{LimitReport, ProfileTable, parse_radii};
 pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;
 pub(crate) use text::{Rows, number};
+pub use universality::{UniversalityReport, UniversalityRow};
 
 use std::path::Path;
 

@@ -55,9 +55,13 @@ mod sections;
 mod spacing;
 mod study;
 mod unit;
+mod universality;
 
 pub use map::MapScene;
 pub use study::{Input, KeptSnapshots, MOST_SCENES, Study, Task};
+pub use universality::{
+    Case, FACTORS, MOST_COMBINATIONS, Prediction, Tolerances, UniversalityStudy, covering_design,
+};
 
 /// Most snapshots a scene may ask for.
 pub const MOST_SNAPSHOTS: usize = 100_000;

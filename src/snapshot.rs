@@ -15,7 +15,7 @@ mod reader;
 mod shard;
 mod writer;
 
-pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate};
+pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray};
 pub(crate) use atomic::{AtomicFile, remove_abandoned};
 pub use reader::RunFile;
 pub use shard::{Column, SweepFile, SweepHeader, Values, Words};

@@ -9,7 +9,7 @@ use super::atomic::AtomicFile;
 use super::labelled::{Dimension, bytes_of, file_in_memory, put_array, put_integer, put_text};
 use super::layout::Label;
 use super::reader;
-use super::shard::SweepFile;
+use super::shard::{SweepFile, unicode};
 use crate::error::{Error, Result};
 
 /// A coordinate: a dimension and the values along it.
@@ -32,6 +32,17 @@ pub struct Array {
     pub values: Vec<f64>,
 }
 
+/// Words along one of the coordinates of its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextArray {
+    /// Name and meaning; the unit is "1".
+    pub label: Label<'static>,
+    /// Name of the coordinate.
+    pub axis: &'static str,
+    /// One text for each of its values.
+    pub values: Vec<String>,
+}
+
 /// Everything that a file of arrays holds; valid netCDF-4 in which every array names its coordinates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ArrayFile {
@@ -43,11 +54,13 @@ pub struct ArrayFile {
     pub coordinates: Vec<Coordinate>,
     /// The arrays.
     pub arrays: Vec<Array>,
+    /// The words.
+    pub texts: Vec<TextArray>,
 }
 
 impl ArrayFile {
     /// The formats there are.
-    pub const FORMATS: [&str; 2] = ["fretwear-map", SweepFile::FORMAT];
+    pub const FORMATS: [&str; 3] = ["fretwear-map", "fretwear-universality", SweepFile::FORMAT];
 
     /// Version of the layout, the root attribute `format_version`.
     pub const FORMAT_VERSION: i32 = 1;
@@ -88,6 +101,10 @@ impl ArrayFile {
                 let axes: Vec<&Dimension> =
                     array.axes.iter().map(|axis| &dimensions[self.position(axis)]).collect();
                 put_array(&file, array.label, &axes, &array.values)?;
+            }
+            for array in &self.texts {
+                let texts = array.values.iter().map(|text| unicode(text)).collect::<Hdf5Result<Vec<_>>>()?;
+                put_array(&file, array.label, &[&dimensions[self.position(array.axis)]], &texts)?;
             }
             bytes_of(&file)
         })

@@ -309,7 +309,7 @@ fn header(source: &Source, file: &File) -> Result<SweepHeader> {
 }
 
 /// Text without NUL, which HDF5 would end it at.
-fn unicode(text: &str) -> hdf5::Result<VarLenUnicode> {
+pub(super) fn unicode(text: &str) -> hdf5::Result<VarLenUnicode> {
     VarLenUnicode::from_str(&text.replace('\0', "\u{fffd}")).map_err(|error| error.to_string().into())
 }
 

@@ -1,0 +1,270 @@
+//! The tables of a universality study, and the cases that follow from them.
+
+use std::collections::HashSet;
+use std::path::PathBuf;
+
+use toml::{Table, Value};
+
+use super::cover::{combinations, covering_design};
+use super::patch::{self, Patch};
+use super::{Case, FACTORS, MOST_COMBINATIONS, Prediction, Tolerances};
+use crate::error::{Error, Result};
+use crate::scene::document::{Entry, Section};
+use crate::scene::quantity::Dimension;
+use crate::scene::sections;
+
+/// Tables of the levels of each factor, in the order of [`FACTORS`].
+const TABLES: [&str; 4] = ["media", "wear", "friction", "modes"];
+
+/// Most levels of a factor, single cases and pairs left out.
+const MOST_ENTRIES: usize = 10_000;
+
+/// What the document says, before the base scene is there.
+pub(super) struct Plan {
+    pub(super) title: Option<String>,
+    pub(super) tolerances: Tolerances,
+    pub(super) base: Base,
+    full: bool,
+    factors: [Vec<Level>; 4],
+    without: Vec<[String; 2]>,
+    singles: Vec<Single>,
+}
+
+/// The base scene.
+pub(super) enum Base {
+    /// In the study.
+    Table(Table),
+    /// In a file of its own.
+    File(PathBuf),
+}
+
+/// One of the values of a factor.
+struct Level {
+    name: String,
+    patch: Patch,
+    /// How long a run with it lasts at least.
+    tau: Option<f64>,
+}
+
+/// A case that stands for itself.
+struct Single {
+    level: Level,
+    predicted: Prediction,
+    reason: Option<String>,
+    finer: bool,
+}
+
+pub(super) fn read(root: &Section, values: &Table) -> Result<Plan> {
+    let known = ["title", "scene", "tolerances", "cover", "without", "cases"];
+    root.only(&[&known[..], &TABLES[..]].concat(), &[])?;
+    let title = root.optional("title").map(|entry| sections::title(&entry)).transpose()?;
+    let scene = root.required("scene", "give the base scene as a table, or the name of its file")?;
+    let base = match values.get("scene") {
+        Some(Value::Table(table)) => Base::Table(table.clone()),
+        _ => Base::File(scene.string()?.into()),
+    };
+    let tolerances = match root.optional("tolerances") {
+        Some(entry) => tolerances(&entry.section()?)?,
+        None => Tolerances::default(),
+    };
+    let full = root.optional("cover").map_or(Ok(0), |entry| entry.word(&["pairs", "full"]))? == 1;
+
+    let mut names = HashSet::new();
+    let mut factors: [Vec<Level>; 4] = Default::default();
+    for (levels, table) in factors.iter_mut().zip(TABLES) {
+        for (section, values) in entries(root, values, table)? {
+            section.only(&["name", "patch", "tau"], &[])?;
+            levels.push(level(&section, values, &mut names)?);
+        }
+    }
+    let product = factors.iter().map(|levels| levels.len().max(1)).fold(1usize, usize::saturating_mul);
+    if product > MOST_COMBINATIONS {
+        let message = format!("has {product} combinations of levels, more than {MOST_COMBINATIONS}");
+        return Err(root.error(message));
+    }
+    let mut singles = vec![];
+    for (section, values) in entries(root, values, "cases")? {
+        section.only(&["name", "patch", "tau", "predicted", "reason", "finer"], &[])?;
+        let cure = "within or outside the tolerance of the limit?";
+        let predicted = section.required("predicted", cure)?.word(&Prediction::ALL.map(Prediction::name))?;
+        let reason = section.optional("reason").map(|entry| sections::title(&entry)).transpose()?;
+        let finer = section.optional("finer").map_or(Ok(false), |entry| match entry.literal()? {
+            Value::Boolean(finer) => Ok(finer),
+            _ => Err(entry.error("is neither true nor false")),
+        })?;
+        let level = level(&section, values, &mut names)?;
+        singles.push(Single { level, predicted: Prediction::ALL[predicted], reason, finer });
+    }
+    let mut without = vec![];
+    for (section, _) in entries(root, values, "without")? {
+        section.only(&["levels", "reason"], &[])?;
+        section.optional("reason").map(|entry| sections::title(&entry)).transpose()?;
+        without.push(pair(&section.required("levels", "the names of two levels")?, &factors)?);
+    }
+    if factors.iter().all(Vec::is_empty) && singles.is_empty() {
+        return Err(root.error("has no case; give levels of factors, or [[cases]]"));
+    }
+    Ok(Plan { title, tolerances, base, full, factors, without, singles })
+}
+
+fn tolerances(section: &Section) -> Result<Tolerances> {
+    section.only(&["within", "outside"], &[])?;
+    let mut found = Tolerances::default();
+    for (value, key) in [(&mut found.within, "within"), (&mut found.outside, "outside")] {
+        if let Some(entry) = section.optional(key) {
+            *value = entry.positive(Dimension::NUMBER)?;
+        }
+    }
+    match found.within < found.outside {
+        true => Ok(found),
+        false => Err(section.error(format_args!(
+            "within = {} is not below outside = {}: what lies between them is unclear",
+            found.within, found.outside
+        ))),
+    }
+}
+
+/// The tables of an array, with and without their places.
+fn entries<'a>(root: &Section<'a>, values: &'a Table, name: &str) -> Result<Vec<(Section<'a>, &'a Table)>> {
+    let Some(entry) = root.optional(name) else { return Ok(vec![]) };
+    let sections = entry.array(MOST_ENTRIES)?.iter().map(Entry::section).collect::<Result<Vec<_>>>()?;
+    let tables = values.get(name).and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_table);
+    Ok(sections.into_iter().zip(tables).collect())
+}
+
+fn level(section: &Section, values: &Table, names: &mut HashSet<String>) -> Result<Level> {
+    let entry = section.required("name", "each level and each case has one")?;
+    let name = sections::title(&entry)?;
+    if name.trim() != name || name.is_empty() {
+        return Err(entry.error("is empty, or begins or ends with a space"));
+    }
+    if !names.insert(name.clone()) {
+        return Err(entry.error("is given twice; names must differ"));
+    }
+    if let Some(entry) = section.optional("patch") {
+        entry.section()?;
+    }
+    let patch = Patch::new(values.get("patch").and_then(Value::as_table).unwrap_or(&Table::new()));
+    if let Some([one, two]) = patch.conflict(&patch) {
+        return Err(section.error(format_args!("{name}: {one} and {two} exclude each other")));
+    }
+    let tau = section.optional("tau").map(|entry| entry.positive(Dimension::NUMBER)).transpose()?;
+    Ok(Level { name, patch, tau })
+}
+
+/// Two levels of different factors.
+fn pair(entry: &Entry, factors: &[Vec<Level>; 4]) -> Result<[String; 2]> {
+    let mut found = vec![];
+    for entry in entry.array(2)? {
+        let name = entry.string()?;
+        let factor = factors.iter().position(|levels| levels.iter().any(|level| level.name == name));
+        let factor = factor.ok_or_else(|| entry.error("is the name of no level"))?;
+        found.push((factor, name.to_owned()));
+    }
+    match &found[..] {
+        [(one, first), (two, second)] if one != two => Ok([first.clone(), second.clone()]),
+        _ => Err(entry.error("is not two levels of different factors")),
+    }
+}
+
+impl Plan {
+    /// All cases over a base scene.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] names two levels that set one key differently.
+    pub(super) fn cases(&self, base: &Table, study: &str) -> Result<Vec<Case>> {
+        self.check_conflicts(study)?;
+        let mut cases = vec![];
+        if self.factors.iter().any(|levels| !levels.is_empty()) {
+            for places in self.design() {
+                let levels = self.levels(&places);
+                let mut names: [String; 4] = Default::default();
+                names.iter_mut().zip(&levels).for_each(|(name, level)| {
+                    *name = level.map_or(String::new(), |level| level.name.clone());
+                });
+                let levels: Vec<&Level> = levels.into_iter().flatten().collect();
+                let given: Vec<&str> = levels.iter().map(|level| level.name.as_str()).collect();
+                let name = given.join(" + ");
+                let scene = scene(base, &name, &levels, study)?;
+                let predicted = Prediction::Within;
+                let scene = scene.to_string();
+                cases.push(Case { name, levels: names, predicted, reason: None, scene, finer: None });
+            }
+        }
+        for Single { level, predicted, reason, finer } in &self.singles {
+            let mut scene = scene(base, &level.name, &[level], study)?;
+            let text = scene.to_string();
+            let finer = match finer {
+                true => {
+                    patch::refine(&mut scene).map_err(|why| wrong(study, &level.name, &why))?;
+                    Some(scene.to_string())
+                }
+                false => None,
+            };
+            let (name, levels) = (level.name.clone(), Default::default());
+            let (predicted, reason) = (*predicted, reason.clone());
+            cases.push(Case { name, levels, predicted, reason, scene: text, finer });
+        }
+        let mut names = HashSet::new();
+        match cases.iter().find(|case| !names.insert(case.name.as_str())) {
+            Some(twice) => Err(wrong(study, &twice.name, "two cases have this name")),
+            None => Ok(cases),
+        }
+    }
+
+    /// One place for each factor; 0 for one without levels.
+    fn design(&self) -> Vec<Vec<usize>> {
+        let counts = self.factors.each_ref().map(|levels| levels.len().max(1));
+        let allowed = |places: &[usize]| {
+            let levels = self.levels(places);
+            let has = |name: &str| levels.iter().flatten().any(|level| level.name == name);
+            !self.without.iter().any(|[one, two]| has(one) && has(two))
+        };
+        match self.full {
+            true => combinations(&counts).into_iter().filter(|it| allowed(it)).collect(),
+            false => covering_design(&counts, allowed),
+        }
+    }
+
+    fn levels(&self, places: &[usize]) -> [Option<&Level>; 4] {
+        std::array::from_fn(|factor| self.factors[factor].get(places[factor]))
+    }
+
+    /// Refuses levels of different factors that cannot be in one scene.
+    fn check_conflicts(&self, study: &str) -> Result<()> {
+        for (first, factor) in self.factors.iter().enumerate() {
+            for (second, other) in self.factors.iter().enumerate().skip(first + 1) {
+                for (one, two) in factor.iter().flat_map(|one| other.iter().map(move |two| (one, two))) {
+                    let left_out =
+                        self.without.iter().any(|it| it.contains(&one.name) && it.contains(&two.name));
+                    let Some([key, rival]) = one.patch.conflict(&two.patch).filter(|_| !left_out) else {
+                        continue;
+                    };
+                    let [a, b] = [first, second].map(|factor| FACTORS[factor]);
+                    return Err(Error::Scene(format!(
+                        "{study}: the {a} {:?} sets {key} and the {b} {:?} sets {rival} otherwise; \
+                         let one of them set it, or leave the pair out by [[without]]",
+                        one.name, two.name
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The base scene with the patches of some levels, named.
+fn scene(base: &Table, name: &str, levels: &[&Level], study: &str) -> Result<Table> {
+    let mut scene = base.clone();
+    scene.insert("title".into(), Value::String(name.into()));
+    let failed = |why: String| wrong(study, name, &why);
+    levels.iter().try_for_each(|level| level.patch.apply(&mut scene)).map_err(failed)?;
+    if let Some(tau) = levels.iter().filter_map(|level| level.tau).reduce(f64::max) {
+        patch::last_until(&mut scene, tau).map_err(failed)?;
+    }
+    Ok(scene)
+}
+
+fn wrong(study: &str, case: &str, why: &str) -> Error {
+    Error::Scene(format!("{study}: {case}: {why}"))
+}
