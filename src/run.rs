@@ -298,8 +298,7 @@ fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
         return Ok(());
     }
     let amplitude = contact.amplitude();
-    let why =
-        format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more");
+    let why = format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more");
     Err(Error::Inconsistent { what: scene.loading().amplitude.key(), why })
 }
 

@@ -270,20 +270,9 @@ impl Simulation {
         loop {
             let landing = self.choose_step()?;
             let step = landing.step;
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "{:e} step {step:e} edge {:e} rate {:e}",
-                    self.state.cycles,
-                    self.state.edge,
-                    self.cycle.volume / self.progress.first_rate
-                );
-            }
             let trial = self.stepper.step(&self.model, &self.state, step)?;
             self.progress.rate_evaluations += trial.rate_evaluations;
             let error = trial.error / self.tolerance;
-            if std::env::var("DBG").is_ok() {
-                eprintln!("    error {error:e} state {}", trial.state.is_some());
-            }
             let accepted = match trial.state {
                 Some(state) if error <= 1.0 => {
                     let fields = self.model.fields(&state);
