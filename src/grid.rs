@@ -7,6 +7,11 @@ pub enum Clustering {
     Cubic,
     /// Spacing `n^-2` at the edge: less stiff, so that explicit steps may be longer.
     Quadratic,
+    /// Spacing `n^-3` at the contact edge and `n^-2` at an edge of stick that creeps: ground passes through the springs there, and finer ones
+    /// amplify what they are off by.
+    CreepingStick,
+    /// Spacing `n^-3` at the contact edge and `n^-1` at an edge of stick that moves as fast as wear.
+    MovingStick,
 }
 
 /// Nodes of the slip annulus, graded towards the stick edge and towards the contact edge.
@@ -27,11 +32,12 @@ pub enum Clustering {
 pub fn slip_annulus(cells: usize, stretch: f64, clustering: Clustering) -> Vec<f64> {
     let fraction = |i: usize| {
         let x = i as f64 / cells as f64;
-        let clustered = x.powi(4)
-            * match clustering {
-                Clustering::Cubic => 15.0 + x * (10.0 * x - 24.0),
-                Clustering::Quadratic => 5.0 - 4.0 * x,
-            };
+        let clustered = match clustering {
+            Clustering::Cubic => x.powi(4) * (15.0 + x * (10.0 * x - 24.0)),
+            Clustering::Quadratic => x.powi(4) * (5.0 - 4.0 * x),
+            Clustering::CreepingStick => x * x * (6.0 + x * (3.0 * x - 8.0)),
+            Clustering::MovingStick => x * (3.0 + x * (x - 3.0)),
+        };
         if stretch > 1e-8 { (stretch * clustered).exp_m1() / stretch.exp_m1() } else { clustered }
     };
     let mut nodes: Vec<f64> = (0..=cells).map(fraction).collect();

@@ -13,6 +13,7 @@
 mod cycle;
 mod derivatives;
 mod motion;
+mod moving;
 mod operators;
 mod output;
 mod reach;
@@ -33,6 +34,7 @@ use crate::roots::bracketed;
 use crate::slip_depth::{UnwornSlip, UnwornValues};
 use crate::stick_slip::Regime;
 pub use cycle::CycleFields;
+pub use moving::{MovingStick, StickEdge, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;
 pub use output::RadialFields;
@@ -65,11 +67,15 @@ pub struct State {
     pub edge_rate: f64,
     /// Mean rates of the compressions in the last step, m per cycle, shape `(springs - 1,)`; zero at the start.
     pub compression_rate: Vec<f64>,
+    /// The edge of stick, where that moves.
+    pub stick: Option<StickEdge>,
 }
 
 /// What follows from a state, on the springs `ξ_1 ... ξ_n` of which the last is the contact edge.
 #[derive(Debug, Clone, Default)]
 pub struct Fields {
+    /// Where the mesh begins.
+    pub place: Place,
     /// `Z = a² - c²`, m².
     pub edge: f64,
     /// `x^(k-1)`, the factor from compression to density.
@@ -87,6 +93,17 @@ pub struct Fields {
     /// The unworn slip at the same radii.
     pub unworn: Vec<UnwornValues>,
     density: Vec<f64>,
+}
+
+/// The edge of stick, where the mesh begins.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Place {
+    /// `c²`, m².
+    pub stick_area: f64,
+    /// Compression `q_c` of the springs there, m.
+    pub slip_compression: f64,
+    /// `∫_0^c x^k q dx`, m^(2+k).
+    pub stick_load: f64,
 }
 
 impl Fields {
@@ -107,10 +124,9 @@ pub struct Model {
     /// `F` without signs, where slip may turn: the direction of slip on the surface.
     positive: Option<Mat<f64>>,
     radial_unworn: Vec<UnwornValues>,
-    stick_radius_squared: f64,
-    /// `c^(k-1)`.
-    stick_density_factor: f64,
-    stick_force: f64,
+    /// The edge of stick, its innermost place where it moves.
+    place: Place,
+    moving: Option<MovingStick>,
     depth_scale: f64,
     slides: bool,
 }
@@ -161,19 +177,25 @@ impl Model {
         }
         let profile = contact.equivalent_profile();
         let grading = profile.grading();
+        let moving = MovingStick::new(&schedule, contact)?;
+        let farthest = match &moving {
+            Some(moving) => moving.farthest(contact)?,
+            None => contact.clone(),
+        };
         let unworn =
-            UnwornSlip::new(profile, stick_radius, contact.slip_compression(), contact.slip_area_offset())?;
+            UnwornSlip::new(profile, stick_radius, farthest.slip_compression(), farthest.slip_area_offset())?;
         let stick_radius_squared = stick_radius * stick_radius;
+        let first = contact.contact_radius().powi(2);
+        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_edge()));
         let stretch = (unworn.limit_edge() / stick_radius_squared).ln_1p();
+        let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
         let operators = store.get(grading, stretch, springs, clustering)?;
         let radial_unworn: Vec<_> =
             operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
-        let half_space = contact.half_space();
         let compression = contact.slip_compression();
-        let stick_force = half_space.normal_stiffness()
-            * (profile.load_integral(stick_radius)
-                + 2.0 * compression * stick_radius.powf(1.0 + grading) / (1.0 + grading));
-        let depth_scale = radial_unworn.iter().map(|u| u.limit_slip - u.slip).fold(0.0, f64::max);
+        let stick_load = 0.5 * profile.load_integral(stick_radius)
+            + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
+        let depth_scale: f64 = radial_unworn.iter().map(|u| u.limit_slip - u.slip).fold(0.0, f64::max);
         let positive = schedule.resolves().then(|| {
             let profile = operators.abel.profile();
             Mat::from_fn(springs, springs, |i, j| profile[(i, j)].abs())
@@ -185,9 +207,12 @@ impl Model {
             operators,
             positive,
             radial_unworn,
-            stick_radius_squared,
-            stick_density_factor: stick_radius_squared.powf(-0.5 * (1.0 - grading)),
-            stick_force,
+            place: Place {
+                stick_area: stick_radius_squared,
+                slip_compression: contact.slip_compression(),
+                stick_load,
+            },
+            moving,
             depth_scale,
             slides,
         })
@@ -231,10 +256,7 @@ impl Model {
     /// Radii of the output, m, shape `(springs,)`, increasing from just outside the stick radius to the limiting contact radius.
     pub fn radii(&self) -> Vec<f64> {
         let limit = self.unworn.limit_edge();
-        self.operators.abel.nodes()[1..]
-            .iter()
-            .map(|x| (self.stick_radius_squared + limit * x).sqrt())
-            .collect()
+        self.operators.abel.nodes()[1..].iter().map(|x| (self.place.stick_area + limit * x).sqrt()).collect()
     }
 
     /// `r² - c²`, m², at [`Model::radii`], without the rounding of the radii.
@@ -247,17 +269,22 @@ impl Model {
     /// # Errors
     /// [`Error::NotConverged`] if no edge is found.
     pub fn initial_state(&self) -> Result<State> {
-        let guess = self.contact.slip_area_offset();
-        let limit = self.unworn.limit_edge();
+        let stick = self.moving.as_ref().map(|moving| moving.start(self)).transpose()?;
+        let place =
+            stick.as_ref().map_or(self.place, |stick| self.place_of(stick, &self.schedule.drive(0.0, 0.0)));
+        let guess = self.contact.contact_radius().powi(2) - place.stick_area;
+        let guess = if stick.is_some() { guess } else { self.contact.slip_area_offset() };
+        let limit = self.unworn.limit_edge() + self.place.stick_area - place.stick_area;
         let (mut low, mut high) = (0.98 * guess, (1.02 * guess).min(limit));
-        while self.edge_mismatch(low, |_, values| values.slip) < 0.0 && low > 0.5 * guess {
+        let mismatch = |edge: f64| self.mismatch_at(&place, edge, |_, values| values.slip);
+        while mismatch(low) < 0.0 && low > 0.5 * guess {
             low *= 0.98;
         }
-        while self.edge_mismatch(high, |_, values| values.slip) > 0.0 && high < limit {
+        while mismatch(high) > 0.0 && high < limit {
             high = (1.02 * high).min(limit);
         }
-        let edge = bracketed(|edge| self.edge_mismatch(edge, |_, values| values.slip), low, high, 0.0)?;
-        let compression = self.compression(edge, |_, values| values.slip);
+        let edge = bracketed(mismatch, low, high, 0.0)?;
+        let compression = self.compression_at(&place, edge, |_, values| values.slip);
         Ok(State {
             cycles: 0.0,
             edge,
@@ -267,38 +294,63 @@ impl Model {
             volume_by_rate: 0.0,
             least_stick_radius: f64::INFINITY,
             edge_rate: 0.0,
+            stick,
         })
     }
 
     /// Wear depth at the edge, m, of the compressions that give the inner springs the slip depth `slip(spring, unworn)`; zero at the
     /// true contact edge.
     pub fn edge_mismatch(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> f64 {
+        self.mismatch_at(&self.place, edge, slip)
+    }
+
+    pub(super) fn mismatch_at(
+        &self,
+        place: &Place,
+        edge: f64,
+        slip: impl Fn(usize, &UnwornValues) -> f64,
+    ) -> f64 {
         let inner = self.springs() - 1;
-        let last = self.unworn.at(edge);
-        let elastic = |(i, values): (usize, UnwornValues)| {
-            self.operators.edge_row[i] * (values.limit_slip - slip(i, &values))
+        let values = self.unworn_on_springs(place, edge);
+        let elastic = |(i, values): (usize, &UnwornValues)| {
+            self.operators.edge_row[i] * (values.limit_slip - slip(i, values))
         };
-        let carried: f64 = self.unworn_on_springs(edge).take(inner).enumerate().map(elastic).sum();
-        last.limit_slip - last.slip - carried
+        let carried: f64 = values.iter().take(inner).enumerate().map(elastic).sum();
+        values[inner].limit_slip - values[inner].slip - carried
     }
 
     /// Compressions, m, that give the inner springs the slip depth `slip(spring, unworn)` with the contact edge at `edge`.
     pub fn compression(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> Vec<f64> {
+        self.compression_at(&self.place, edge, slip)
+    }
+
+    pub(super) fn compression_at(
+        &self,
+        place: &Place,
+        edge: f64,
+        slip: impl Fn(usize, &UnwornValues) -> f64,
+    ) -> Vec<f64> {
         let inner = self.springs() - 1;
-        let values: Vec<_> = self.unworn_on_springs(edge).take(inner).collect();
-        let mut solution: Vec<f64> =
-            values.iter().enumerate().map(|(i, v)| v.limit_slip - slip(i, v)).collect();
+        let values = self.unworn_on_springs(place, edge);
+        let depth = |(i, v): (usize, &UnwornValues)| v.limit_slip - slip(i, v);
+        let mut solution: Vec<f64> = values.iter().take(inner).enumerate().map(depth).collect();
         self.operators.profile_factors.solve(&mut solution);
         let scale = edge.powf(-self.mu());
         for (q, v) in solution.iter_mut().zip(&values) {
-            *q *= scale / self.density_factor(v);
+            *q *= scale / self.density_factor(place, v);
         }
         solution
     }
 
     /// Recomputes everything that follows from an edge, m², and the compressions, m, shape `(springs - 1,)`.
     pub fn evaluate(&self, edge: f64, compression: &[f64], fields: &mut Fields) {
+        self.evaluate_at(&self.place, edge, compression, fields);
+    }
+
+    /// As [`Model::evaluate`], with the mesh beginning at another edge of stick.
+    pub fn evaluate_at(&self, place: &Place, edge: f64, compression: &[f64], fields: &mut Fields) {
         let n = self.springs();
+        fields.place = *place;
         let (mu, stiffness) = (self.mu(), self.contact.half_space().normal_stiffness());
         fields.edge = edge;
         for part in [
@@ -311,10 +363,9 @@ impl Model {
         ] {
             part.resize(n, 0.0);
         }
-        fields.unworn.clear();
-        fields.unworn.extend(self.unworn_on_springs(edge));
+        fields.unworn = self.unworn_on_springs(place, edge);
         for (factor, values) in fields.density_factor.iter_mut().zip(&fields.unworn) {
-            *factor = self.density_factor(values);
+            *factor = self.density_factor(place, values);
         }
         fields.density.clear();
         fields.density.extend(compression.iter().zip(&fields.density_factor).map(|(q, factor)| q * factor));
@@ -333,13 +384,16 @@ impl Model {
     /// The fields of a state.
     pub fn fields(&self, state: &State) -> Fields {
         let mut fields = Fields::default();
-        self.evaluate(state.edge, &state.compression, &mut fields);
+        let drive = self.schedule.drive(state.cycles, state.cycles);
+        let place = state.stick.as_ref().map_or(self.place, |stick| self.place_of(stick, &drive));
+        self.evaluate_at(&place, state.edge, &state.compression, &mut fields);
         fields
     }
 
     /// Contact radius `a`, m.
     pub fn contact_radius(&self, state: &State) -> f64 {
-        (self.stick_radius_squared + state.edge).sqrt()
+        let stick_area = state.stick.as_ref().map_or(self.place.stick_area, |stick| stick.area);
+        (stick_area + state.edge).sqrt()
     }
 
     /// Depth that the limit takes away at [`Model::radii`] by the program's own quadrature, m.
@@ -348,8 +402,12 @@ impl Model {
     }
 
     /// The unworn slip on every spring, with the contact edge at `edge`.
-    fn unworn_on_springs(&self, edge: f64) -> impl Iterator<Item = UnwornValues> {
-        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn.at(edge * x))
+    fn unworn_on_springs(&self, place: &Place, edge: f64) -> Vec<UnwornValues> {
+        let offsets = self.operators.abel.nodes()[1..].iter().map(|x| edge * x);
+        if self.moving.is_none() {
+            return offsets.map(|z| self.unworn.at(z)).collect();
+        }
+        offsets.map(|z| self.unworn.at_stick(place.stick_area, place.slip_compression, z)).collect()
     }
 
     /// `μ = (1-k)/2`, the exponent with which the transforms scale with the edge.
@@ -358,7 +416,7 @@ impl Model {
     }
 
     /// `x^(k-1) = s^(ν-1)`.
-    fn density_factor(&self, values: &UnwornValues) -> f64 {
-        self.stick_density_factor * (-self.mu() * values.logarithm).exp()
+    fn density_factor(&self, place: &Place, values: &UnwornValues) -> f64 {
+        place.stick_area.powf(-self.mu()) * (-self.mu() * values.logarithm).exp()
     }
 }

@@ -19,7 +19,7 @@ use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
     Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
 };
-use crate::stepper::{CycleJump, EveryCycle, Implicit, Stepper};
+use crate::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Stepper};
 use crate::stick_slip::Regime;
 
 /// Part of the run at which the first of geometrically spread snapshots is taken.
@@ -284,6 +284,9 @@ impl Parts {
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
+            StepperChoice::Implicit if model.moving().is_some() => {
+                Box::new(MovingStickImplicit::new(tolerance))
+            }
             StepperChoice::Implicit => Box::new(Implicit::new(tolerance)),
         };
         let whole = numerics.stepper == StepperChoice::EveryCycle;

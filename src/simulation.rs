@@ -143,7 +143,7 @@ impl Simulation {
         let mut first_rate = 0.0_f64;
         let mut growth = 0.0_f64;
         for drive in model.schedule().first_cycles() {
-            let cycle = model.cycle(&drive, &state.compression, &fields);
+            let cycle = model.cycle(&model.drive_in(&state, drive), &state.compression, &fields);
             first_rate = first_rate.max(cycle.volume);
             growth = growth.max(largest(&cycle.growth));
         }
@@ -168,9 +168,8 @@ impl Simulation {
         progress: Progress,
     ) -> Self {
         let fields = model.fields(&state);
-        let drive = model.schedule().drive(state.cycles, state.cycles);
-        let cycle = model.cycle(&drive, &state.compression, &fields);
-        let radial = model.radial_fields(&fields, &cycle);
+        let cycle = cycle_of(&model, &state, &fields, state.cycles);
+        let radial = model.radial_fields(&state, &fields, &cycle);
         Self { model, stepper, tolerance, plan, state, fields, cycle, radial, progress }
     }
 
@@ -276,13 +275,12 @@ impl Simulation {
             let accepted = match trial.state {
                 Some(state) if error <= 1.0 => {
                     let fields = self.model.fields(&state);
-                    let drive = self.model.schedule().drive(self.state.cycles, state.cycles);
-                    let cycle = self.model.cycle(&drive, &state.compression, &fields);
+                    let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
                     if let Some(shorter) = self.overshoot(&cycle, step) {
                         self.progress.next_step = shorter;
                         continue;
                     }
-                    self.accept(state, fields, cycle, landing.at)
+                    self.accept(state, fields, cycle, landing.at)?
                 }
                 _ => false,
             };
@@ -340,15 +338,21 @@ impl Simulation {
     }
 
     /// Takes a state over if it is one that wear can lead to.
-    fn accept(&mut self, mut state: State, fields: Fields, cycle: CycleFields, target: Option<f64>) -> bool {
-        let radial = self.model.radial_fields(&fields, &cycle);
+    fn accept(
+        &mut self,
+        mut state: State,
+        fields: Fields,
+        cycle: CycleFields,
+        target: Option<f64>,
+    ) -> Result<bool> {
+        let radial = self.model.radial_fields(&state, &fields, &cycle);
         let interpolation =
             if self.model.schedule().is_uniform() { INTERPOLATION } else { KINKED_INTERPOLATION };
         let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
         let mut pairs = radial.wear_depth.iter().zip(&self.radial.wear_depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);
         if !(grew && fields.are_physical()) {
-            return false;
+            return Ok(false);
         }
         if let Some(target) = target {
             state.cycles = target;
@@ -358,11 +362,14 @@ impl Simulation {
         {
             self.progress.busy_until = state.cycles;
         }
-        let next = self.model.schedule().drive(state.cycles, state.cycles);
-        let cycle =
-            if target.is_some() { self.model.cycle(&next, &state.compression, &fields) } else { cycle };
+        let (mut fields, mut cycle) = (fields, cycle);
+        if target.is_some() {
+            state = self.model.begin_block(state)?;
+            fields = self.model.fields(&state);
+            cycle = cycle_of(&self.model, &state, &fields, state.cycles);
+        }
         (self.state, self.fields, self.cycle, self.radial) = (state, fields, cycle, radial);
-        true
+        Ok(true)
     }
 
     /// Chooses the next step from the error of this one over the tolerance.
@@ -391,4 +398,10 @@ impl Simulation {
 /// Largest of some rates of growth, at least zero.
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m: f64, value| m.max(*value))
+}
+
+/// What the cycle does that follows a state, in the block that is under way at `start`.
+fn cycle_of(model: &Model, state: &State, fields: &Fields, start: f64) -> CycleFields {
+    let drive = model.drive_in(state, model.schedule().drive(start, state.cycles));
+    model.cycle(&drive, &state.compression, fields)
 }

@@ -32,11 +32,13 @@ const MARGIN: f64 = 1.1;
 pub struct UnwornSlip {
     stick_radius_squared: f64,
     slip_compression: f64,
+    profile: EquivalentProfile,
     mu: f64,
     /// `(F 1)/ℓ^μ` over `ℓ = ln(r²/c²)`, with `μ = (1-k)/2`.
     uniform: Chebyshev,
     /// `(F(q_c - q_0))/ℓ^(1+μ)`.
     slip: Chebyshev,
+    rule: Rule,
     limit_edge: f64,
 }
 
@@ -107,6 +109,7 @@ impl UnwornSlip {
         Ok(Self {
             stick_radius_squared: squared,
             slip_compression,
+            profile: profile.clone(),
             mu,
             uniform: Chebyshev::fit(|l| transform.uniform(l), end),
             slip: if tabulated {
@@ -114,6 +117,7 @@ impl UnwornSlip {
             } else {
                 Chebyshev::fit(slip, end)
             },
+            rule: transform.rule.clone(),
             limit_edge,
         })
     }
@@ -136,6 +140,29 @@ impl UnwornSlip {
             logarithm,
             limit_slip: self.slip_compression * power * self.uniform.value(logarithm),
             slip: logarithm * power * self.slip.value(logarithm),
+        }
+    }
+
+    /// Slip depths at `z = r² - c²`, m², of the unworn contact with another stick radius `c` and compression `q_c` there.
+    ///
+    /// A power law is the same at every scale; for other profiles the quadrature of `F` runs anew.
+    ///
+    /// # Arguments
+    /// * `stick_area` -- `c²`, m², at least that for which the slip was tabulated
+    /// * `slip_compression` -- `q_c`, m
+    pub fn at_stick(&self, stick_area: f64, slip_compression: f64, z: f64) -> UnwornValues {
+        let logarithm = (z / stick_area).ln_1p();
+        let power = logarithm.powf(self.mu);
+        let slip = match self.profile.exponent() {
+            Some(exponent) => {
+                (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip.value(logarithm)
+            }
+            None => Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm),
+        };
+        UnwornValues {
+            logarithm,
+            limit_slip: slip_compression * power * self.uniform.value(logarithm),
+            slip: logarithm * power * slip,
         }
     }
 
@@ -163,10 +190,14 @@ struct Transform<'a> {
 
 impl<'a> Transform<'a> {
     fn new(profile: &'a EquivalentProfile, stick_radius: f64) -> Result<Self> {
-        let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
+        let nu = 0.5 * (1.0 + profile.grading());
         let nodes = if profile.end_of_table().is_some() { MAX_NODES } else { NODES };
-        let rule = Rule::jacobi(nodes, 0.0, -nu)?;
-        Ok(Self { profile, stick_radius, nu, factor: profile_factor(nu, mu), rule })
+        Ok(Self::with_rule(profile, stick_radius, Rule::jacobi(nodes, 0.0, -nu)?))
+    }
+
+    fn with_rule(profile: &'a EquivalentProfile, stick_radius: f64, rule: Rule) -> Self {
+        let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
+        Self { profile, stick_radius, nu, factor: profile_factor(nu, mu), rule }
     }
 
     /// `(F 1)/ℓ^μ`.

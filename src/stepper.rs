@@ -3,10 +3,12 @@
 mod cycle_jump;
 mod every_cycle;
 mod implicit;
+mod moving_stick;
 
 pub use cycle_jump::CycleJump;
 pub use every_cycle::EveryCycle;
 pub use implicit::Implicit;
+pub use moving_stick::MovingStickImplicit;
 
 use crate::error::Result;
 use crate::model::{Model, State};

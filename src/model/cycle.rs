@@ -90,25 +90,27 @@ impl Model {
 
     /// The cycle in which slip on the surface is `μ_f/M` times the slip depth and wear is in proportion to pressure and slip.
     fn plain_cycle(&self, drive: &Drive, compression: &[f64], fields: &Fields) -> Option<CycleFields> {
-        let factor = self.slip_per_depth(drive)?;
+        let factor = self.slip_per_depth(drive, fields)?;
         let per_pressure = 4.0 * factor * self.archard(drive)?;
-        let dissipation = self.dissipation(fields, compression);
+        let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
+        let changed = coefficient / self.contact.friction().coefficient;
+        let dissipation = changed * changed * self.dissipation(fields, compression);
         Some(CycleFields {
             growth: fields.pressure.iter().map(|p| per_pressure * p).collect(),
             slip: fields.slip_depth.iter().map(|s| factor * s).collect(),
             dissipation,
             volume: self.volume_per_energy(drive)? * dissipation,
             amplitude: drive.amplitude,
-            stick_radius: self.stick_radius_squared.sqrt(),
+            stick_radius: fields.place.stick_area.sqrt(),
         })
     }
 
     /// Slip over slip depth, `μ_f/M`, if the amplitude is that for which the mesh was made and the law is Coulomb's.
-    fn slip_per_depth(&self, drive: &Drive) -> Option<f64> {
+    fn slip_per_depth(&self, drive: &Drive, fields: &Fields) -> Option<f64> {
         let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
         let ratio = self.contact.half_space().stiffness_ratio();
         let compression = ratio * drive.amplitude / coefficient;
-        let same = (compression / self.contact.slip_compression() - 1.0).abs() < SAME;
+        let same = (compression / fields.place.slip_compression - 1.0).abs() < SAME;
         (same && drive.path.is_none() && drive.lift == 0.0 && drive.demand == Demand::Displacement)
             .then_some(coefficient / ratio)
     }
@@ -153,7 +155,7 @@ impl Model {
             product(&mut smeared, self.smearing(fields, length).as_ref(), pressure.as_ref(), 1.0);
             pressure = smeared;
         }
-        let plain = self.slip_per_depth(drive);
+        let plain = self.slip_per_depth(drive, fields);
         let mut slip = Mat::zeros(n, columns);
         let mut direction = Mat::from_fn(n, columns, |_, _| 1.0);
         if let Some(factor) = plain {
@@ -255,7 +257,7 @@ impl Model {
         let (n, inner) = (self.springs(), self.springs() - 1);
         let pressure_scale = self.pressure_scale(fields);
         let pressure = self.operators.abel.pressure();
-        if let (Some(slip), Some(wear)) = (self.slip_per_depth(drive), self.archard(drive)) {
+        if let (Some(slip), Some(wear)) = (self.slip_per_depth(drive, fields), self.archard(drive)) {
             let per_compression = factor * 4.0 * slip * wear * pressure_scale;
             for j in 0..inner {
                 for i in 0..n {
@@ -322,7 +324,7 @@ impl Model {
         }
         let edge = fields.edge * (1.0 + DIFFERENCE);
         let mut moved = Fields::default();
-        self.evaluate(edge, compression, &mut moved);
+        self.evaluate_at(&fields.place, edge, compression, &mut moved);
         let after = self.cycle(drive, compression, &moved);
         for i in 0..n {
             matrix[(i, inner)] += factor * (after.growth[i] - cycle.growth[i]) / (edge - fields.edge);
@@ -337,7 +339,7 @@ impl Model {
 
     /// `F 1` at a spring.
     pub(super) fn uniform_slip(&self, fields: &Fields, spring: usize) -> f64 {
-        fields.unworn[spring].limit_slip / self.contact.slip_compression()
+        fields.unworn[spring].limit_slip / fields.place.slip_compression
     }
 
     /// `F` of values at the springs inside the edge, shape `(springs,)`.
@@ -364,7 +366,7 @@ impl Model {
     fn smearing(&self, fields: &Fields, length: f64) -> Mat<f64> {
         let radii: Vec<f64> = self.spring_radii(fields);
         let n = radii.len();
-        let inside = self.stick_radius_squared.sqrt();
+        let inside = fields.place.stick_area.sqrt();
         let width = |j: usize| {
             let before = if j == 0 { inside } else { radii[j - 1] };
             0.5 * (radii[(j + 1).min(n - 1)] - before)
@@ -385,7 +387,7 @@ impl Model {
 
     /// Radii of the springs, m.
     fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
-        let squared = |x: &f64| self.stick_radius_squared + fields.edge * x;
+        let squared = |x: &f64| fields.place.stick_area + fields.edge * x;
         self.operators.abel.nodes()[1..].iter().map(|x| squared(x).sqrt()).collect()
     }
 
@@ -393,9 +395,9 @@ impl Model {
     fn stick_radius(&self, motion: &Motion, fields: &Fields) -> f64 {
         let slips = |j: &usize| (0..motion.slip.ncols()).any(|m| motion.slip[(*j, m)] != 0.0);
         match (0..motion.slip.nrows()).find(slips) {
-            Some(0) => self.stick_radius_squared.sqrt(),
-            Some(j) => (self.stick_radius_squared + fields.edge * self.operators.abel.nodes()[j]).sqrt(),
-            None => (self.stick_radius_squared + fields.edge).sqrt(),
+            Some(0) => fields.place.stick_area.sqrt(),
+            Some(j) => (fields.place.stick_area + fields.edge * self.operators.abel.nodes()[j]).sqrt(),
+            None => (fields.place.stick_area + fields.edge).sqrt(),
         }
     }
 }

@@ -45,7 +45,7 @@ impl Model {
             .density
             .iter()
             .zip(nodes)
-            .map(|(u, x)| -mu * u * x / (self.stick_radius_squared + fields.edge * x))
+            .map(|(u, x)| -mu * u * x / (fields.place.stick_area + fields.edge * x))
             .collect();
         let mut change = vec![0.0; self.springs()];
         multiply(self.operators.abel.profile().as_ref(), &moved, &mut change);

@@ -174,7 +174,7 @@ impl Model {
         let ratio = half_space.stiffness_ratio();
         let sticking: f64 =
             weights.iter().zip(&slips).map(|(weight, slips)| ratio * weight * (1.0 - slips)).sum();
-        let by_amplitude = self.stuck_force(1.0) + sticking;
+        let by_amplitude = self.stuck_force(fields, 1.0) + sticking;
         let [by_force, direct] = drive.demand.factors();
         let by_compression = (0..lifted.len()).map(|j| {
             let strength = slips[j] * self.slope(|q| drive.friction.kinetic_strength(q), lifted[j]);
@@ -184,7 +184,7 @@ impl Model {
     }
 
     /// Amplitude of the tangential force, N, of springs lifted to `lifted`, m, moved by `amplitude`, m.
-    fn force(&self, drive: &Drive, lifted: &[f64], fields: &Fields, amplitude: f64) -> f64 {
+    pub(super) fn force(&self, drive: &Drive, lifted: &[f64], fields: &Fields, amplitude: f64) -> f64 {
         let half_space = self.contact.half_space();
         let ratio = half_space.stiffness_ratio();
         let borne: Vec<f64> = lifted
@@ -192,16 +192,16 @@ impl Model {
             .zip(&fields.density_factor)
             .map(|(q, factor)| factor * (ratio * amplitude).min(drive.friction.kinetic_strength(*q)))
             .collect();
-        self.stuck_force(amplitude)
+        self.stuck_force(fields, amplitude)
             + half_space.normal_stiffness() * fields.edge * dot(self.operators.abel.spring_sum(), &borne)
     }
 
     /// Tangential force, N, of the springs within the last stick radius.
-    fn stuck_force(&self, amplitude: f64) -> f64 {
+    fn stuck_force(&self, fields: &Fields, amplitude: f64) -> f64 {
         let half_space = self.contact.half_space();
         let q = 1.0 + half_space.grading();
         let tangential = half_space.stiffness_ratio() * half_space.normal_stiffness();
-        2.0 * tangential * amplitude * self.stick_radius_squared.powf(0.5 * q) / q
+        2.0 * tangential * amplitude * fields.place.stick_area.powf(0.5 * q) / q
     }
 
     /// Slope of a function of the compression of one spring, by a difference to the side of more compression.

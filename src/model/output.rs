@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{CycleFields, Fields, Model, POINTS};
+use super::{CycleFields, Fields, Model, POINTS, State};
 use crate::grid::{lagrange, stencil_start};
 use crate::linear::dot;
 
@@ -23,6 +23,14 @@ impl Model {
         self.volume(fields.edge, &fields.wear_depth)
     }
 
+    /// Worn volume in a state, m³: where the edge of stick has left worn ground behind, by the rates of the cycles.
+    pub fn worn_volume(&self, state: &State, fields: &Fields) -> f64 {
+        match &state.stick {
+            Some(stick) if !stick.wear_depth.is_empty() => state.volume_by_rate,
+            _ => self.wear_volume(fields),
+        }
+    }
+
     /// Worn volume of the limit by the program's own quadrature, m³.
     pub fn limit_volume(&self) -> f64 {
         self.volume(self.unworn.limit_edge(), &self.limit_depth())
@@ -34,10 +42,9 @@ impl Model {
 
     /// Normal force, N [S, Eq. (22)].
     pub fn normal_force(&self, fields: &Fields) -> f64 {
-        self.stick_force
-            + self.contact.half_space().normal_stiffness()
-                * fields.edge
-                * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density)
+        let slipping =
+            fields.edge * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density);
+        self.contact.half_space().normal_stiffness() * (2.0 * fields.place.stick_load + slipping)
     }
 
     /// Energy that friction dissipates in one cycle, J.
@@ -48,7 +55,7 @@ impl Model {
     pub fn dissipation(&self, fields: &Fields, compression: &[f64]) -> f64 {
         let friction = self.contact.friction().coefficient;
         let half_space = self.contact.half_space();
-        let slipping = self.contact.slip_compression();
+        let slipping = fields.place.slip_compression;
         let sum: f64 = compression
             .iter()
             .zip(&fields.density)
@@ -70,7 +77,7 @@ impl Model {
         let half_space = self.contact.half_space();
         let q = 1.0 + half_space.grading();
         let limit = self.contact.friction().coefficient / half_space.stiffness_ratio();
-        let stuck = 2.0 * displacement * self.stick_radius_squared.powf(0.5 * q) / q;
+        let stuck = 2.0 * displacement * fields.place.stick_area.powf(0.5 * q) / q;
         let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
         let moved: f64 =
             springs.map(|((q, factor), weight)| weight * factor * displacement.min(limit * q)).sum();
@@ -97,7 +104,7 @@ impl Model {
     }
 
     /// The fields at [`Model::radii`], by local cubic interpolation between the springs.
-    pub fn radial_fields(&self, fields: &Fields, cycle: &CycleFields) -> RadialFields {
+    pub fn radial_fields(&self, state: &State, fields: &Fields, cycle: &CycleFields) -> RadialFields {
         let n = self.springs();
         let nodes = self.operators.abel.nodes();
         let nu = 1.0 - self.mu();
@@ -110,16 +117,34 @@ impl Model {
             RadialFields { wear_depth: vec![0.0; n], pressure: vec![0.0; n], slip: vec![0.0; n] };
         let mut cell = 1;
         for i in 0..n {
-            let x = nodes[i + 1] * (self.unworn.limit_edge() / fields.edge);
+            let offset = self.unworn.limit_edge() * nodes[i + 1];
+            let x = match &state.stick {
+                None => nodes[i + 1] * (self.unworn.limit_edge() / fields.edge),
+                Some(stick) => (self.place.stick_area + offset - stick.area) / fields.edge,
+            };
+            if let Some(worn) = state.stick.as_ref().and_then(|stick| stick.wear_depth.get(i)) {
+                radial.wear_depth[i] = *worn;
+            }
             if x >= 1.0 {
                 break;
+            }
+            if x <= 0.0 {
+                continue;
             }
             while nodes[cell + 1] < x {
                 cell += 1;
             }
             let log_slip = interpolate(&nodes[1..], &fields.log_slip, cell, x);
-            let unworn = self.radial_unworn[i].slip;
-            radial.wear_depth[i] = unworn * log_slip.exp_m1();
+            let unworn = match &state.stick {
+                None => self.radial_unworn[i].slip,
+                Some(stick) => {
+                    let z = self.place.stick_area + offset - stick.area;
+                    self.unworn.at_stick(stick.area, fields.place.slip_compression, z).slip
+                }
+            };
+            if state.stick.as_ref().is_none_or(|stick| stick.wear_depth.is_empty()) {
+                radial.wear_depth[i] = unworn * log_slip.exp_m1();
+            }
             radial.slip[i] = interpolate(&nodes[1..], &per_depth, cell, x) * unworn * log_slip.exp();
             radial.pressure[i] = interpolate(&nodes[1..n], &eased, cell, x) * (1.0 - x).powf(nu);
         }

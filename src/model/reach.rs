@@ -7,7 +7,6 @@ use crate::friction::FrictionLaw;
 use crate::loading::TangentialControl;
 use crate::quadrature::Rule;
 use crate::roots::bracketed;
-use crate::spring::stick_compression;
 
 /// Share of the load that the core within which nothing is worn bears under full sliding: the springs need a smallest radius.
 const CORE: f64 = 1e-7;
@@ -38,13 +37,9 @@ impl Schedule {
         let ratio = contact.half_space().stiffness_ratio();
         let depth = self.largest_indentation();
         let compression = match self.conditions().tangential_control {
-            TangentialControl::Displacement => self
-                .extremes()
-                .map(|drive| match &drive.path {
-                    Some(path) => stick_compression(path, &drive.friction, ratio),
-                    None => drive.friction.compression_at(ratio * drive.amplitude) + drive.lift,
-                })
-                .fold(0.0, f64::max),
+            TangentialControl::Displacement => {
+                self.extremes().map(|drive| drive.slip_compression(ratio)).fold(0.0, f64::max)
+            }
             _ => self.last_slip_compression(contact)?,
         };
         let grading = contact.half_space().grading();

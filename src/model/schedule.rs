@@ -10,6 +10,7 @@ use crate::friction::FrictionLaw;
 use crate::history::History;
 use crate::loading::{Block, Clock, Mode, TangentialControl};
 use crate::path::{Path, SampledPath};
+use crate::spring::stick_compression;
 use crate::wear::WearLaw;
 
 /// What is asked of the contact tangentially in one cycle.
@@ -54,11 +55,23 @@ pub struct Drive {
 }
 
 impl Drive {
+    /// What is asked: an amplitude of the displacement, m, or of the force, N.
+    pub fn asked(&self) -> f64 {
+        if let Demand::Force(asked) = self.demand { asked } else { self.amplitude }
+    }
+
+    /// Compression at the largest indentation below which springs slip in this cycle, m, at the amplitude given.
+    pub fn slip_compression(&self, stiffness_ratio: f64) -> f64 {
+        match &self.path {
+            Some(path) => stick_compression(path, &self.friction, stiffness_ratio),
+            None => self.friction.compression_at(stiffness_ratio * self.amplitude) + self.lift,
+        }
+    }
+
     /// By how much the contact, at an amplitude of force, N, and displacement, m, exceeds what is asked.
     pub fn excess(&self, force: f64, displacement: f64) -> f64 {
         let [by_force, by_displacement] = self.demand.factors();
-        let asked = if let Demand::Force(asked) = self.demand { asked } else { self.amplitude };
-        by_force * force + by_displacement * displacement - asked
+        by_force * force + by_displacement * displacement - self.asked()
     }
 }
 

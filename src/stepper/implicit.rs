@@ -28,10 +28,10 @@ pub struct Implicit {
 }
 
 /// Times of the stages.
-const TIMES: [f64; STAGES] = [GAMMA, 0.5 * (1.0 + GAMMA), 1.0];
-const GAMMA: f64 = 0.435_866_521_508_459;
-const STAGES: usize = 3;
-const MATRIX: [[f64; STAGES]; STAGES] = [
+pub(super) const TIMES: [f64; STAGES] = [GAMMA, 0.5 * (1.0 + GAMMA), 1.0];
+pub(super) const GAMMA: f64 = 0.435_866_521_508_459;
+pub(super) const STAGES: usize = 3;
+pub(super) const MATRIX: [[f64; STAGES]; STAGES] = [
     [GAMMA, 0.0, 0.0],
     [0.5 * (1.0 - GAMMA), GAMMA, 0.0],
     [
@@ -41,17 +41,17 @@ const MATRIX: [[f64; STAGES]; STAGES] = [
     ],
 ];
 /// Weights of order 2 on the stages at `γ` and `(1+γ)/2`: `b̂_1 = γ/(1-γ)`, `b̂_2 = (1-2γ)/(1-γ)`.
-const EMBEDDED: [f64; STAGES] = [GAMMA / (1.0 - GAMMA), (1.0 - 2.0 * GAMMA) / (1.0 - GAMMA), 0.0];
+pub(super) const EMBEDDED: [f64; STAGES] = [GAMMA / (1.0 - GAMMA), (1.0 - 2.0 * GAMMA) / (1.0 - GAMMA), 0.0];
 
 /// Newton iterations before the matrix is renewed, and renewals before the step is given up.
-const ITERATIONS: usize = 8;
-const RENEWALS: usize = 2;
+pub(super) const ITERATIONS: usize = 8;
+pub(super) const RENEWALS: usize = 2;
 
 /// Corrections, relative to `q_c` or the edge, that are round-off.
-const ROUND_OFF: f64 = 1e-14;
+pub(super) const ROUND_OFF: f64 = 1e-14;
 
 /// Slowest contraction of Newton's corrections that is waited for.
-const SLOWEST: f64 = 0.5;
+pub(super) const SLOWEST: f64 = 0.5;
 
 impl Implicit {
     /// A stepper whose stages are solved well below the tolerance of the time stepping.
