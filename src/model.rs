@@ -12,6 +12,7 @@
 
 mod cycle;
 mod derivatives;
+mod loops;
 mod motion;
 mod operators;
 mod output;
@@ -33,10 +34,11 @@ use crate::roots::bracketed;
 use crate::slip_depth::{UnwornSlip, UnwornValues};
 use crate::stick_slip::Regime;
 pub use cycle::CycleFields;
+pub use loops::FrettingLoop;
 pub use operators::OperatorStore;
 use operators::Operators;
-use reach::Reach;
 pub use output::RadialFields;
+use reach::Reach;
 pub use schedule::{Demand, Drive, Resolution, Schedule};
 
 /// Degree of the local polynomials of the transforms, of the derivative along the annulus and of output between the springs.
@@ -141,8 +143,11 @@ impl Model {
         store: &OperatorStore,
     ) -> Result<Self> {
         let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
-        let Reach { contact, slides } =
-            if uniform { Reach { contact: contact.clone(), slides: false } } else { schedule.reach(contact)? };
+        let Reach { contact, slides } = if uniform {
+            Reach { contact: contact.clone(), slides: false }
+        } else {
+            schedule.reach(contact)?
+        };
         let contact = &contact;
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
         let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {

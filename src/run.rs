@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::indenter::Indenter;
 use crate::loading;
-use crate::model::{Model, OperatorStore, Resolution, Schedule};
+use crate::model::{FrettingLoop, Model, OperatorStore, Resolution, Schedule};
 use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice};
 use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
@@ -28,8 +28,8 @@ const FIRST_SNAPSHOT: f64 = 1e-4;
 /// Dimensionless times between which snapshots are spread where the end is not known beforehand.
 const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 
-/// Steps along one fretting loop in the result file, even.
-const LOOP_POINTS: usize = 64;
+/// Steps along one fretting loop to and fro at constant indentation in the result file, even.
+const LOOP_STEPS: usize = 64;
 
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
@@ -127,7 +127,6 @@ impl Run {
             title: scene.title().map(str::to_owned),
             scene: scene.text().to_owned(),
             radius: simulation.model().radii(),
-            loop_displacement: loop_displacement(simulation.model()),
             limit: parts.limit.as_ref().map(|limit| limit_curves(simulation.model(), limit)),
             table: scene.table().cloned(),
             path: scene.path().cloned(),
@@ -298,8 +297,7 @@ fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
         return Ok(());
     }
     let amplitude = contact.amplitude();
-    let why =
-        format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more");
+    let why = format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more");
     Err(Error::Inconsistent { what: scene.loading().amplitude.key(), why })
 }
 
@@ -404,40 +402,58 @@ fn worn_profile(model: &Model, wear_depth: &[f64]) -> Vec<f64> {
     model.radii().iter().zip(wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect()
 }
 
-/// Displacements, m, along one fretting loop, denser next to the reversals.
-fn loop_displacement(model: &Model) -> Vec<f64> {
-    let amplitude = model.contact().amplitude();
-    let turn = LOOP_POINTS / 2;
-    let way_down = |i: usize| amplitude * (std::f64::consts::PI * i as f64 / turn as f64).cos();
-    // Exactly the same displacements on the way back.
-    (0..=LOOP_POINTS).map(|i| way_down(i.min(LOOP_POINTS - i))).collect()
-}
-
 /// The contact as it is now.
 fn snapshot(simulation: &Simulation) -> Snapshot {
     let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
-    let contact = model.contact();
+    let (contact, cycle) = (model.contact(), simulation.cycle());
     let radial = simulation.radial_fields().clone();
     let unworn = state.cycles == 0.0;
     let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
+    let fretting_loop = fretting_loop(simulation);
+    let tangential_force = fretting_loop.largest_force();
+    let [loop_displacement, loop_displacement_y] = fretting_loop.displacement;
+    let [loop_force, loop_force_y] = fretting_loop.force;
     Snapshot {
         cycles: state.cycles,
         tau: state.cycles * contact.tau_per_cycle(),
-        regime: contact.regime(),
+        regime: model.regime(state, cycle),
         wear_volume: if unworn { 0.0 } else { model.wear_volume(fields) },
         contact_radius: model.contact_radius(state),
-        stick_radius: contact.stick_radius().unwrap_or(0.0),
+        stick_radius: model.without_core(cycle.stick_radius),
+        permanent_stick_radius: model.without_core(state.least_stick_radius.min(cycle.stick_radius)),
         indentation: contact.indentation(),
         normal_force: model.normal_force(fields),
         dissipated_energy: state.dissipated_energy,
-        cycle_energy: simulation.cycle().dissipation,
-        tangential_force: model.tangential_force(fields, &state.compression, contact.amplitude()),
-        loop_force: model.fretting_loop(fields, &state.compression, &loop_displacement(model)),
+        cycle_energy: cycle.dissipation,
+        tangential_force,
+        loop_displacement,
+        loop_force,
+        loop_displacement_y,
+        loop_force_y,
         profile: worn_profile(model, &wear_depth),
         wear_depth,
         pressure: radial.pressure,
         slip: radial.slip,
     }
+}
+
+/// The loop of the cycle that is under way, with as many points and axes as every other of the run.
+fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
+    let (model, state) = (simulation.model(), simulation.state());
+    let schedule = model.schedule();
+    let drive = schedule.drive(state.cycles, state.cycles);
+    let mut found =
+        model.cycle_loop(&drive, simulation.cycle(), &state.compression, simulation.fields(), LOOP_STEPS);
+    let points = 1 + schedule.loop_steps(LOOP_STEPS);
+    for values in found.displacement.iter_mut().chain(&mut found.force) {
+        let end = values[0];
+        values.resize(points, end);
+    }
+    if !schedule.leaves_axis() {
+        found.displacement[1].clear();
+        found.force[1].clear();
+    }
+    found
 }
 
 /// Takes snapshots and checkpoints, and listens to signals.
@@ -497,11 +513,13 @@ impl Observer for Recorder {
     }
 }
 
-/// Estimate of the error in the worn volume, relative to the limit's, from a balance that holds for the continuous contact: under
-/// Archard's law and Coulomb's friction the energy dissipated on the springs is `μ_f/k_w` times the volume worn off the surface.
+/// Estimate of the error in the worn volume, relative to the limit's: its distance from the volume by the rates of the cycles.
+///
+/// Where worn volume and dissipated energy are in proportion, as under Archard's law and Coulomb's friction (`μ_f/k_w`), that volume is the
+/// energy's, a balance that holds for the continuous contact between springs and surface. Else it is the integral of what the surface
+/// loses in each cycle, and tells of the time stepping alone.
 fn error_estimate(simulation: &Simulation) -> Option<f64> {
     let (model, state) = (simulation.model(), simulation.state());
-    let contact = model.contact();
-    let by_energy = state.dissipated_energy * contact.wear().coefficient / contact.friction().coefficient;
-    Some((by_energy - model.wear_volume(simulation.fields())).abs() / model.limit_volume())
+    let by_depth = model.wear_volume(simulation.fields());
+    Some((state.volume_by_rate - by_depth).abs() / model.limit_volume())
 }

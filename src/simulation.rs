@@ -369,6 +369,8 @@ impl Simulation {
         {
             self.progress.busy_until = state.cycles;
         }
+        // Steppers look at their ends; the first cycle of a block is where springs come to slip.
+        state.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
         let next = self.model.schedule().drive(state.cycles, state.cycles);
         let cycle =
             if target.is_some() { self.model.cycle(&next, &state.compression, &fields) } else { cycle };

@@ -104,7 +104,7 @@ impl Model {
     }
 
     /// Slip over slip depth, `μ_f/M`, if the amplitude is that for which the mesh was made and the law is Coulomb's.
-    fn slip_per_depth(&self, drive: &Drive) -> Option<f64> {
+    pub(super) fn slip_per_depth(&self, drive: &Drive) -> Option<f64> {
         let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
         let ratio = self.contact.half_space().stiffness_ratio();
         let compression = ratio * drive.amplitude / coefficient;

@@ -33,11 +33,6 @@ pub const NODE: Label = label("node", "1", "index of the node");
 pub const LOOPS: &str = "loops";
 /// Index coordinate along a fretting loop, shape `(point,)`, in the group of the loops.
 pub const POINT: Label<'static> = label("point", "1", "index along one fretting loop");
-/// Displacement, shape `(point,)`, in the group of the loops.
-pub const LOOP_DISPLACEMENT: Label<'static> =
-    label("displacement", "m", "tangential displacement, from the amplitude to its negative and back");
-/// Force, shape `(time, point)`, in the group of the loops.
-pub const LOOP_FORCE: Label<'static> = label("tangential_force", "N", "tangential force along one cycle");
 /// Index coordinate along the springs, shape `(spring,)`, in the group of the checkpoint.
 pub const SPRING: Label = label("spring", "1", "index of the spring");
 /// What the oscillation does to the contact, a place in [`Regime::ALL`](crate::stick_slip::Regime::ALL), shape `(time,)`.
@@ -75,11 +70,8 @@ pub const COMPRESSION: Label = label("compression", "m", "compression of the spr
 pub const COMPRESSION_RATE: Label =
     label("compression_rate", "m", "compression of the springs gained per cycle in the last step");
 /// Error estimate, scalar, in the group of the checkpoint; absent where there is none.
-pub const ERROR_ESTIMATE: Label = label(
-    "error_estimate",
-    "1",
-    "estimated error of time stepping relative to the largest depth of the limit",
-);
+pub const ERROR_ESTIMATE: Label =
+    label("error_estimate", "1", "estimated error of the worn volume relative to that of the limit");
 
 /// A dataset, and the place of its values in the record it stores.
 pub(super) struct Field<Record, Value> {
@@ -97,7 +89,7 @@ const fn field<Record, Value>(
 }
 
 /// Shape `(time,)`.
-pub(super) const SERIES: [Field<Snapshot, f64>; 10] = [
+pub(super) const SERIES: [Field<Snapshot, f64>; 11] = [
     field(label("cycles", "1", "number of fretting cycles"), |it| &it.cycles, |it| &mut it.cycles),
     field(label("tau", "1", "dimensionless time"), |it| &it.tau, |it| &mut it.tau),
     field(label("wear_volume", "m3", "worn volume"), |it| &it.wear_volume, |it| &mut it.wear_volume),
@@ -107,12 +99,25 @@ pub(super) const SERIES: [Field<Snapshot, f64>; 10] = [
         |it| &mut it.contact_radius,
     ),
     field(
-        label("stick_radius", "m", "radius of the stick zone"),
+        label("stick_radius", "m", "radius of the stick zone per cycle"),
         |it| &it.stick_radius,
         |it| &mut it.stick_radius,
     ),
-    field(label("indentation", "m", "indentation depth"), |it| &it.indentation, |it| &mut it.indentation),
-    field(label("normal_force", "N", "normal force"), |it| &it.normal_force, |it| &mut it.normal_force),
+    field(
+        label("permanent_stick_radius", "m", "radius within which nothing has slipped so far"),
+        |it| &it.permanent_stick_radius,
+        |it| &mut it.permanent_stick_radius,
+    ),
+    field(
+        label("indentation", "m", "largest indentation depth"),
+        |it| &it.indentation,
+        |it| &mut it.indentation,
+    ),
+    field(
+        label("normal_force", "N", "normal force at the largest indentation"),
+        |it| &it.normal_force,
+        |it| &mut it.normal_force,
+    ),
     field(
         label("dissipated_energy", "J", "energy dissipated by friction since the start"),
         |it| &it.dissipated_energy,
@@ -124,7 +129,7 @@ pub(super) const SERIES: [Field<Snapshot, f64>; 10] = [
         |it| &mut it.cycle_energy,
     ),
     field(
-        label("tangential_force", "N", "amplitude of the tangential force"),
+        label("tangential_force", "N", "largest tangential force along one fretting loop"),
         |it| &it.tangential_force,
         |it| &mut it.tangential_force,
     ),
@@ -138,8 +143,32 @@ pub(super) const CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
     field(label("slip", "m", "slip amplitude"), |it| &it.slip, |it| &mut it.slip),
 ];
 
+/// Shape `(time, point)`, in the group of the loops; those along y only where the indenter leaves the x axis.
+pub(super) const LOOP_CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
+    field(
+        label("displacement", "m", "tangential displacement along one period, which ends where it begins"),
+        |it| &it.loop_displacement,
+        |it| &mut it.loop_displacement,
+    ),
+    field(
+        label("tangential_force", "N", "tangential force along one period"),
+        |it| &it.loop_force,
+        |it| &mut it.loop_force,
+    ),
+    field(
+        label("displacement_y", "m", "tangential displacement across the first one along one period"),
+        |it| &it.loop_displacement_y,
+        |it| &mut it.loop_displacement_y,
+    ),
+    field(
+        label("tangential_force_y", "N", "tangential force across the first one along one period"),
+        |it| &it.loop_force_y,
+        |it| &mut it.loop_force_y,
+    ),
+];
+
 /// Scalars of the checkpoint, real.
-pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 7] = [
+pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 10] = [
     field(
         label("cycles", "1", "number of fretting cycles done"),
         |it| &it.state.cycles,
@@ -149,6 +178,25 @@ pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 7] = [
         label("dissipated_energy", "J", "energy dissipated by friction since the start"),
         |it| &it.state.dissipated_energy,
         |it| &mut it.state.dissipated_energy,
+    ),
+    field(
+        label("volume_by_rate", "m3", "worn volume by the rates of the cycles"),
+        |it| &it.state.volume_by_rate,
+        |it| &mut it.state.volume_by_rate,
+    ),
+    field(
+        label("least_stick_radius", "m", "radius within which no spring has slipped so far"),
+        |it| &it.state.least_stick_radius,
+        |it| &mut it.state.least_stick_radius,
+    ),
+    field(
+        label(
+            "busy_until",
+            "1",
+            "cycles until which the worn volume per cycle was above the one at which to stop",
+        ),
+        |it| &it.progress.busy_until,
+        |it| &mut it.progress.busy_until,
     ),
     field(
         label("next_step", "1", "number of cycles to be tried in the next step"),

@@ -54,7 +54,7 @@ impl RunFile {
     pub(super) fn from_group(source: &Source, file: &Group) -> Result<Self> {
         source.check_format(file, FORMAT, FORMAT_VERSION, NOT_A_RUN)?;
         let header = source.header(file)?;
-        let snapshots = source.snapshots(file, header.radius.len(), header.loop_displacement.len())?;
+        let snapshots = source.snapshots(file, header.radius.len())?;
         let checkpoint = if file.link_exists(CHECKPOINT) { Some(source.checkpoint(file)?) } else { None };
         let reason = source.text(file, "stop_reason")?;
         let stop_reason = StopReason::from_name(&reason)
@@ -160,12 +160,7 @@ impl Source {
         };
         let table = if file.link_exists(TABLE_PROFILE.name) { Some(self.table(file)?) } else { None };
         let path = if file.link_exists(PATH_X.name) { Some(self.path(file)?) } else { None };
-        let loop_displacement = self.values(&self.loops(file)?, LOOP_DISPLACEMENT, &[None])?;
-        Ok(RunHeader { title, scene, radius, loop_displacement, limit, table, path })
-    }
-
-    fn loops(&self, file: &Group) -> Result<Group> {
-        file.group(LOOPS).map_err(|error| self.damaged("/loops", &error))
+        Ok(RunHeader { title, scene, radius, limit, table, path })
     }
 
     fn table(&self, file: &Group) -> Result<Arc<TabulatedProfile>> {
@@ -188,7 +183,7 @@ impl Source {
         path.map(Arc::new).map_err(|error| self.damaged(&name, &error))
     }
 
-    fn snapshots(&self, file: &Group, nodes: usize, points: usize) -> Result<Vec<Snapshot>> {
+    fn snapshots(&self, file: &Group, nodes: usize) -> Result<Vec<Snapshot>> {
         let mut times = None;
         let mut snapshots = Vec::new();
         for field in &SERIES {
@@ -211,14 +206,25 @@ impl Source {
                 *(field.of_mut)(snapshot) = row.to_vec();
             }
         }
-        if points == 0 {
-            return Ok(snapshots);
-        }
-        let forces: Vec<f64> = self.values(&self.loops(file)?, LOOP_FORCE, &[times, Some(points)])?;
-        for (snapshot, row) in snapshots.iter_mut().zip(forces.chunks_exact(points)) {
-            snapshot.loop_force = row.to_vec();
-        }
+        self.loops(file, &mut snapshots)?;
         Ok(snapshots)
+    }
+
+    fn loops(&self, file: &Group, snapshots: &mut [Snapshot]) -> Result<()> {
+        let group = file.group(LOOPS).map_err(|error| self.damaged("/loops", &error))?;
+        let points = self.values::<i64>(&group, POINT, &[None])?.len();
+        if points == 0 {
+            return Ok(());
+        }
+        let in_plane = LOOP_CURVES[2..].iter().any(|field| group.link_exists(field.label.name));
+        for field in &LOOP_CURVES[..if in_plane { 4 } else { 2 }] {
+            let values: Vec<f64> =
+                self.values(&group, field.label, &[Some(snapshots.len()), Some(points)])?;
+            for (snapshot, row) in snapshots.iter_mut().zip(values.chunks_exact(points)) {
+                *(field.of_mut)(snapshot) = row.to_vec();
+            }
+        }
+        Ok(())
     }
 
     fn checkpoint(&self, file: &Group) -> Result<Checkpoint> {
