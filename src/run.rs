@@ -411,8 +411,10 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
     let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
     let fretting_loop = fretting_loop(simulation);
     let tangential_force = fretting_loop.largest_force();
-    let [loop_displacement, loop_displacement_y] = fretting_loop.displacement;
-    let [loop_force, loop_force_y] = fretting_loop.force;
+    let along_y = |values: Vec<f64>| if model.schedule().leaves_axis() { values } else { vec![] };
+    let [loop_displacement, displacement_y] = fretting_loop.displacement;
+    let [loop_force, force_y] = fretting_loop.force;
+    let [loop_displacement_y, loop_force_y] = [displacement_y, force_y].map(along_y);
     Snapshot {
         cycles: state.cycles,
         tau: state.cycles * contact.tau_per_cycle(),
@@ -437,7 +439,7 @@ fn snapshot(simulation: &Simulation) -> Snapshot {
     }
 }
 
-/// The loop of the cycle that is under way, with as many points and axes as every other of the run.
+/// The loop of the cycle that is under way, with as many points as every other of the run.
 fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
     let (model, state) = (simulation.model(), simulation.state());
     let schedule = model.schedule();
@@ -448,10 +450,6 @@ fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
     for values in found.displacement.iter_mut().chain(&mut found.force) {
         let end = values[0];
         values.resize(points, end);
-    }
-    if !schedule.leaves_axis() {
-        found.displacement[1].clear();
-        found.force[1].clear();
     }
     found
 }
