@@ -99,8 +99,8 @@ impl Run {
     /// Prepares the run of a scene; computes and writes nothing yet.
     ///
     /// # Errors
-    /// [`Error::File`] if `output` exists and `overwrite` is not given, or cannot be written; those of the physics where the scene has
-    /// no partial slip or needs more memory than there is.
+    /// [`Error::File`] if `output` exists and `overwrite` is not given, or cannot be written; those of the physics where in the
+    /// scene nothing slips, or it needs more memory than there is.
     pub fn new(scene: &Scene, output: &Path, overwrite: bool) -> Result<Self> {
         let shared = Shared::with_signals()?;
         Self::begin(scene, &shared, |header| RunWriter::create(output, header, overwrite))

@@ -347,7 +347,8 @@ impl Simulation {
         let reached = cycle.volume.max(f64::MIN_POSITIVE);
         let now = self.wear_rate();
         let part = (now / wanted).ln() / (now / reached).ln();
-        (reached < OVERSHOT * wanted && part < 1.0).then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
+        (now > wanted && reached < OVERSHOT * wanted && part < 1.0)
+            .then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
     }
 
     /// Takes a state over if it is one that wear can lead to.

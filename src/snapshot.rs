@@ -145,7 +145,7 @@ pub struct Checkpoint {
     pub progress: Progress,
     /// Wall time used, s.
     pub wall_seconds: f64,
-    /// Estimate of the error, relative to the limit's worn volume.
+    /// Estimated error of the worn volume, relative to that of the limit.
     pub error_estimate: Option<f64>,
 }
 

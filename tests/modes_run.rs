@@ -254,14 +254,22 @@ fn beyond_the_amplitude_of_full_sliding_there_is_no_stick_radius_and_no_limit() 
 
 #[test]
 fn a_force_that_stick_cannot_bear_in_the_end_leads_into_full_sliding() {
-    let mode =
-        Mode { loading: "stick_ratio = 0.3\nuntil_rate = 1e-3\ntangential_control = \"force\"", ..PLAIN };
+    let mode = Mode { loading: "stick_ratio = 0.3\ntau = 1\ntangential_control = \"force\"", ..PLAIN };
     let (json, file) = run_file(&mode.scene_on(60, "snapshots = 20"));
     let regimes: Vec<Regime> = file.snapshots.iter().map(|it| it.regime).collect();
-    println!("{} {regimes:?}", json["stop_reason"]);
+    println!("{} after {} steps, {regimes:?}", json["stop_reason"], json["steps"]);
     assert_eq!(regimes[0], Regime::PartialSlip);
     assert_eq!(regimes[regimes.len() - 1], Regime::FullSliding);
     assert!(json["wear_volume_limit"].is_null());
+    // What is held is borne as long as it can be.
+    let forces: Vec<f64> = file.snapshots.iter().map(|it| it.tangential_force).collect();
+    for (force, regime) in forces.iter().zip(&regimes) {
+        let part = force / forces[0];
+        match regime {
+            Regime::FullSliding => assert!(part < 1.0, "{forces:?}"),
+            _ => assert!((part - 1.0).abs() < 1e-9, "{forces:?}"),
+        }
+    }
 }
 
 /// Stops after some steps.
@@ -300,7 +308,7 @@ fn every_law_and_mode_resumes_to_the_same_bits() {
                 Resumed::Complete(_) => panic!("{}: interrupted and complete", mode.name),
             };
         }
-        assert!(interruptions > 2, "{}: {interruptions}", mode.name);
+        assert!(interruptions >= 2, "{}: {interruptions}", mode.name);
         let (found, expected) = (without_wall_time(&parts), without_wall_time(&whole));
         let bits = |file: &RunFile| -> Vec<u64> {
             file.snapshots.iter().flat_map(numbers).map(f64::to_bits).collect()

@@ -7,6 +7,10 @@ use crate::grid::{lagrange, stencil_start};
 use crate::linear::dot;
 use crate::stick_slip::Regime;
 
+/// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
+/// innermost of them may be as strong as the core.
+const MIDDLE: f64 = 2.0;
+
 /// The fields on the fixed radii of the output, shape `(springs,)` each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RadialFields {
@@ -114,7 +118,7 @@ impl Model {
     }
 
     fn reaches_the_middle(&self, stick_radius: f64) -> bool {
-        self.slides && stick_radius <= self.stick_radius_squared.sqrt()
+        self.slides && stick_radius < MIDDLE * self.stick_radius_squared.sqrt()
     }
 
     /// The fields at [`Model::radii`], by local cubic interpolation between the springs.
