@@ -31,6 +31,9 @@ const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 /// Steps along one fretting loop to and fro at constant indentation in the result file, even.
 const LOOP_STEPS: usize = 64;
 
+/// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
+const SPRINGS_TO_SLIDE: usize = 60;
+
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
@@ -278,6 +281,7 @@ impl Parts {
         };
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
         let model = Model::under(&contact, schedule, springs, clustering, &shared.operators)?;
+        check_sliding(&model)?;
         let limit = if model.slides() { None } else { LimitingShape::from_contact(model.contact())? };
         let tolerance = numerics.tolerance.unwrap_or_else(|| tolerance_for(numerics.accuracy));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
@@ -299,6 +303,18 @@ fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
     let amplitude = contact.amplitude();
     let why = format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more");
     Err(Error::Inconsistent { what: scene.loading().amplitude.key(), why })
+}
+
+/// Refuses too few springs for a mesh that reaches nearly to the axis.
+fn check_sliding(model: &Model) -> Result<()> {
+    let springs = model.springs();
+    if !model.slides() || springs >= SPRINGS_TO_SLIDE {
+        return Ok(());
+    }
+    let why = format!(
+        "{springs} springs are too few where the whole contact slides; ask for at least {SPRINGS_TO_SLIDE}, or for a smaller amplitude"
+    );
+    Err(Error::Inconsistent { what: "numerics.springs", why })
 }
 
 /// How periods are passed through.

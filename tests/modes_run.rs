@@ -253,6 +253,16 @@ fn beyond_the_amplitude_of_full_sliding_there_is_no_stick_radius_and_no_limit() 
 }
 
 #[test]
+fn too_few_springs_for_full_sliding_are_refused_with_a_cure() {
+    let sliding = Mode { loading: "amplitude_ratio = 3\ntau = 3", ..PLAIN };
+    let folder = folder_with(&sliding.scene("snapshots = 8"));
+    let output = support::command::run(folder.path(), &["run", "scene.toml"]);
+    let message = support::command::text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("numerics.springs") && message.contains("at least 60"), "{message}");
+}
+
+#[test]
 fn a_force_that_stick_cannot_bear_in_the_end_leads_into_full_sliding() {
     let mode = Mode { loading: "stick_ratio = 0.3\ntau = 1\ntangential_control = \"force\"", ..PLAIN };
     let (json, file) = run_file(&mode.scene_on(60, "snapshots = 20"));
