@@ -24,7 +24,7 @@ pub enum Demand {
 }
 
 impl Demand {
-    /// Factors of force, N, and displacement, m, in what has to equal [`Demand::target`].
+    /// Factors of force, N, and displacement, m, in what has to equal what is asked, see [`Drive::excess`].
     pub fn factors(self) -> [f64; 2] {
         match self {
             Self::Displacement => [0.0, 1.0],
