@@ -34,7 +34,7 @@ impl Schedule {
     /// Under full sliding a core stays of a thousandth of the contact radius.
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] if nothing slips; those of [`InitialContact::at`].
+    /// [`Error::Inconsistent`](crate::Error::Inconsistent) if nothing slips; those of [`InitialContact::at`].
     pub fn reach(&self, contact: &InitialContact) -> Result<Reach> {
         let ratio = contact.half_space().stiffness_ratio();
         let depth = self.largest_indentation();
