@@ -65,7 +65,11 @@ fn parts(criterion: &mut Criterion) {
             bench.iter(|| model.evaluate(state.edge, black_box(&state.compression), &mut fields));
         });
         criterion.bench_function(&format!("explicit rates/{springs}"), |bench| {
-            bench.iter(|| model.rates(black_box(&fields)));
+            let drive = model.schedule().drive(0.0, 0.0);
+            bench.iter(|| {
+                let cycle = model.cycle(&drive, &state.compression, black_box(&fields));
+                model.rates(black_box(&fields), &cycle)
+            });
         });
         let mut stepper = Implicit::new(TOLERANCE);
         let cycles = 0.1 / contact.tau_per_cycle();

@@ -12,6 +12,7 @@
 
 mod cycle;
 mod derivatives;
+mod loops;
 mod motion;
 mod moving;
 mod operators;
@@ -34,6 +35,7 @@ use crate::roots::bracketed;
 use crate::slip_depth::{UnwornSlip, UnwornValues};
 use crate::stick_slip::Regime;
 pub use cycle::CycleFields;
+pub use loops::FrettingLoop;
 pub use moving::{MovingStick, StickEdge, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;

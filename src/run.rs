@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::indenter::Indenter;
 use crate::loading;
-use crate::model::{Model, OperatorStore, Resolution, Schedule};
+use crate::model::{FrettingLoop, Model, OperatorStore, Resolution, Schedule};
 use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice};
 use crate::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
@@ -28,8 +28,11 @@ const FIRST_SNAPSHOT: f64 = 1e-4;
 /// Dimensionless times between which snapshots are spread where the end is not known beforehand.
 const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 
-/// Steps along one fretting loop in the result file, even.
-const LOOP_POINTS: usize = 64;
+/// Steps along one fretting loop to and fro at constant indentation in the result file, even.
+const LOOP_STEPS: usize = 64;
+
+/// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
+const SPRINGS_TO_SLIDE: usize = 60;
 
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
@@ -99,8 +102,8 @@ impl Run {
     /// Prepares the run of a scene; computes and writes nothing yet.
     ///
     /// # Errors
-    /// [`Error::File`] if `output` exists and `overwrite` is not given, or cannot be written; those of the physics where the scene has
-    /// no partial slip or needs more memory than there is.
+    /// [`Error::File`] if `output` exists and `overwrite` is not given, or cannot be written; those of the physics where in the
+    /// scene nothing slips, or it needs more memory than there is.
     pub fn new(scene: &Scene, output: &Path, overwrite: bool) -> Result<Self> {
         let shared = Shared::with_signals()?;
         Self::begin(scene, &shared, |header| RunWriter::create(output, header, overwrite))
@@ -127,7 +130,6 @@ impl Run {
             title: scene.title().map(str::to_owned),
             scene: scene.text().to_owned(),
             radius: simulation.model().radii(),
-            loop_displacement: loop_displacement(simulation.model()),
             limit: parts.limit.as_ref().map(|limit| limit_curves(simulation.model(), limit)),
             table: scene.table().cloned(),
             path: scene.path().cloned(),
@@ -178,6 +180,7 @@ impl Run {
         let parts = Parts::new(&scene, shared)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
+            || checkpoint.state.stick.is_some() != parts.model.moving().is_some()
             || !checkpoint
                 .state
                 .compression
@@ -279,7 +282,10 @@ impl Parts {
         };
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
         let model = Model::under(&contact, schedule, springs, clustering, &shared.operators)?;
-        let limit = if model.slides() { None } else { LimitingShape::from_contact(model.contact())? };
+        check_sliding(&model)?;
+        let unlimited = model.slides() || scene.conditions().holds_normal_force;
+        let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
+        check_stepper(numerics.stepper, &model)?;
         let tolerance = numerics.tolerance.unwrap_or_else(|| tolerance_for(numerics.accuracy));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
@@ -303,6 +309,33 @@ fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
     let amplitude = contact.amplitude();
     let why = format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more");
     Err(Error::Inconsistent { what: scene.loading().amplitude.key(), why })
+}
+
+/// Refuses too few springs for a mesh that reaches nearly to the axis.
+fn check_sliding(model: &Model) -> Result<()> {
+    let springs = model.springs();
+    if !model.slides() || springs >= SPRINGS_TO_SLIDE {
+        return Ok(());
+    }
+    let why = format!(
+        "{springs} springs are too few where the whole contact slides; ask for at least {SPRINGS_TO_SLIDE}, or for a smaller amplitude"
+    );
+    Err(Error::Inconsistent { what: "numerics.springs", why })
+}
+
+/// Refuses explicit steps where the edge of stick moves.
+fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
+    if model.moving().is_none() || stepper == StepperChoice::Implicit {
+        return Ok(());
+    }
+    Err(Error::Inconsistent {
+        what: "numerics.stepper",
+        why: format!(
+            "{:?} does not follow an edge of stick that moves (a force that is held, a rig, friction that changes, blocks that shrink); \
+             leave it out or write \"implicit\"",
+            stepper.name()
+        ),
+    })
 }
 
 /// How periods are passed through.
@@ -406,40 +439,56 @@ fn worn_profile(model: &Model, wear_depth: &[f64]) -> Vec<f64> {
     model.radii().iter().zip(wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect()
 }
 
-/// Displacements, m, along one fretting loop, denser next to the reversals.
-fn loop_displacement(model: &Model) -> Vec<f64> {
-    let amplitude = model.contact().amplitude();
-    let turn = LOOP_POINTS / 2;
-    let way_down = |i: usize| amplitude * (std::f64::consts::PI * i as f64 / turn as f64).cos();
-    // Exactly the same displacements on the way back.
-    (0..=LOOP_POINTS).map(|i| way_down(i.min(LOOP_POINTS - i))).collect()
-}
-
 /// The contact as it is now.
 fn snapshot(simulation: &Simulation) -> Snapshot {
     let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
-    let contact = model.contact();
+    let (contact, cycle) = (model.contact(), simulation.cycle());
     let radial = simulation.radial_fields().clone();
     let unworn = state.cycles == 0.0;
     let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
+    let fretting_loop = fretting_loop(simulation);
+    let tangential_force = fretting_loop.largest_force();
+    let along_y = |values: Vec<f64>| if model.schedule().leaves_axis() { values } else { vec![] };
+    let [loop_displacement, displacement_y] = fretting_loop.displacement;
+    let [loop_force, force_y] = fretting_loop.force;
+    let [loop_displacement_y, loop_force_y] = [displacement_y, force_y].map(along_y);
     Snapshot {
         cycles: state.cycles,
         tau: state.cycles * contact.tau_per_cycle(),
-        regime: contact.regime(),
-        wear_volume: if unworn { 0.0 } else { model.wear_volume(fields) },
+        regime: model.regime(state, cycle),
+        wear_volume: if unworn { 0.0 } else { model.worn_volume(state, fields) },
         contact_radius: model.contact_radius(state),
-        stick_radius: contact.stick_radius().unwrap_or(0.0),
-        indentation: contact.indentation(),
+        stick_radius: model.without_core(cycle.stick_radius),
+        permanent_stick_radius: model.without_core(state.least_stick_radius.min(cycle.stick_radius)),
+        indentation: model.indentation(state),
         normal_force: model.normal_force(fields),
         dissipated_energy: state.dissipated_energy,
-        cycle_energy: simulation.cycle().dissipation,
-        tangential_force: model.tangential_force(fields, &state.compression, contact.amplitude()),
-        loop_force: model.fretting_loop(fields, &state.compression, &loop_displacement(model)),
+        cycle_energy: cycle.dissipation,
+        tangential_force,
+        loop_displacement,
+        loop_force,
+        loop_displacement_y,
+        loop_force_y,
         profile: worn_profile(model, &wear_depth),
         wear_depth,
         pressure: radial.pressure,
         slip: radial.slip,
     }
+}
+
+/// The loop of the cycle that is under way, with as many points as every other of the run.
+fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
+    let (model, state) = (simulation.model(), simulation.state());
+    let schedule = model.schedule();
+    let drive = model.drive_in(state, schedule.drive(state.cycles, state.cycles));
+    let mut found =
+        model.cycle_loop(&drive, simulation.cycle(), &state.compression, simulation.fields(), LOOP_STEPS);
+    let points = 1 + schedule.loop_steps(LOOP_STEPS);
+    for values in found.displacement.iter_mut().chain(&mut found.force) {
+        let end = values[0];
+        values.resize(points, end);
+    }
+    found
 }
 
 /// Takes snapshots and checkpoints, and listens to signals.
@@ -499,11 +548,16 @@ impl Observer for Recorder {
     }
 }
 
-/// Estimate of the error in the worn volume, relative to the limit's, from a balance that holds for the continuous contact: under
-/// Archard's law and Coulomb's friction the energy dissipated on the springs is `μ_f/k_w` times the volume worn off the surface.
+/// Estimate of the error in the worn volume, relative to the limit's: its distance from the volume by the rates of the cycles.
+///
+/// Where worn volume and dissipated energy are in proportion, as under Archard's law and Coulomb's friction (`μ_f/k_w`), that volume is the
+/// energy's, a balance that holds for the continuous contact between springs and surface. Else it is the integral of what the surface
+/// loses in each cycle, and tells of the time stepping alone.
 fn error_estimate(simulation: &Simulation) -> Option<f64> {
     let (model, state) = (simulation.model(), simulation.state());
-    let contact = model.contact();
-    let by_energy = state.dissipated_energy * contact.wear().coefficient / contact.friction().coefficient;
-    Some((by_energy - model.wear_volume(simulation.fields())).abs() / model.limit_volume())
+    if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
+        return None;
+    }
+    let by_depth = model.wear_volume(simulation.fields());
+    Some((state.volume_by_rate - by_depth).abs() / model.limit_volume())
 }

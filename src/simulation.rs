@@ -334,7 +334,8 @@ impl Simulation {
         let reached = cycle.volume.max(f64::MIN_POSITIVE);
         let now = self.wear_rate();
         let part = (now / wanted).ln() / (now / reached).ln();
-        (reached < OVERSHOT * wanted && part < 1.0).then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
+        (now > wanted && reached < OVERSHOT * wanted && part < 1.0)
+            .then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
     }
 
     /// Takes a state over if it is one that wear can lead to.
@@ -362,6 +363,8 @@ impl Simulation {
         {
             self.progress.busy_until = state.cycles;
         }
+        // Steppers look at their ends; the first cycle of a block is where springs come to slip.
+        state.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
         let (mut fields, mut cycle) = (fields, cycle);
         if target.is_some() {
             state = self.model.begin_block(state)?;

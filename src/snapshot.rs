@@ -40,8 +40,6 @@ pub struct RunHeader {
     pub scene: String,
     /// Radius of the nodes, m, shape `(node,)`, increasing.
     pub radius: Vec<f64>,
-    /// Displacements along one fretting loop, m, shape `(point,)`: from the amplitude to its negative and back.
-    pub loop_displacement: Vec<f64>,
     /// The limiting shape, where it has a closed form.
     pub limit: Option<LimitCurves>,
     /// The rows of a measured profile, if the indenter is one.
@@ -106,20 +104,28 @@ pub struct Snapshot {
     pub wear_volume: f64,
     /// Contact radius, m.
     pub contact_radius: f64,
-    /// Radius of the stick zone, m.
+    /// Radius within which no spring slips in the cycle that is under way, m; zero under full sliding.
     pub stick_radius: f64,
-    /// Indentation depth, m.
+    /// Radius within which no spring has slipped so far, m.
+    pub permanent_stick_radius: f64,
+    /// Largest indentation of the run, m.
     pub indentation: f64,
-    /// Normal force, N.
+    /// Normal force at that indentation, N.
     pub normal_force: f64,
     /// Energy dissipated by friction since the start, J.
     pub dissipated_energy: f64,
     /// Energy dissipated by friction in one cycle, J.
     pub cycle_energy: f64,
-    /// Amplitude of the tangential force, N.
+    /// Largest tangential force along the fretting loop, N.
     pub tangential_force: f64,
-    /// Tangential force along one fretting loop, N, shape `(point,)`.
+    /// Tangential displacement along one period, m, shape `(point,)`; the last point is the first.
+    pub loop_displacement: Vec<f64>,
+    /// Tangential force along one period, N, shape `(point,)`.
     pub loop_force: Vec<f64>,
+    /// Displacement along y, as the other; empty where the indenter stays on the x axis.
+    pub loop_displacement_y: Vec<f64>,
+    /// Force along y, N, as the displacement.
+    pub loop_force_y: Vec<f64>,
     /// Worn profile, m, shape `(node,)`.
     pub profile: Vec<f64>,
     /// Wear depth, m, shape `(node,)`.
@@ -139,7 +145,7 @@ pub struct Checkpoint {
     pub progress: Progress,
     /// Wall time used, s.
     pub wall_seconds: f64,
-    /// Estimate of the error, relative to the limit's worn volume.
+    /// Estimated error of the worn volume, relative to that of the limit.
     pub error_estimate: Option<f64>,
 }
 

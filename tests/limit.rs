@@ -323,7 +323,6 @@ fn info_tells_what_a_result_file_holds_and_whether_it_is_complete() {
         limit: Some(LimitCurves { profile: vec![1e-8, 5e-8, 1e-7], wear_depth: vec![0.0, 2e-8, 1e-8] }),
         table: None,
         path: None,
-        loop_displacement: vec![],
     };
     let snapshot = Snapshot {
         cycles: 2000.0,

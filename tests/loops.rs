@@ -2,9 +2,16 @@
 
 mod support;
 
-use fretwear::model::Model;
+use std::sync::Arc;
+
+use fretwear::conditions::Conditions;
+use fretwear::friction::FrictionLaw;
+use fretwear::grid::Clustering;
+use fretwear::loading::{Mode, RecordedPath, TangentialControl};
+use fretwear::model::{Demand, FrettingLoop, Model, OperatorStore, Resolution, Schedule, State};
+use fretwear::quadrature::Rule;
 use fretwear::stepper::Implicit;
-use support::{Case, orders};
+use support::{Case, distance, orders};
 
 /// Displacements of a loop of `2 half` equal steps.
 fn displacements(model: &Model, half: usize) -> Vec<f64> {
@@ -85,4 +92,150 @@ fn a_worn_out_contact_is_moved_by_its_stick_zone_alone() {
     assert!((force / (2.0 * u * c) - 1.0).abs() < 1e-4, "{force}");
     let energy = model.dissipation(&fields, &seen[0].state.compression);
     assert!(energy < 1e-3 * force * u, "{energy}");
+}
+
+fn under(case: &Case, conditions: &Conditions, substeps: usize) -> Model {
+    let contact = case.contact();
+    let resolution = Resolution { resolved: false, substeps: Some(substeps) };
+    let schedule = Schedule::new(&contact, conditions, resolution).unwrap();
+    Model::under(&contact, schedule, case.springs, case.clustering, &OperatorStore::default()).unwrap()
+}
+
+/// The loop of the cycle that begins in a state, with the energy of its period.
+fn loop_and_energy(model: &Model, state: &State, steps: usize) -> (FrettingLoop, f64) {
+    let fields = model.fields(state);
+    let drive = model.schedule().drive(state.cycles, state.cycles);
+    let cycle = model.cycle(&drive, &state.compression, &fields);
+    let found = model.cycle_loop(&drive, &cycle, &state.compression, &fields, steps);
+    (found, cycle.dissipation * drive.cycles_per_period)
+}
+
+/// As all the modes below are run: a force that stick can bear to the end.
+const CASE: Case = Case {
+    exponent: 2.0,
+    grading: 0.2,
+    stick_ratio: 0.9,
+    springs: 24,
+    clustering: Clustering::Cubic,
+    tau_per_cycle: 1.0,
+};
+
+fn modes() -> Vec<(&'static str, Conditions)> {
+    let case = CASE;
+    let contact = case.contact();
+    let (d, amplitude) = (contact.indentation(), contact.amplitude());
+    let plain = Conditions::plain(*contact.friction(), *contact.wear());
+    let with_friction = |friction| Conditions { friction, ..plain.clone() };
+    let with_mode = |mode| Conditions { mode, ..plain.clone() };
+    let control = |tangential_control| Conditions { tangential_control, ..plain.clone() };
+    let rows = vec![0.0, amplitude, 0.3 * amplitude, -0.4 * amplitude];
+    let across = vec![0.0, 0.1 * amplitude, 0.7 * amplitude, 0.2 * amplitude];
+    let depth = vec![0.0, 0.1 * d, 0.0, 0.05 * d];
+    let path = RecordedPath::new("four corners", rows, across, depth).unwrap();
+    vec![
+        ("plain", plain.clone()),
+        (
+            "load-dependent",
+            with_friction(FrictionLaw::LoadDependent { coefficient: 1.0, exponent: -0.3, reference: d }),
+        ),
+        (
+            "static and kinetic",
+            with_friction(FrictionLaw::StaticKinetic { static_coefficient: 1.0, kinetic_coefficient: 0.8 }),
+        ),
+        ("force", control(TangentialControl::Force)),
+        ("rig", control(TangentialControl::Rig { stiffness: 5.0 })),
+        (
+            "normal oscillation",
+            with_mode(Mode::NormalOscillation { amplitude: 0.2 * d, frequency_ratio: [3, 2], phase: 0.6 }),
+        ),
+        (
+            "orbit",
+            with_mode(Mode::Orbit { transverse_amplitude: 0.5 * amplitude, phase: 0.3, centre: [0.0; 2] }),
+        ),
+        (
+            "orbit off its centre",
+            with_mode(Mode::Orbit {
+                transverse_amplitude: 0.5 * amplitude,
+                phase: 0.0,
+                centre: [0.3 * amplitude, 0.1 * amplitude],
+            }),
+        ),
+        ("recorded path", with_mode(Mode::Recorded(Arc::new(path)))),
+    ]
+}
+
+/// The springs' work is the energy to round-off, and the drawn loop's area tends to it at second order.
+#[test]
+fn the_area_of_the_loop_of_every_mode_is_the_energy_of_its_period() {
+    let case = CASE;
+    for (name, conditions) in modes() {
+        let errors = [48, 192, 768].map(|steps| {
+            let model = under(&case, &conditions, steps);
+            let state = model.initial_state().unwrap();
+            let (found, energy) = loop_and_energy(&model, &state, steps);
+            let balance = found.work / energy - 1.0;
+            match name {
+                "static and kinetic" => {}
+                // Along a line the work of a spring is its energy; of a spring that goes round, once it repeats itself.
+                _ => assert!(balance.abs() < 1e-9, "{name}: {balance:e}"),
+            }
+            (found.area() / found.work - 1.0).abs()
+        });
+        println!("{name}: {errors:?}");
+        let worst = errors[0].max(1e-2);
+        assert!(errors[2] < worst / 50.0, "{name}: {errors:?}");
+    }
+}
+
+#[test]
+fn jumps_from_static_to_kinetic_friction_lose_what_they_are_to() {
+    // (μ_s - μ_k)² q²/(2M) at two jumps a cycle, here with μ_s = M = c_N = 1
+    let case = Case { springs: 200, ..CASE };
+    let (_, conditions) = modes().into_iter().find(|(name, _)| *name == "static and kinetic").unwrap();
+    let model = under(&case, &conditions, 64);
+    let (found, energy) = loop_and_energy(&model, &model.initial_state().unwrap(), 64);
+    let contact = model.contact();
+    let (d, profile) = (contact.indentation(), contact.equivalent_profile());
+    let (low, high) = (CASE.stick_ratio.powf(1.2), 1.0);
+    let squared = |part: f64| (d - profile.value((low + (high - low) * part).powf(1.2_f64.recip()))).powi(2);
+    let integral = (high - low) / 1.2 * Rule::legendre(40).unwrap().mean(squared);
+    let expected = 2.0 * 0.2_f64.powi(2) * integral;
+    let lost = found.work - energy;
+    assert!((lost / expected - 1.0).abs() < 1e-4, "{lost:e}, expected {expected:e}");
+}
+
+#[test]
+fn a_held_force_is_the_force_of_every_loop() {
+    let case = CASE;
+    let (_, conditions) = modes().into_iter().find(|(name, _)| *name == "force").unwrap();
+    let model = under(&case, &conditions, 64);
+    let mut state = model.initial_state().unwrap();
+    let Demand::Force(asked) = model.schedule().drive(0.0, 0.0).demand else { panic!("no force") };
+    for wear in [1.0, 0.9, 0.8] {
+        state.compression.iter_mut().for_each(|q| *q *= wear);
+        let (found, _) = loop_and_energy(&model, &state, 64);
+        assert!((found.largest_force() / asked - 1.0).abs() < 1e-12, "{wear}: {}", found.largest_force());
+    }
+}
+
+/// The two ways to the same loop: Masing's rule and the springs themselves.
+#[test]
+fn the_loop_of_a_resolved_plain_cycle_is_that_of_masing() {
+    let case = Case::new(2.0, 0.2, 0.6, 24);
+    let contact = case.contact();
+    let conditions = Conditions::plain(*contact.friction(), *contact.wear());
+    let resolution = Resolution { resolved: true, substeps: None };
+    let schedule = Schedule::new(&contact, &conditions, resolution).unwrap();
+    let resolved =
+        Model::under(&contact, schedule, case.springs, case.clustering, &OperatorStore::default()).unwrap();
+    let plain = case.model();
+    let state = plain.initial_state().unwrap();
+    let [(found, _), (expected, _)] = [&resolved, &plain].map(|model| loop_and_energy(model, &state, 64));
+    let largest = expected.largest_force();
+    assert_eq!(found.displacement, expected.displacement);
+    for axis in 0..2 {
+        let difference = distance(&found.force[axis], &expected.force[axis]) / largest;
+        assert!(difference < 1e-13, "{difference:e}");
+    }
+    assert!((found.work / expected.work - 1.0).abs() < 1e-12);
 }

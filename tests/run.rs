@@ -363,8 +363,6 @@ fn scenes_that_cannot_be_simulated_are_refused_with_the_key_the_value_and_the_cu
     let with = |amplitude: &str| scene(0.2, &format!("{amplitude}\ntau = 10"), "");
     let springs = |count: &str| usual(&format!("[numerics]\nsprings = {count}"));
     for (text, words) in [
-        (with("amplitude_ratio = 3"), ["loading.amplitude_ratio", "slide", "ask for less than"]),
-        (with("amplitude = \"5 um\""), ["loading.amplitude", "5e-6", "ask for less than"]),
         (with("amplitude = 0"), ["loading.amplitude", "stuck", "ask for more"]),
         (with("stick_ratio = 1"), ["loading.stick_ratio", "stuck", "ask for more"]),
         (springs("10000000"), ["numerics.springs", "4000000.0 GB", "ask for at most"]),

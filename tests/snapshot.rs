@@ -40,7 +40,6 @@ fn header(nodes: usize) -> RunHeader {
         title: Some("Paraboloid, μ = 0.3".into()),
         scene: "[indenter.paraboloid]\nradius = \"10 mm\"\n".into(),
         radius: (0..nodes).map(|node| 1e-3 + 1e-5 * node as f64).collect(),
-        loop_displacement: curve(POINTS, 6),
         limit: Some(LimitCurves { profile: curve(nodes, 1), wear_depth: curve(nodes, 2) }),
         table: None,
         path: Some(Arc::new(recorded_path())),
@@ -65,12 +64,16 @@ fn snapshot(nodes: usize, seed: usize) -> Snapshot {
         wear_volume: awkward(seed + 1),
         contact_radius: awkward(seed + 2),
         stick_radius: awkward(seed + 3),
+        permanent_stick_radius: awkward(seed + 9),
         indentation: awkward(seed + 4),
         normal_force: awkward(seed + 5),
         dissipated_energy: awkward(seed + 6),
         cycle_energy: awkward(seed + 7),
         tangential_force: awkward(seed + 8),
+        loop_displacement: curve(POINTS, seed + 6),
         loop_force: curve(POINTS, seed + 4),
+        loop_displacement_y: curve(POINTS, seed + 7),
+        loop_force_y: curve(POINTS, seed + 8),
         profile: curve(nodes, seed),
         wear_depth: curve(nodes, seed + 1),
         pressure: curve(nodes, seed + 2),
@@ -87,10 +90,13 @@ fn checkpoint() -> Checkpoint {
             edge: f64::from_bits(OTHER_NAN),
             edge_rate: -1e-300,
             dissipated_energy: -0.0,
+            volume_by_rate: 1e-17 / 3.0,
+            least_stick_radius: f64::INFINITY,
         },
         progress: Progress {
             next_step: 5e-324,
             first_rate: 1e-15,
+            busy_until: 0.7 / 3.0,
             steps: u64::MAX,
             rejected_steps: 1 << 53 | 1,
             rate_evaluations: 3,
@@ -116,12 +122,16 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
         wear_volume,
         contact_radius,
         stick_radius,
+        permanent_stick_radius,
         indentation,
         normal_force,
         dissipated_energy,
         cycle_energy,
         tangential_force,
+        loop_displacement,
         loop_force,
+        loop_displacement_y,
+        loop_force_y,
         profile,
         wear_depth,
         pressure,
@@ -133,6 +143,7 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
         wear_volume,
         contact_radius,
         stick_radius,
+        permanent_stick_radius,
         indentation,
         normal_force,
         dissipated_energy,
@@ -141,7 +152,8 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
     ];
     scalars
         .into_iter()
-        .chain([loop_force, profile, wear_depth, pressure, slip].into_iter().flatten())
+        .chain([loop_displacement, loop_force, loop_displacement_y, loop_force_y].into_iter().flatten())
+        .chain([profile, wear_depth, pressure, slip].into_iter().flatten())
         .map(|it| it.to_bits())
         .chain([*regime as u64])
         .collect()
@@ -294,12 +306,14 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
     let time = &["time"][..];
     let both = &["time", "node"][..];
     let node = &["node"][..];
+    let loops = &["time", "loops/point"][..];
     let expected = [
         ("cycles", time, None, "1"),
         ("tau", time, None, "1"),
         ("wear_volume", time, Some("cycles tau"), "m3"),
         ("contact_radius", time, Some("cycles tau"), "m"),
         ("stick_radius", time, Some("cycles tau"), "m"),
+        ("permanent_stick_radius", time, Some("cycles tau"), "m"),
         ("indentation", time, Some("cycles tau"), "m"),
         ("normal_force", time, Some("cycles tau"), "N"),
         ("dissipated_energy", time, Some("cycles tau"), "J"),
@@ -315,6 +329,10 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
         ("pressure", both, Some("cycles tau radius"), "Pa"),
         ("slip", both, Some("cycles tau radius"), "m"),
         ("checkpoint/compression", &["checkpoint/spring"], None, "m"),
+        ("loops/displacement", loops, Some("cycles tau"), "m"),
+        ("loops/tangential_force", loops, Some("cycles tau"), "N"),
+        ("loops/displacement_y", loops, Some("cycles tau"), "m"),
+        ("loops/tangential_force_y", loops, Some("cycles tau"), "N"),
     ];
     for (name, axes, coordinates, units) in expected {
         let dataset = file.dataset(name).expect(name);
@@ -339,7 +357,7 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
     let loops = file.group("loops").expect("the group");
     let in_groups = [group, loops].map(|it| it.datasets().expect("datasets")).concat();
     let all = [file.datasets().expect("datasets"), in_groups].concat();
-    assert_eq!(all.len(), 20 + 4 + 15 + 3, "{all:?}");
+    assert_eq!(all.len(), 21 + 4 + 18 + 5, "{all:?}");
     for dataset in all {
         for attribute in ["units", "long_name"] {
             let found = text(&dataset, attribute).unwrap_or_default();
@@ -483,7 +501,7 @@ fn edited_files_are_refused_by_the_name_of_what_is_wrong() {
         file.new_attr::<i64>().create(name)?.write_scalar(&value)
     }
     type Edit = fn(&hdf5::File) -> hdf5::Result<()>;
-    let edits: [(&str, Edit); 26] = [
+    let edits: [(&str, Edit); 28] = [
         ("format_version 2, this program reads 3; use the fretwear", |file| {
             put_integer(file, "format_version", 2)
         }),
@@ -511,6 +529,8 @@ fn edited_files_are_refused_by_the_name_of_what_is_wrong() {
         ("/regime: 3 is no regime", |file| file.dataset("regime")?.write_raw(&[3i32; 12])),
         ("/regime: -1 is no regime", |file| file.dataset("regime")?.write_raw(&[-1i32; 12])),
         ("dataset /regime is missing", |file| file.unlink("regime")),
+        ("/loops/point: has the shape []", |file| replace::<i64>(file, "loops/point", &[])),
+        ("dataset /loops/displacement_y is missing", |file| file.unlink("loops/displacement_y")),
         ("dataset /path_indentation is missing", |file| file.unlink("path_indentation")),
         ("/path_x: loading.path: all its rows are at the same x and y", |file| {
             file.dataset("path_x")?.write_raw(&[0.0; 4])?;

@@ -312,11 +312,11 @@ fn a_line_break_in_a_path_is_refused() {
 #[test]
 fn a_study_of_which_all_scenes_fail_is_not_submitted() {
     let place = Place::new(4);
-    let sliding = SCENE.replace("stick_ratio = 0.7", "amplitude = 1");
-    std::fs::write(place.path("base.toml"), sliding).unwrap();
+    let stuck = SCENE.replace("stick_ratio = 0.7", "amplitude = 0");
+    std::fs::write(place.path("base.toml"), stuck).unwrap();
     let message = place.refused(&[&SLURM[..], &["--dry-run"]].concat());
     assert!(
-        message.contains("all scenes tried fail") && message.contains("whole contact slide"),
+        message.contains("all scenes tried fail") && message.contains("leaves the whole contact stuck"),
         "{message}"
     );
     assert!(!Path::new(&place.path("out")).exists());

@@ -144,21 +144,21 @@ fn a_second_call_does_only_what_is_missing() {
 
 #[test]
 fn failed_scenes_are_rows_with_their_reason() {
-    // the last amplitude makes everything slide, which `run` does not step
+    // the last amplitude moves nothing
     let text =
-        "scene = \"base.toml\"\n[[axes]]\nkey = \"loading.amplitude\"\nvalues = [\"0.3 um\", \"1 m\"]\n";
+        "scene = \"base.toml\"\n[[axes]]\nkey = \"loading.amplitude\"\nvalues = [\"0.3 um\", \"0 m\"]\n";
     let place = Place::with_base(&BASE.replace("stick_ratio = 0.7\n", ""), text);
     let outcome = place.sweep("out", &SweepOptions::default());
     assert_eq!((outcome.done, outcome.failed), (2, 1));
     let file = place.merged("out");
     assert_eq!(texts(&file, "status"), ["done", "failed"]);
     assert!(
-        texts(&file, "error")[1].contains("makes the whole contact slide"),
+        texts(&file, "error")[1].contains("leaves the whole contact stuck"),
         "{:?}",
         texts(&file, "error")
     );
     assert!(numbers(&file, "wear_volume")[0] > 0.0 && numbers(&file, "wear_volume")[1].is_nan());
-    assert_eq!(numbers(&file, "input_loading_amplitude"), [3e-7, 1.0]);
+    assert_eq!(numbers(&file, "input_loading_amplitude"), [3e-7, 0.0]);
     assert_eq!(place.command("out").status().unwrap().code(), Some(1));
     assert_eq!(place.command("out").args(["--max-failed", "1"]).status().unwrap().code(), Some(0));
 }

@@ -74,7 +74,8 @@ impl Model {
             worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect();
         let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
         let dissipation = per_cycle * self.spring_energy(fields, &motion.dissipation);
-        let volume = match self.volume_per_energy(drive) {
+        // Where slip turns, that of neighbouring springs does not add up on the surface, while its energy does.
+        let volume = match self.volume_per_energy(drive).filter(|_| motion.components == 1) {
             Some(factor) => factor * dissipation,
             None => per_cycle * self.volume(fields.edge, &worn.depth),
         };
@@ -106,7 +107,7 @@ impl Model {
     }
 
     /// Slip over slip depth, `μ_f/M`, if the amplitude is that for which the mesh was made and the law is Coulomb's.
-    fn slip_per_depth(&self, drive: &Drive, fields: &Fields) -> Option<f64> {
+    pub(super) fn slip_per_depth(&self, drive: &Drive, fields: &Fields) -> Option<f64> {
         let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
         let ratio = self.contact.half_space().stiffness_ratio();
         let compression = ratio * drive.amplitude / coefficient;

@@ -41,9 +41,6 @@ const JUMP_STEPS: usize = 1000;
 /// Springs from the contact edge whose compression tells how it goes on beyond.
 const BEYOND: usize = 4;
 
-/// How far the contact edge can be off after such a jump, relative.
-const EDGE_OFF: f64 = 0.05;
-
 /// Change of edge, stick edge or depth, relative, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
 

@@ -5,6 +5,11 @@ use std::f64::consts::PI;
 use super::{CycleFields, Fields, Model, POINTS, State};
 use crate::grid::{lagrange, stencil_start};
 use crate::linear::dot;
+use crate::stick_slip::Regime;
+
+/// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
+/// innermost of them may be as strong as the core.
+const MIDDLE: f64 = 2.0;
 
 /// The fields on the fixed radii of the output, shape `(springs,)` each.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,6 +106,26 @@ impl Model {
             false => 2.0 * force(0.5 * (amplitude + u)) - largest,
         };
         displacements.iter().enumerate().map(along).collect()
+    }
+
+    /// What a cycle does to the contact: stick if no spring slips, full sliding if the innermost one does and no stick zone bears the load.
+    pub fn regime(&self, state: &State, cycle: &CycleFields) -> Regime {
+        if cycle.stick_radius >= self.contact_radius(state) {
+            Regime::Stick
+        } else if self.reaches_the_middle(cycle.stick_radius) {
+            Regime::FullSliding
+        } else {
+            Regime::PartialSlip
+        }
+    }
+
+    /// A stick radius of [`CycleFields`] or [`State`], m, without the core that stands for the middle of a contact that slides.
+    pub fn without_core(&self, stick_radius: f64) -> f64 {
+        if self.reaches_the_middle(stick_radius) { 0.0 } else { stick_radius }
+    }
+
+    fn reaches_the_middle(&self, stick_radius: f64) -> bool {
+        self.slides && stick_radius < MIDDLE * self.place.stick_area.sqrt()
     }
 
     /// The fields at [`Model::radii`], by local cubic interpolation between the springs.

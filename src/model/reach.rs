@@ -8,8 +8,9 @@ use crate::loading::TangentialControl;
 use crate::quadrature::Rule;
 use crate::roots::bracketed;
 
-/// Share of the load that the core within which nothing is worn bears under full sliding: the springs need a smallest radius.
-const CORE: f64 = 1e-7;
+/// Radius, over that of the contact, of the core within which nothing is worn under full sliding: the springs need a smallest radius, and
+/// 60 of them serve for 1e-3, 120 for 1e-4.
+const CORE: f64 = 1e-3;
 
 /// Nodes of the quadrature of the first cycle's force.
 const FORCE_NODES: usize = 100;
@@ -29,10 +30,10 @@ pub struct Reach {
 impl Schedule {
     /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
     ///
-    /// Under full sliding a core stays that bears 1e-7 of the load, of radius `10^(-7/(1+k)) a0`.
+    /// Under full sliding a core stays of a thousandth of the contact radius.
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] if nothing slips; those of [`InitialContact::at`].
+    /// [`Error::Inconsistent`](crate::Error::Inconsistent) if nothing slips; those of [`InitialContact::at`].
     pub fn reach(&self, contact: &InitialContact) -> Result<Reach> {
         let ratio = contact.half_space().stiffness_ratio();
         let depth = self.largest_indentation();
@@ -42,14 +43,13 @@ impl Schedule {
             }
             _ => self.last_slip_compression(contact)?,
         };
-        let grading = contact.half_space().grading();
         let profile = contact.equivalent_profile();
         let radius = if depth == contact.indentation() {
             contact.contact_radius()
         } else {
             profile.radius_at(depth)?
         };
-        let core = radius * CORE.powf((1.0 + grading).recip());
+        let core = CORE * radius;
         let largest = depth - profile.value(core);
         let slides = compression > largest;
         Ok(Reach { contact: contact.at(depth, compression.min(largest))?, slides })

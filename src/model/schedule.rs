@@ -25,7 +25,7 @@ pub enum Demand {
 }
 
 impl Demand {
-    /// Factors of force, N, and displacement, m, in what has to equal [`Demand::target`].
+    /// Factors of force, N, and displacement, m, in what has to equal what is asked, see [`Drive::excess`].
     pub fn factors(self) -> [f64; 2] {
         match self {
             Self::Displacement => [0.0, 1.0],
@@ -253,6 +253,21 @@ impl Schedule {
     /// Whether periods are passed through step by step.
     pub fn resolves(&self) -> bool {
         self.drives.iter().any(|drive| drive.path.is_some())
+    }
+
+    /// Steps of the loop of every period, for which one to and fro at constant indentation takes `plain`.
+    pub fn loop_steps(&self, plain: usize) -> usize {
+        if self.conditions.mode == Mode::Tangential {
+            return plain;
+        }
+        let paths = self.drives.iter().filter_map(|drive| drive.path.as_ref());
+        paths.map(|path| path.points.len()).max().unwrap_or(plain)
+    }
+
+    /// Whether the indenter leaves the x axis in some block.
+    pub fn leaves_axis(&self) -> bool {
+        let mut paths = self.drives.iter().filter_map(|drive| drive.path.as_ref());
+        paths.any(|path| path.points.iter().any(|point| point.tangential[1] != 0.0))
     }
 
     /// Whether the mesh of the plain contact serves: one amplitude at one indentation under Coulomb's law.

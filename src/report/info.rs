@@ -45,8 +45,12 @@ pub struct InfoReport {
     pub normal_force: Option<f64>,
     /// Contact radius, m.
     pub contact_radius: Option<f64>,
+    /// What the oscillation does to the contact: `stick`, `partial-slip` or `full-sliding`.
+    pub regime: Option<&'static str>,
     /// Stick radius, m.
     pub stick_radius: Option<f64>,
+    /// Radius within which nothing has slipped so far, m.
+    pub permanent_stick_radius: Option<f64>,
     /// Worn volume, m³.
     pub wear_volume: Option<f64>,
     /// Largest wear depth, m.
@@ -65,7 +69,7 @@ pub struct InfoReport {
     pub rate_evaluations: Option<u64>,
     /// Wall time used, s.
     pub wall_seconds: Option<f64>,
-    /// Estimate of the error, relative to the limit's worn volume.
+    /// Estimated error of the worn volume, relative to that of the limit.
     pub error_estimate: Option<f64>,
     /// The scene as TOML text.
     pub scene: String,
@@ -103,7 +107,9 @@ impl InfoReport {
             indentation: of_last(|it| it.indentation),
             normal_force: of_last(|it| it.normal_force),
             contact_radius: of_last(|it| it.contact_radius),
+            regime: last.map(|it| it.regime.name()),
             stick_radius: of_last(|it| it.stick_radius),
+            permanent_stick_radius: of_last(|it| it.permanent_stick_radius),
             wear_volume: of_last(|it| it.wear_volume),
             wear_depth_max: of_last(|it| largest(&it.wear_depth)),
             dissipated_energy: of_last(|it| it.dissipated_energy),
@@ -142,13 +148,15 @@ impl InfoReport {
             rows.row("nodes", format!("{} from {} to {}", self.nodes, length(first), length(last)));
         }
         rows.row("snapshots", self.snapshots);
-        let values: [(&str, Option<String>); 9] = [
+        let values: [(&str, Option<String>); 11] = [
             ("cycles", self.cycles.map(number)),
             ("dimensionless time τ", self.tau.map(number)),
             ("indentation", self.indentation.map(length)),
             ("normal force", self.normal_force.map(|it| Scale::FORCE.show(it))),
             ("contact radius", self.contact_radius.map(length)),
+            ("regime", self.regime.map(str::to_owned)),
             ("stick radius", self.stick_radius.map(length)),
+            ("permanent stick radius", self.permanent_stick_radius.map(length)),
             ("worn volume", self.wear_volume.map(|it| Scale::VOLUME.show(it))),
             ("largest wear depth", self.wear_depth_max.map(length)),
             ("dissipated energy", self.dissipated_energy.map(|it| Scale::ENERGY.show(it))),

@@ -6,6 +6,7 @@ use super::text::{Rows, Scale, indenter, number};
 use crate::closed_form::LimitingShape;
 use crate::indenter::Indenter;
 use crate::run::RunResult;
+use crate::stick_slip::Regime;
 
 /// The outcome of a run in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -47,6 +48,8 @@ pub struct RunReport {
     /// Energy dissipated by friction, J.
     pub dissipated_energy: f64,
     #[serde(skip)]
+    regime: Regime,
+    #[serde(skip)]
     contact_radius_limit: Option<f64>,
     #[serde(skip)]
     table: Option<String>,
@@ -75,6 +78,7 @@ impl RunReport {
             limit_distance: distance.map(|it| it.distance),
             limit_distance_relative: distance.and_then(|it| it.distance_relative),
             dissipated_energy: last.dissipated_energy,
+            regime: last.regime,
             contact_radius_limit: limit.as_ref().map(LimitingShape::contact_radius_limit),
             table: matches!(result.indenter, Indenter::Table(_)).then(|| indenter(&result.indenter)),
         }
@@ -109,6 +113,7 @@ impl RunReport {
             self.contact_radius_limit
                 .map_or(length(self.contact_radius), |it| of_limit(length(self.contact_radius), length(it))),
         );
+        rows.row("regime", self.regime.name());
         rows.row("stick radius", Scale::LENGTH.show(self.stick_radius));
         rows.row("normal force", Scale::FORCE.show(self.normal_force));
         rows.row("dissipated energy", Scale::ENERGY.show(self.dissipated_energy));

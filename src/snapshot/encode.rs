@@ -108,12 +108,18 @@ impl Run<'_> {
 
     fn put_loops(&self, file: &Group, time: &Dimension) -> Result<()> {
         let group = create_group(file, LOOPS)?;
-        let displacement = &self.header.loop_displacement;
-        let point = Dimension::create(&group, POINT, displacement.len(), false)?;
-        put_array(&group, LOOP_DISPLACEMENT, &[&point], displacement)?;
-        let forces: Vec<f64> = self.snapshots.iter().flat_map(|it| it.loop_force.iter().copied()).collect();
-        let dataset = put_array(&group, LOOP_FORCE, &[time, &point], &forces)?;
-        put_text(&dataset, "coordinates", "cycles tau displacement")
+        let points = self.snapshots.first().map_or(0, |it| it.loop_displacement.len());
+        let point = Dimension::create(&group, POINT, points, false)?;
+        for field in &LOOP_CURVES {
+            let values: Vec<f64> = self.snapshots.iter().flat_map(|it| (field.of)(it)).copied().collect();
+            let along_y = field.label.name.ends_with("_y");
+            if along_y && values.is_empty() {
+                continue;
+            }
+            let dataset = put_array(&group, field.label, &[time, &point], &values)?;
+            put_text(&dataset, "coordinates", "cycles tau")?;
+        }
+        Ok(())
     }
 
     fn put_checkpoint(&self, file: &Group) -> Result<()> {
@@ -130,6 +136,15 @@ impl Run<'_> {
         }
         if let Some(estimate) = self.checkpoint.error_estimate {
             put_array(&group, ERROR_ESTIMATE, &[], &[estimate])?;
+        }
+        let Some(stick) = &state.stick else { return Ok(()) };
+        let group = create_group(&group, STICK)?;
+        let station = Dimension::create(&group, STATION, stick.left_behind.len(), false)?;
+        put_array(&group, LEFT_BEHIND, &[&station], &stick.left_behind)?;
+        let node = Dimension::create(&group, WORN_NODE, stick.wear_depth.len(), false)?;
+        put_array(&group, STICK_WEAR_DEPTH, &[&node], &stick.wear_depth)?;
+        for field in &STICK_REALS {
+            put_array(&group, field.label, &[], &[*(field.of)(stick)])?;
         }
         Ok(())
     }

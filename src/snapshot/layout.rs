@@ -1,6 +1,7 @@
 //! Names, units and meaning of all datasets of a run file: the writer and the reader both go by these tables.
 
 use super::{Checkpoint, Snapshot};
+use crate::model::StickEdge;
 
 /// Value of the root attribute `format`.
 pub const FORMAT: &str = "fretwear-run";
@@ -33,11 +34,6 @@ pub const NODE: Label = label("node", "1", "index of the node");
 pub const LOOPS: &str = "loops";
 /// Index coordinate along a fretting loop, shape `(point,)`, in the group of the loops.
 pub const POINT: Label<'static> = label("point", "1", "index along one fretting loop");
-/// Displacement, shape `(point,)`, in the group of the loops.
-pub const LOOP_DISPLACEMENT: Label<'static> =
-    label("displacement", "m", "tangential displacement, from the amplitude to its negative and back");
-/// Force, shape `(time, point)`, in the group of the loops.
-pub const LOOP_FORCE: Label<'static> = label("tangential_force", "N", "tangential force along one cycle");
 /// Index coordinate along the springs, shape `(spring,)`, in the group of the checkpoint.
 pub const SPRING: Label = label("spring", "1", "index of the spring");
 /// What the oscillation does to the contact, a place in [`Regime::ALL`](crate::stick_slip::Regime::ALL), shape `(time,)`.
@@ -74,12 +70,19 @@ pub const COMPRESSION: Label = label("compression", "m", "compression of the spr
 /// Mean rate of the compressions in the last step, shape `(spring,)`, in the group of the checkpoint.
 pub const COMPRESSION_RATE: Label =
     label("compression_rate", "m", "compression of the springs gained per cycle in the last step");
+/// Group, in that of the checkpoint, of an edge of stick that moves; absent where it stays.
+pub const STICK: &str = "stick";
+/// Index coordinate along the radii at which slip left behind is known, shape `(station,)`.
+pub const STATION: Label = label("station", "1", "index of the radius at which slip left behind is known");
+/// Slip depth left behind, shape `(station,)`.
+pub const LEFT_BEHIND: Label = label("left_behind", "m", "slip depth left behind by the edge of stick");
+/// Index coordinate along the radii of the output, shape `(worn_node,)`; empty where the edge of stick moves inwards.
+pub const WORN_NODE: Label = label("worn_node", "1", "index of the node");
+/// Wear depth at the radii of the output, shape `(worn_node,)`.
+pub const STICK_WEAR_DEPTH: Label = label("wear_depth", "m", "wear depth at the nodes, to go on from");
 /// Error estimate, scalar, in the group of the checkpoint; absent where there is none.
-pub const ERROR_ESTIMATE: Label = label(
-    "error_estimate",
-    "1",
-    "estimated error of time stepping relative to the largest depth of the limit",
-);
+pub const ERROR_ESTIMATE: Label =
+    label("error_estimate", "1", "estimated error of the worn volume relative to that of the limit");
 
 /// A dataset, and the place of its values in the record it stores.
 pub(super) struct Field<Record, Value> {
@@ -97,7 +100,7 @@ const fn field<Record, Value>(
 }
 
 /// Shape `(time,)`.
-pub(super) const SERIES: [Field<Snapshot, f64>; 10] = [
+pub(super) const SERIES: [Field<Snapshot, f64>; 11] = [
     field(label("cycles", "1", "number of fretting cycles"), |it| &it.cycles, |it| &mut it.cycles),
     field(label("tau", "1", "dimensionless time"), |it| &it.tau, |it| &mut it.tau),
     field(label("wear_volume", "m3", "worn volume"), |it| &it.wear_volume, |it| &mut it.wear_volume),
@@ -107,12 +110,25 @@ pub(super) const SERIES: [Field<Snapshot, f64>; 10] = [
         |it| &mut it.contact_radius,
     ),
     field(
-        label("stick_radius", "m", "radius of the stick zone"),
+        label("stick_radius", "m", "radius of the stick zone per cycle"),
         |it| &it.stick_radius,
         |it| &mut it.stick_radius,
     ),
-    field(label("indentation", "m", "indentation depth"), |it| &it.indentation, |it| &mut it.indentation),
-    field(label("normal_force", "N", "normal force"), |it| &it.normal_force, |it| &mut it.normal_force),
+    field(
+        label("permanent_stick_radius", "m", "radius within which nothing has slipped so far"),
+        |it| &it.permanent_stick_radius,
+        |it| &mut it.permanent_stick_radius,
+    ),
+    field(
+        label("indentation", "m", "largest indentation depth"),
+        |it| &it.indentation,
+        |it| &mut it.indentation,
+    ),
+    field(
+        label("normal_force", "N", "normal force at the largest indentation"),
+        |it| &it.normal_force,
+        |it| &mut it.normal_force,
+    ),
     field(
         label("dissipated_energy", "J", "energy dissipated by friction since the start"),
         |it| &it.dissipated_energy,
@@ -124,7 +140,7 @@ pub(super) const SERIES: [Field<Snapshot, f64>; 10] = [
         |it| &mut it.cycle_energy,
     ),
     field(
-        label("tangential_force", "N", "amplitude of the tangential force"),
+        label("tangential_force", "N", "largest tangential force along one fretting loop"),
         |it| &it.tangential_force,
         |it| &mut it.tangential_force,
     ),
@@ -138,8 +154,32 @@ pub(super) const CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
     field(label("slip", "m", "slip amplitude"), |it| &it.slip, |it| &mut it.slip),
 ];
 
+/// Shape `(time, point)`, in the group of the loops; those along y only where the indenter leaves the x axis.
+pub(super) const LOOP_CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
+    field(
+        label("displacement", "m", "tangential displacement along one period, which ends where it begins"),
+        |it| &it.loop_displacement,
+        |it| &mut it.loop_displacement,
+    ),
+    field(
+        label("tangential_force", "N", "tangential force along one period"),
+        |it| &it.loop_force,
+        |it| &mut it.loop_force,
+    ),
+    field(
+        label("displacement_y", "m", "tangential displacement across the first one along one period"),
+        |it| &it.loop_displacement_y,
+        |it| &mut it.loop_displacement_y,
+    ),
+    field(
+        label("tangential_force_y", "N", "tangential force across the first one along one period"),
+        |it| &it.loop_force_y,
+        |it| &mut it.loop_force_y,
+    ),
+];
+
 /// Scalars of the checkpoint, real.
-pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 7] = [
+pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 10] = [
     field(
         label("cycles", "1", "number of fretting cycles done"),
         |it| &it.state.cycles,
@@ -149,6 +189,25 @@ pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 7] = [
         label("dissipated_energy", "J", "energy dissipated by friction since the start"),
         |it| &it.state.dissipated_energy,
         |it| &mut it.state.dissipated_energy,
+    ),
+    field(
+        label("volume_by_rate", "m3", "worn volume by the rates of the cycles"),
+        |it| &it.state.volume_by_rate,
+        |it| &mut it.state.volume_by_rate,
+    ),
+    field(
+        label("least_stick_radius", "m", "radius within which no spring has slipped so far"),
+        |it| &it.state.least_stick_radius,
+        |it| &mut it.state.least_stick_radius,
+    ),
+    field(
+        label(
+            "busy_until",
+            "1",
+            "cycles until which the worn volume per cycle was above the one at which to stop",
+        ),
+        |it| &it.progress.busy_until,
+        |it| &mut it.progress.busy_until,
     ),
     field(
         label("next_step", "1", "number of cycles to be tried in the next step"),
@@ -190,5 +249,26 @@ pub(super) const CHECKPOINT_COUNTS: [Field<Checkpoint, u64>; 4] = [
         label("next_output", "1", "index of the next entry of the output plan"),
         |it| &it.progress.next_output,
         |it| &mut it.progress.next_output,
+    ),
+];
+
+/// Scalars of an edge of stick that moves.
+pub(super) const STICK_REALS: [Field<StickEdge, f64>; 5] = [
+    field(label("area", "m2", "square of the stick radius"), |it| &it.area, |it| &mut it.area),
+    field(label("depth", "m", "equivalent profile at the edge of stick"), |it| &it.depth, |it| &mut it.depth),
+    field(
+        label("load", "1", "integral of x^k times compression over the stick radius, m^(2+k)"),
+        |it| &it.load,
+        |it| &mut it.load,
+    ),
+    field(
+        label("area_rate", "m2", "gain of area per cycle in the last step"),
+        |it| &it.rates[0],
+        |it| &mut it.rates[0],
+    ),
+    field(
+        label("depth_rate", "m", "gain of depth per cycle in the last step"),
+        |it| &it.rates[1],
+        |it| &mut it.rates[1],
     ),
 ];

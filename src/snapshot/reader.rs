@@ -14,6 +14,7 @@ use super::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason}
 use crate::error::{Error, Result};
 use crate::indenter::TabulatedProfile;
 use crate::loading::RecordedPath;
+use crate::model::StickEdge;
 use crate::stick_slip::Regime;
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
@@ -54,7 +55,7 @@ impl RunFile {
     pub(super) fn from_group(source: &Source, file: &Group) -> Result<Self> {
         source.check_format(file, FORMAT, FORMAT_VERSION, NOT_A_RUN)?;
         let header = source.header(file)?;
-        let snapshots = source.snapshots(file, header.radius.len(), header.loop_displacement.len())?;
+        let snapshots = source.snapshots(file, header.radius.len())?;
         let checkpoint = if file.link_exists(CHECKPOINT) { Some(source.checkpoint(file)?) } else { None };
         let reason = source.text(file, "stop_reason")?;
         let stop_reason = StopReason::from_name(&reason)
@@ -160,12 +161,7 @@ impl Source {
         };
         let table = if file.link_exists(TABLE_PROFILE.name) { Some(self.table(file)?) } else { None };
         let path = if file.link_exists(PATH_X.name) { Some(self.path(file)?) } else { None };
-        let loop_displacement = self.values(&self.loops(file)?, LOOP_DISPLACEMENT, &[None])?;
-        Ok(RunHeader { title, scene, radius, loop_displacement, limit, table, path })
-    }
-
-    fn loops(&self, file: &Group) -> Result<Group> {
-        file.group(LOOPS).map_err(|error| self.damaged("/loops", &error))
+        Ok(RunHeader { title, scene, radius, limit, table, path })
     }
 
     fn table(&self, file: &Group) -> Result<Arc<TabulatedProfile>> {
@@ -188,7 +184,7 @@ impl Source {
         path.map(Arc::new).map_err(|error| self.damaged(&name, &error))
     }
 
-    fn snapshots(&self, file: &Group, nodes: usize, points: usize) -> Result<Vec<Snapshot>> {
+    fn snapshots(&self, file: &Group, nodes: usize) -> Result<Vec<Snapshot>> {
         let mut times = None;
         let mut snapshots = Vec::new();
         for field in &SERIES {
@@ -211,14 +207,25 @@ impl Source {
                 *(field.of_mut)(snapshot) = row.to_vec();
             }
         }
-        if points == 0 {
-            return Ok(snapshots);
-        }
-        let forces: Vec<f64> = self.values(&self.loops(file)?, LOOP_FORCE, &[times, Some(points)])?;
-        for (snapshot, row) in snapshots.iter_mut().zip(forces.chunks_exact(points)) {
-            snapshot.loop_force = row.to_vec();
-        }
+        self.loops(file, &mut snapshots)?;
         Ok(snapshots)
+    }
+
+    fn loops(&self, file: &Group, snapshots: &mut [Snapshot]) -> Result<()> {
+        let group = file.group(LOOPS).map_err(|error| self.damaged("/loops", &error))?;
+        let points = self.values::<i64>(&group, POINT, &[None])?.len();
+        if points == 0 {
+            return Ok(());
+        }
+        let in_plane = LOOP_CURVES[2..].iter().any(|field| group.link_exists(field.label.name));
+        for field in &LOOP_CURVES[..if in_plane { 4 } else { 2 }] {
+            let values: Vec<f64> =
+                self.values(&group, field.label, &[Some(snapshots.len()), Some(points)])?;
+            for (snapshot, row) in snapshots.iter_mut().zip(values.chunks_exact(points)) {
+                *(field.of_mut)(snapshot) = row.to_vec();
+            }
+        }
+        Ok(())
     }
 
     fn checkpoint(&self, file: &Group) -> Result<Checkpoint> {
@@ -235,6 +242,18 @@ impl Source {
         }
         if group.link_exists(ERROR_ESTIMATE.name) {
             checkpoint.error_estimate = Some(self.scalar(&group, ERROR_ESTIMATE)?);
+        }
+        if group.link_exists(STICK) {
+            let group = group.group(STICK).map_err(|error| self.damaged("/checkpoint/stick", &error))?;
+            let mut stick = StickEdge {
+                left_behind: self.values(&group, LEFT_BEHIND, &[None])?,
+                wear_depth: self.values(&group, STICK_WEAR_DEPTH, &[None])?,
+                ..StickEdge::default()
+            };
+            for field in &STICK_REALS {
+                *(field.of_mut)(&mut stick) = self.scalar(&group, field.label)?;
+            }
+            checkpoint.state.stick = Some(stick);
         }
         Ok(checkpoint)
     }

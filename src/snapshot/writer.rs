@@ -83,13 +83,17 @@ impl RunWriter {
     /// Adds a snapshot, in memory.
     ///
     /// # Panics
-    /// If a curve does not have one value per node.
+    /// If a curve does not have one value per node, or a loop not as many points as those before.
     pub fn push(&mut self, snapshot: Snapshot) {
         for curve in [&snapshot.profile, &snapshot.wear_depth, &snapshot.pressure, &snapshot.slip] {
             assert_eq!(curve.len(), self.header.radius.len(), "values of a snapshot, nodes");
         }
-        let points = self.header.loop_displacement.len();
-        assert_eq!(snapshot.loop_force.len(), points, "forces of a snapshot, points of a loop");
+        let first = self.snapshots.first().unwrap_or(&snapshot);
+        let [along, across] = [&first.loop_displacement, &first.loop_displacement_y].map(Vec::len);
+        let lengths = [&snapshot.loop_displacement, &snapshot.loop_force].map(Vec::len);
+        let lengths_across = [&snapshot.loop_displacement_y, &snapshot.loop_force_y].map(Vec::len);
+        assert_eq!((lengths, lengths_across), ([along; 2], [across; 2]), "points of a loop");
+        assert!(across == 0 || across == along, "points of a loop along x and y");
         self.snapshots.push(snapshot);
     }
 

@@ -57,7 +57,7 @@ pub struct Judgement {
     pub contact_radius_initial: f64,
     /// Indentation `d` of the unworn contact, m.
     pub indentation_initial: f64,
-    /// Permanent stick radius `c`, m: the smallest of all snapshots.
+    /// Permanent stick radius `c`, m: that within which nothing slipped in the whole run.
     pub stick_radius: f64,
     /// Largest indentation of all snapshots, m.
     pub indentation: f64,
@@ -87,7 +87,7 @@ impl Judgement {
         let last = run.snapshots.last().ok_or_else(|| nothing("it has no snapshot"))?;
         let Course { stick_radius, indentation } = Course::of(&run.snapshots);
         if stick_radius.is_nan() || stick_radius <= 0.0 {
-            return Err(nothing("nothing sticks from its first to its last snapshot"));
+            return Err(nothing("nothing sticks throughout"));
         }
         let contact = scene.contact()?;
         let limit = limit(scene, indentation, stick_radius)?;
@@ -146,7 +146,7 @@ impl Course {
     fn of(snapshots: &[Snapshot]) -> Self {
         let indentations: Vec<f64> = snapshots.iter().map(|it| it.indentation).collect();
         Self {
-            stick_radius: snapshots.iter().map(|it| it.stick_radius).fold(f64::INFINITY, f64::min),
+            stick_radius: snapshots.iter().map(|it| it.permanent_stick_radius).fold(f64::INFINITY, f64::min),
             indentation: largest(&indentations),
         }
     }
@@ -195,8 +195,8 @@ mod tests {
         let radius: Vec<f64> = (1..200).map(|i| 0.3 + 0.006 * f64::from(i)).collect();
         let run = |error: f64| {
             let wear_depth: Vec<f64> = radius.iter().map(|r| (1.0 + error) * limit.wear_depth(*r)).collect();
-            let of = |&(stick_radius, indentation): &(f64, f64)| Snapshot {
-                stick_radius,
+            let of = |&(permanent_stick_radius, indentation): &(f64, f64)| Snapshot {
+                permanent_stick_radius,
                 indentation,
                 wear_depth: wear_depth.clone(),
                 ..Snapshot::default()

@@ -1,0 +1,460 @@
+//! Every law and mode from its scene to its file: keys, series, loops, blocks and resumes.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use fretwear::conditions::Conditions;
+use fretwear::grid::Clustering;
+use fretwear::loading::{Block, Clock};
+use fretwear::model::{Model, OperatorStore, Resolution, Schedule, State};
+use fretwear::run::{Resumed, Run};
+use fretwear::scene::Scene;
+use fretwear::simulation::{End, Flow, Observer, Outcome, Plan, Progress, Simulation};
+use fretwear::snapshot::{RunFile, Snapshot, StopReason};
+use fretwear::stepper::Implicit;
+use fretwear::stick_slip::Regime;
+use serde_json::Value;
+use support::command::object;
+use support::{Case, distance};
+
+const COULOMB: &str = "[friction.coulomb]\ncoefficient = 0.6\n";
+const ARCHARD: &str = "[wear.archard]\ncoefficient = 1e-12\n";
+
+/// Lines of `[loading]` beside the load, and tables after it.
+struct Mode {
+    name: &'static str,
+    friction: &'static str,
+    wear: &'static str,
+    loading: &'static str,
+    tables: &'static str,
+    /// Whether the closed form is the limit of its wear.
+    bounded: bool,
+}
+
+const PLAIN: Mode = Mode {
+    name: "plain",
+    friction: COULOMB,
+    wear: ARCHARD,
+    loading: "stick_ratio = 0.6\ntau = 3",
+    tables: "",
+    bounded: true,
+};
+
+const MODES: [Mode; 15] = [
+    PLAIN,
+    Mode {
+        name: "static and kinetic friction",
+        friction: "[friction.static-kinetic]\nstatic_coefficient = 0.6\nkinetic_coefficient = 0.5\n",
+        ..PLAIN
+    },
+    Mode {
+        name: "friction that depends on the load",
+        friction: "[friction.load-dependent]\ncoefficient = 0.6\nexponent = -0.2\n",
+        ..PLAIN
+    },
+    Mode { name: "energy", wear: "[wear.dissipated-energy]\ncoefficient = 2e-12\n", ..PLAIN },
+    Mode {
+        name: "power law",
+        wear: "[wear.power-law]\ncoefficient = 1e-13\npressure_exponent = 1.2\nslip_exponent = 0.9\n",
+        ..PLAIN
+    },
+    Mode {
+        name: "threshold",
+        wear: "[wear.threshold]\ncoefficient = 1e-12\npressure = \"10 MPa\"\n",
+        ..PLAIN
+    },
+    Mode {
+        name: "not local",
+        wear: "[wear.non-local]\ncoefficient = 1e-12\nlength = \"2 um\"\n",
+        bounded: false,
+        ..PLAIN
+    },
+    Mode {
+        name: "histories",
+        friction: "[friction.coulomb]\ncoefficient = 0.6\n[friction.history]\nfinal_factor = 0.9\ntau = 1\n",
+        wear: "[wear.archard]\ncoefficient = 1e-12\n[wear.history]\nfactors = [1, 0.5]\nat_tau = [0.5, 2]\n",
+        ..PLAIN
+    },
+    Mode { name: "resolved", tables: "[numerics]\ncycle = \"resolved\"\nsubsteps = 8\n", ..PLAIN },
+    Mode {
+        name: "normal oscillation",
+        tables: "[loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = \"3/2\"\nphase = \"35 deg\"\n",
+        ..PLAIN
+    },
+    Mode {
+        name: "orbit",
+        loading: "stick_ratio = 0.6\ntau = 0.3",
+        tables: "[loading.orbit]\ntransverse_ratio = 0.5\n[numerics]\nsubsteps = 24\n",
+        ..PLAIN
+    },
+    Mode {
+        name: "path",
+        loading: "tau = 0.3",
+        tables: "[loading.path]\nfile = \"path.csv\"\n[numerics]\nsubsteps = 24\n",
+        ..PLAIN
+    },
+    Mode {
+        name: "blocks",
+        loading: "stick_ratio = 0.6\ntau = 3\nrepeat = true",
+        tables: "[[loading.blocks]]\ntau = 0.7\namplitude_factor = 0.5\n[[loading.blocks]]\ntau = 0.3\n",
+        ..PLAIN
+    },
+    Mode { name: "force", loading: "stick_ratio = 0.95\ntau = 3\ntangential_control = \"force\"", ..PLAIN },
+    Mode { name: "rig", loading: "stick_ratio = 0.6\ntau = 3\nrig_stiffness = \"10 MN/m\"", ..PLAIN },
+];
+
+/// A triangle that does not turn back on itself.
+const PATH: &str = "0,0\n0.3e-6,0\n0.1e-6,0.25e-6\n0,0\n";
+
+const KEYS: [&str; 18] = [
+    "output",
+    "stop_reason",
+    "error_estimate",
+    "cycles",
+    "tau",
+    "steps",
+    "rejected_steps",
+    "rate_evaluations",
+    "wall_seconds",
+    "indentation",
+    "normal_force",
+    "contact_radius",
+    "stick_radius",
+    "wear_volume",
+    "wear_volume_limit",
+    "limit_distance",
+    "limit_distance_relative",
+    "dissipated_energy",
+];
+
+impl Mode {
+    /// The scene on few springs, with lines of `[output]`.
+    fn scene(&self, output: &str) -> String {
+        self.scene_on(24, output)
+    }
+
+    fn scene_on(&self, springs: usize, output: &str) -> String {
+        let springs = format!("springs = {springs}\n");
+        let tables = match self.tables.split_once("[numerics]\n") {
+            Some((before, after)) => format!("{before}[numerics]\n{springs}{after}"),
+            None => format!("{}[numerics]\n{springs}", self.tables),
+        };
+        format!(
+            "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = 0.2\nnormal_stiffness = 1e11\n{}{}\
+             [loading]\nindentation = \"1 um\"\n{}\n{tables}[output]\n{output}\n",
+            self.friction, self.wear, self.loading
+        )
+    }
+}
+
+fn folder_with(scene: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("scene.toml"), scene).expect("the scene");
+    fs::write(folder.path().join("path.csv"), PATH).expect("the path");
+    folder
+}
+
+fn run_file(scene: &str) -> (Value, RunFile) {
+    let folder = folder_with(scene);
+    let json = object(folder.path(), &["run", "scene.toml", "--json", "--quiet"]);
+    (json, RunFile::open(&folder.path().join("scene.h5")).expect("a run"))
+}
+
+fn numbers(snapshot: &Snapshot) -> Vec<f64> {
+    let curves = [
+        &snapshot.profile,
+        &snapshot.wear_depth,
+        &snapshot.pressure,
+        &snapshot.slip,
+        &snapshot.loop_displacement,
+        &snapshot.loop_force,
+        &snapshot.loop_displacement_y,
+        &snapshot.loop_force_y,
+    ];
+    let scalars = [
+        snapshot.cycles,
+        snapshot.tau,
+        snapshot.wear_volume,
+        snapshot.contact_radius,
+        snapshot.stick_radius,
+        snapshot.permanent_stick_radius,
+        snapshot.indentation,
+        snapshot.normal_force,
+        snapshot.dissipated_energy,
+        snapshot.cycle_energy,
+        snapshot.tangential_force,
+    ];
+    curves.into_iter().flatten().copied().chain(scalars).collect()
+}
+
+#[test]
+fn every_law_and_mode_gives_the_keys_series_and_loops_promised() {
+    for mode in &MODES {
+        let name = mode.name;
+        let (json, file) = run_file(&mode.scene("snapshots = 8"));
+        let mut keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
+        let mut expected = KEYS;
+        keys.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(keys, expected, "{name}");
+        assert!(KEYS[2..].iter().all(|key| json[key].is_number()), "{name}: {json}");
+        assert_eq!((file.stop_reason, file.complete), (StopReason::End, true), "{name}");
+        let estimate = json["error_estimate"].as_f64().unwrap();
+        println!("{name}: {} steps, estimate {estimate:.1e}", json["steps"]);
+        assert!(estimate < 0.02, "{name}: {estimate}");
+        assert_eq!(file.snapshots.len(), 9, "{name}");
+        let first = &file.snapshots[0];
+        assert!(first.wear_depth.iter().all(|depth| depth.to_bits() == 0), "{name}");
+        let in_plane = ["orbit", "path"].contains(&name);
+        for now in &file.snapshots {
+            assert!(numbers(now).iter().all(|value| value.is_finite()), "{name}: cycle {}", now.cycles);
+            assert_eq!(now.regime, Regime::PartialSlip, "{name}");
+            assert!(now.stick_radius > 0.0 && now.stick_radius < now.contact_radius, "{name}");
+            assert!(now.permanent_stick_radius <= now.stick_radius, "{name}");
+            let force = &now.loop_force;
+            assert_eq!(now.loop_displacement.len(), first.loop_displacement.len(), "{name}");
+            assert!(force.len() >= 9 && force[0] == force[force.len() - 1], "{name}: the loop is closed");
+            assert_eq!(now.loop_displacement[0], now.loop_displacement[force.len() - 1], "{name}");
+            assert_eq!(now.loop_force_y.len(), if in_plane { force.len() } else { 0 }, "{name}");
+            let largest = force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+            assert!(now.tangential_force >= largest && largest > 0.0, "{name}: {}", now.tangential_force);
+        }
+        for pair in file.snapshots.windows(2) {
+            let [before, now] = pair else { unreachable!() };
+            assert!(now.wear_volume > before.wear_volume, "{name}");
+            assert!(now.dissipated_energy > before.dissipated_energy, "{name}");
+            assert!(now.permanent_stick_radius <= before.permanent_stick_radius, "{name}");
+        }
+        if mode.bounded {
+            let part = json["wear_volume"].as_f64().unwrap() / json["wear_volume_limit"].as_f64().unwrap();
+            assert!((0.01..1.001).contains(&part), "{name}: {part}");
+        }
+    }
+}
+
+#[test]
+fn beyond_the_amplitude_of_full_sliding_there_is_no_stick_radius_and_no_limit() {
+    let sliding = Mode { loading: "amplitude_ratio = 3\ntau = 3", ..PLAIN };
+    let (json, file) = run_file(&sliding.scene_on(60, "snapshots = 8"));
+    for key in ["wear_volume_limit", "limit_distance", "limit_distance_relative"] {
+        assert!(json[key].is_null(), "{key}: {json}");
+    }
+    assert_eq!((json["stick_radius"].as_f64(), json["stop_reason"].as_str()), (Some(0.0), Some("end")));
+    assert!(file.header.limit.is_none());
+    for now in &file.snapshots {
+        assert_eq!(now.regime, Regime::FullSliding);
+        assert_eq!((now.stick_radius, now.permanent_stick_radius), (0.0, 0.0));
+        // The whole contact bears μ_f F_N once it slides.
+        let strength = 0.6 * now.normal_force;
+        assert!((now.tangential_force / strength - 1.0).abs() < 1e-3, "{now:?}");
+    }
+}
+
+#[test]
+fn too_few_springs_for_full_sliding_are_refused_with_a_cure() {
+    let sliding = Mode { loading: "amplitude_ratio = 3\ntau = 3", ..PLAIN };
+    let folder = folder_with(&sliding.scene("snapshots = 8"));
+    let output = support::command::run(folder.path(), &["run", "scene.toml"]);
+    let message = support::command::text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("numerics.springs") && message.contains("at least 60"), "{message}");
+}
+
+#[test]
+fn a_force_that_stick_cannot_bear_in_the_end_leads_into_full_sliding() {
+    let mode = Mode { loading: "stick_ratio = 0.3\ntau = 1\ntangential_control = \"force\"", ..PLAIN };
+    let (json, file) = run_file(&mode.scene_on(60, "snapshots = 20"));
+    let regimes: Vec<Regime> = file.snapshots.iter().map(|it| it.regime).collect();
+    println!("{} after {} steps, {regimes:?}", json["stop_reason"], json["steps"]);
+    assert_eq!(regimes[0], Regime::PartialSlip);
+    assert_eq!(regimes[regimes.len() - 1], Regime::FullSliding);
+    assert!(json["wear_volume_limit"].is_null());
+    // What is held is borne as long as it can be.
+    let forces: Vec<f64> = file.snapshots.iter().map(|it| it.tangential_force).collect();
+    for (force, regime) in forces.iter().zip(&regimes) {
+        let part = force / forces[0];
+        match regime {
+            Regime::FullSliding => assert!(part < 1.0, "{forces:?}"),
+            _ => assert!((part - 1.0).abs() < 1e-9, "{forces:?}"),
+        }
+    }
+}
+
+/// Stops after some steps.
+struct StopAfter(u64);
+
+impl Observer for StopAfter {
+    fn step(&mut self, _: &Simulation) -> fretwear::Result<Flow> {
+        self.0 -= 1;
+        Ok(if self.0 == 0 { Flow::Stop } else { Flow::Continue })
+    }
+}
+
+fn without_wall_time(path: &Path) -> RunFile {
+    let mut file = RunFile::open(path).expect("a run");
+    file.checkpoint.as_mut().expect("a checkpoint").wall_seconds = 0.0;
+    file
+}
+
+#[test]
+fn every_law_and_mode_resumes_to_the_same_bits() {
+    for mode in &MODES {
+        let folder = folder_with(&mode.scene("snapshots = 5"));
+        let [whole, parts] = ["whole.h5", "parts.h5"].map(|name| folder.path().join(name));
+        let scene = Scene::read(&folder.path().join("scene.toml")).expect("a scene");
+        Run::new(&scene, &whole, false).expect("a run").execute(None).expect("an end");
+        let mut run = Run::new(&scene, &parts, false).expect("a run");
+        let mut interruptions = 0;
+        loop {
+            let result = run.execute(Some(&mut StopAfter(4))).expect("an end");
+            if result.stop_reason != StopReason::Interrupted {
+                break;
+            }
+            interruptions += 1;
+            run = match Run::resume(&parts).expect("a run that goes on") {
+                Resumed::Run(run) => *run,
+                Resumed::Complete(_) => panic!("{}: interrupted and complete", mode.name),
+            };
+        }
+        assert!(interruptions >= 2, "{}: {interruptions}", mode.name);
+        let (found, expected) = (without_wall_time(&parts), without_wall_time(&whole));
+        let bits = |file: &RunFile| -> Vec<u64> {
+            file.snapshots.iter().flat_map(numbers).map(f64::to_bits).collect()
+        };
+        assert_eq!(bits(&found), bits(&expected), "{}", mode.name);
+        assert!(found == expected, "{}", mode.name);
+    }
+}
+
+#[test]
+fn a_run_until_a_rate_with_blocks_resumes_to_the_same_end() {
+    let mode = Mode {
+        loading: "stick_ratio = 0.6\nuntil_rate = 0.05\nrepeat = true",
+        tables: "[[loading.blocks]]\ncycles = 300\namplitude_factor = 0.5\n[[loading.blocks]]\ncycles = 100\n",
+        ..PLAIN
+    };
+    let folder = folder_with(&mode.scene("snapshots = 5"));
+    let [whole, parts] = ["whole.h5", "parts.h5"].map(|name| folder.path().join(name));
+    let scene = Scene::read(&folder.path().join("scene.toml")).expect("a scene");
+    let expected = Run::new(&scene, &whole, false).expect("a run").execute(None).expect("an end");
+    assert_eq!(expected.stop_reason, StopReason::Rate);
+    let mut run = Run::new(&scene, &parts, false).expect("a run");
+    while run.execute(Some(&mut StopAfter(11))).expect("an end").stop_reason == StopReason::Interrupted {
+        let Resumed::Run(next) = Run::resume(&parts).expect("a run that goes on") else { panic!("complete") };
+        run = *next;
+    }
+    assert!(without_wall_time(&parts) == without_wall_time(&whole));
+}
+
+/// Blocks of a case in cycles: durations and amplitude factors; the last one goes on.
+fn model_of(case: &Case, blocks: &[(f64, f64)]) -> Model {
+    let contact = case.contact();
+    let block = |&(duration, amplitude_factor): &(f64, f64)| Block {
+        duration,
+        amplitude_factor,
+        indentation_factor: 1.0,
+    };
+    let conditions = Conditions {
+        blocks: blocks.iter().map(block).collect(),
+        clock: Clock::Cycles,
+        ..Conditions::plain(*contact.friction(), *contact.wear())
+    };
+    let schedule = Schedule::new(&contact, &conditions, Resolution::default()).unwrap();
+    Model::under(&contact, schedule, case.springs, Clustering::Cubic, &OperatorStore::default()).unwrap()
+}
+
+/// Keeps the cycles at which steps end.
+#[derive(Default)]
+struct Ends(Vec<f64>);
+
+impl Observer for Ends {
+    fn step(&mut self, simulation: &Simulation) -> fretwear::Result<Flow> {
+        self.0.push(simulation.state().cycles);
+        Ok(Flow::Continue)
+    }
+}
+
+fn simulation(model: Model, last: f64, before: Option<(State, Progress)>) -> Simulation {
+    let plan = Plan { outputs: vec![last], end: End::Cycles(last) };
+    let stepper = Box::new(Implicit::new(1e-5));
+    match before {
+        None => Simulation::new(model, stepper, 1e-5, plan).unwrap(),
+        Some((state, progress)) => Simulation::resume(
+            model,
+            stepper,
+            1e-5,
+            plan,
+            State { cycles: 0.0, ..state },
+            Progress { next_output: 0, ..progress },
+        ),
+    }
+}
+
+#[test]
+fn blocks_begin_and_end_exactly_where_they_are_to() {
+    let case = Case::new(2.0, 0.2, 0.6, 30);
+    // Durations that no sum of steps would meet.
+    let blocks = [(0.7, 0.5), (1.0 / 3.0, 1.0), (0.9, 0.8)];
+    let ends = [blocks[0].0, blocks[0].0 + blocks[1].0, blocks[0].0 + blocks[1].0 + blocks[2].0];
+    let mut whole = simulation(model_of(&case, &blocks), ends[2], None);
+    let mut seen = Ends::default();
+    assert_eq!(whole.run(&mut [&mut seen]).unwrap(), Outcome::End);
+    for end in ends {
+        assert!(seen.0.contains(&end), "{end}: {:?}", seen.0);
+    }
+    // One after the other, each in a model of its own whose other block makes the mesh the same.
+    let mut before = None;
+    for (at, block) in blocks.iter().enumerate() {
+        let others = blocks.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, other)| *other);
+        let own: Vec<(f64, f64)> = [*block].into_iter().chain(others).collect();
+        let mut part = simulation(model_of(&case, &own), block.0, before);
+        part.run(&mut []).unwrap();
+        before = Some((part.state().clone(), *part.progress()));
+    }
+    let (state, progress) = before.unwrap();
+    let expected = whole.state();
+    let difference = distance(&state.compression, &expected.compression) / case.indentation();
+    let energy = state.dissipated_energy / expected.dissipated_energy - 1.0;
+    println!("compression {difference:.1e}, energy {energy:.1e}, {} steps", progress.steps);
+    assert_eq!(progress.steps, whole.progress().steps);
+    // The cycles count from another start, so that steps differ in their last digits.
+    assert!(difference < 1e-11 && energy.abs() < 1e-11, "{difference:e}, {energy:e}");
+    assert_eq!(state.least_stick_radius, expected.least_stick_radius);
+}
+
+#[test]
+fn snapshots_at_the_ends_of_blocks_show_the_next_one() {
+    let mode = Mode {
+        loading: "stick_ratio = 0.6\ncycles = 1000\nrepeat = true",
+        tables: "[[loading.blocks]]\ncycles = 300\namplitude_factor = 0.5\n[[loading.blocks]]\ncycles = 100\n",
+        ..PLAIN
+    };
+    let (_, file) = run_file(&mode.scene("at_cycles = [299.5, 300, 399.5, 400, 700, 800]"));
+    let cycles: Vec<f64> = file.snapshots.iter().map(|it| it.cycles).collect();
+    assert_eq!(cycles, [0.0, 299.5, 300.0, 399.5, 400.0, 700.0, 800.0, 1000.0]);
+    let amplitudes: Vec<f64> = file.snapshots.iter().map(|it| it.loop_displacement[0]).collect();
+    let full = amplitudes[2];
+    let shown: Vec<f64> = amplitudes.iter().map(|it| it / full).collect();
+    for (found, expected) in shown.iter().zip([0.5, 0.5, 1.0, 1.0, 0.5, 1.0, 0.5, 0.5]) {
+        assert!((found - expected).abs() < 1e-14, "{shown:?}");
+    }
+    // Within the block of full amplitude stick reaches only to where it does in the plain scene.
+    let sticks: Vec<f64> = file.snapshots.iter().map(|it| it.stick_radius).collect();
+    let permanent: Vec<f64> = file.snapshots.iter().map(|it| it.permanent_stick_radius).collect();
+    assert!(sticks[1] > sticks[2] && sticks[2] == sticks[3] && sticks[4] > sticks[3], "{sticks:?}");
+    assert!(permanent[1] > permanent[2] && permanent[2..].iter().all(|c| *c == sticks[2]), "{permanent:?}");
+}
+
+#[test]
+fn the_estimate_of_a_plain_run_is_that_of_its_energy() {
+    let (json, file) = run_file(&PLAIN.scene("snapshots = 3"));
+    let number = |key: &str| json[key].as_f64().unwrap();
+    let by_energy = number("dissipated_energy") * 1e-12 / 0.6;
+    let expected = (by_energy - number("wear_volume")).abs() / number("wear_volume_limit");
+    // The program forms the limit by its own quadrature.
+    assert!((number("error_estimate") / expected - 1.0).abs() < 1e-6, "{expected:e}: {json}");
+    let by_rate = file.checkpoint.unwrap().state.volume_by_rate;
+    assert!((by_rate / by_energy - 1.0).abs() < 1e-14, "{by_rate:e}, {by_energy:e}");
+}
