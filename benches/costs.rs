@@ -65,7 +65,7 @@ fn parts(criterion: &mut Criterion) {
             bench.iter(|| model.evaluate(state.edge, black_box(&state.compression), &mut fields));
         });
         criterion.bench_function(&format!("explicit rates/{springs}"), |bench| {
-            bench.iter(|| model.rates(black_box(&fields)));
+            bench.iter(|| model.rates(black_box(&fields), simulation.cycle()));
         });
         let mut stepper = Implicit::new(TOLERANCE);
         let cycles = 0.1 / contact.tau_per_cycle();

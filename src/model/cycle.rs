@@ -6,7 +6,7 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
-use super::motion::Motion;
+use super::motion::{Energies, Motion};
 use super::schedule::{Demand, Drive};
 use super::{Fields, Model};
 use crate::friction::{Coulomb, FrictionLaw};
@@ -32,6 +32,10 @@ pub struct CycleFields {
     pub slip: Vec<f64>,
     /// Energy that friction dissipates in a cycle, J.
     pub dissipation: f64,
+    /// What jumps from static to kinetic friction lose in a cycle beyond that, J.
+    pub jump_loss: f64,
+    /// Work of the tangential force in a cycle, J.
+    pub work: f64,
     /// Volume worn in a cycle, m³.
     pub volume: f64,
     /// Tangential amplitude of the contact, m.
@@ -70,18 +74,21 @@ impl Model {
         let surface = self.surface(drive, &motion, fields);
         let worn = self.worn(&drive.wear, &surface, false);
         let per_cycle = drive.cycles_per_period.recip();
-        let growth: Vec<f64> =
-            worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect();
         let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
-        let dissipation = per_cycle * self.spring_energy(fields, &motion.dissipation);
+        let energy = |part: fn(&Energies) -> f64| {
+            per_cycle * self.spring_energy(fields, motion.energies.iter().map(part))
+        };
+        let dissipation = energy(|spring| spring.dissipation);
         let volume = match self.volume_per_energy(drive) {
             Some(factor) => factor * dissipation,
             None => per_cycle * self.volume(fields.edge, &worn.depth),
         };
         CycleFields {
-            growth,
+            growth: growth(drive, &worn, fields),
             slip: slip.collect(),
             dissipation,
+            jump_loss: energy(|spring| spring.jump_loss),
+            work: energy(|spring| spring.work),
             volume,
             amplitude: motion.amplitude,
             stick_radius: self.stick_radius(&motion, fields),
@@ -97,6 +104,8 @@ impl Model {
             growth: fields.pressure.iter().map(|p| per_pressure * p).collect(),
             slip: fields.slip_depth.iter().map(|s| factor * s).collect(),
             dissipation,
+            jump_loss: 0.0,
+            work: dissipation,
             volume: self.volume_per_energy(drive)? * dissipation,
             amplitude: drive.amplitude,
             stick_radius: self.stick_radius_squared.sqrt(),
@@ -279,7 +288,9 @@ impl Model {
             product(&mut by_pressure, worn.by_pressure.as_ref(), motion.load_slope.transpose(), 1.0);
         }
         let along = Mat::from_fn(n, steps * components, |i, c| {
-            worn.by_path[(i, c / components)] * surface.direction[(i, c)]
+            let step = c / components;
+            let slips = surface.path[(i, step)] > 0.0;
+            if slips { worn.by_path[(i, step)] * surface.direction[(i, c)] } else { 0.0 }
         });
         let mut by_slip = Mat::zeros(n, inner);
         product(&mut by_slip, along.as_ref(), motion.slip_slope.transpose(), 1.0);
@@ -323,9 +334,15 @@ impl Model {
         let edge = fields.edge * (1.0 + DIFFERENCE);
         let mut moved = Fields::default();
         self.evaluate(edge, compression, &mut moved);
-        let after = self.cycle(drive, compression, &moved);
+        let after = if drive.path.is_some() {
+            // What springs do is a matter of their compressions alone.
+            let worn = self.worn(&drive.wear, &self.surface(drive, &motion, &moved), false);
+            growth(drive, &worn, &moved)
+        } else {
+            self.cycle(drive, compression, &moved).growth
+        };
         for i in 0..n {
-            matrix[(i, inner)] += factor * (after.growth[i] - cycle.growth[i]) / (edge - fields.edge);
+            matrix[(i, inner)] += factor * (after[i] - cycle.growth[i]) / (edge - fields.edge);
         }
         drop(smeared);
     }
@@ -352,9 +369,9 @@ impl Model {
     }
 
     /// Energy, J, of energies per normal stiffness of the springs, m².
-    fn spring_energy(&self, fields: &Fields, energies: &[f64]) -> f64 {
+    fn spring_energy(&self, fields: &Fields, energies: impl Iterator<Item = f64>) -> f64 {
         let densities: Vec<f64> =
-            energies.iter().zip(&fields.density_factor).map(|(e, factor)| e * factor).collect();
+            energies.zip(&fields.density_factor).map(|(e, factor)| e * factor).collect();
         self.contact.half_space().normal_stiffness()
             * fields.edge
             * dot(self.operators.abel.spring_sum(), &densities)
@@ -398,6 +415,12 @@ impl Model {
             None => (self.stick_radius_squared + fields.edge).sqrt(),
         }
     }
+}
+
+/// `W/S` at the springs.
+fn growth(drive: &Drive, worn: &Worn, fields: &Fields) -> Vec<f64> {
+    let per_cycle = drive.cycles_per_period.recip();
+    worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect()
 }
 
 /// `to = scale · left · right`.
