@@ -20,6 +20,14 @@ const DIFFERENCE: f64 = 1e-7;
 /// `α < 1` would end at an instant, in a root.
 const LEAST_PRESSURE: f64 = 1e-9;
 
+/// Depth of the gap, over the compression at the edge of stick, that debris of a law that is not local still fills. A choice: without an
+/// end, ground that has lost contact would go on wearing for as long as anything nearby is pressed on, and the gap would deepen until no
+/// contact is left. With it the run ends, with springs between no compression and that gap, by their history.
+const DEBRIS_LAYER: f64 = 0.1;
+
+/// Pressure, over the mean one of the unworn contact, from which on debris passes it on whole: without a kink at none.
+const LEAST_DEBRIS: f64 = 1e-3;
+
 /// Agreement of two amplitudes that are the same number by two ways.
 const SAME: f64 = 1e-13;
 
@@ -71,7 +79,7 @@ impl Model {
             return cycle;
         }
         let motion = self.motion(drive, compression, fields, false);
-        let surface = self.surface(drive, &motion, fields);
+        let surface = self.surface(drive, &motion, compression, fields);
         let worn = self.worn(&drive.wear, &surface, false);
         let per_cycle = drive.cycles_per_period.recip();
         let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
@@ -81,7 +89,11 @@ impl Model {
         let dissipation = energy(|spring| spring.dissipation);
         let volume = match self.volume_per_energy(drive) {
             Some(factor) => factor * dissipation,
-            None => per_cycle * self.volume(fields.edge, &worn.depth),
+            None => {
+                // Round-off about zero must not make up for what still wears elsewhere.
+                let worn: Vec<f64> = worn.depth.iter().map(|depth| depth.abs()).collect();
+                per_cycle * self.volume(fields.edge, &worn)
+            }
         };
         CycleFields {
             growth: growth(drive, &worn, fields),
@@ -145,7 +157,7 @@ impl Model {
     }
 
     /// Pressures and slip on the surface in each step of the period.
-    fn surface(&self, drive: &Drive, motion: &Motion, fields: &Fields) -> Surface {
+    fn surface(&self, drive: &Drive, motion: &Motion, compression: &[f64], fields: &Fields) -> Surface {
         let (n, inner) = (self.springs(), self.springs() - 1);
         let (steps, components) = (motion.steps(), motion.components);
         let columns = steps * components;
@@ -158,9 +170,14 @@ impl Model {
             pressure_scale,
         );
         if let WearLaw::NonLocal { length, .. } = drive.wear {
-            let mut smeared = Mat::zeros(n, pressure.ncols());
-            product(&mut smeared, self.smearing(fields, length).as_ref(), pressure.as_ref(), 1.0);
-            pressure = smeared;
+            // Debris passes pressure on, not tension, and into gaps that it can fill.
+            let least = LEAST_DEBRIS * self.contact.mean_pressure();
+            let pressed = Mat::from_fn(n, pressure.ncols(), |i, m| pressing(pressure[(i, m)], least).0);
+            product(&mut pressure, self.smearing(fields, length).as_ref(), pressed.as_ref(), 1.0);
+            for i in 0..n {
+                let (filled, _) = self.filled(drive, compression.get(i).copied());
+                (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
+            }
         }
         let plain = self.slip_per_depth(drive);
         let mut slip = Mat::zeros(n, columns);
@@ -277,7 +294,7 @@ impl Model {
             return;
         }
         let motion = self.motion(drive, compression, fields, true);
-        let surface = self.surface(drive, &motion, fields);
+        let surface = self.surface(drive, &motion, compression, fields);
         let worn = self.worn(&drive.wear, &surface, true);
         let (steps, components) = (motion.steps(), motion.components);
         let mut by_pressure = Mat::zeros(n, inner);
@@ -295,18 +312,11 @@ impl Model {
         let mut by_slip = Mat::zeros(n, inner);
         product(&mut by_slip, along.as_ref(), motion.slip_slope.transpose(), 1.0);
         let mut smeared = Mat::zeros(0, 0);
-        let pressure = match drive.wear {
-            WearLaw::NonLocal { length, .. } => {
-                smeared = Mat::zeros(n, inner);
-                product(
-                    &mut smeared,
-                    self.smearing(fields, length).as_ref(),
-                    pressure.subcols(0, inner),
-                    1.0,
-                );
-                &smeared
-            }
-            _ => pressure,
+        let pressure = if let WearLaw::NonLocal { length, .. } = drive.wear {
+            smeared = self.smeared_pressure(drive, &motion, compression, fields, length);
+            &smeared
+        } else {
+            pressure
         };
         let per_cycle = factor / drive.cycles_per_period;
         let scale = fields.edge.powf(self.mu());
@@ -318,6 +328,14 @@ impl Model {
                     by_pressure[(i, j)] * pressure_scale * pressure[(i, j)] + by_slip[(i, j)] * carried;
                 matrix[(i, j)] +=
                     (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
+            }
+        }
+        if let WearLaw::NonLocal { .. } = drive.wear {
+            for j in 0..inner {
+                let (filled, slope) = self.filled(drive, Some(compression[j]));
+                if filled > 0.0 {
+                    matrix[(j, j)] += factor * cycle.growth[j] * slope / filled;
+                }
             }
         }
         if let Some(by_amplitude) = &motion.amplitude_slope {
@@ -336,7 +354,7 @@ impl Model {
         self.evaluate(edge, compression, &mut moved);
         let after = if drive.path.is_some() {
             // What springs do is a matter of their compressions alone.
-            let worn = self.worn(&drive.wear, &self.surface(drive, &motion, &moved), false);
+            let worn = self.worn(&drive.wear, &self.surface(drive, &motion, compression, &moved), false);
             growth(drive, &worn, &moved)
         } else {
             self.cycle(drive, compression, &moved).growth
@@ -375,6 +393,46 @@ impl Model {
         self.contact.half_space().normal_stiffness()
             * fields.edge
             * dot(self.operators.abel.spring_sum(), &densities)
+    }
+
+    /// How far debris fills the gap under a spring of some compression at the largest indentation, and the derivative.
+    ///
+    /// ```text
+    /// 1 in contact,    (1 - (q/h)²)² for -h < q < 0,    0 beyond
+    /// ```
+    fn filled(&self, drive: &Drive, compression: Option<f64>) -> (f64, f64) {
+        let Some(compression) = compression else { return (1.0, 0.0) };
+        let layer = DEBRIS_LAYER * self.contact.slip_compression();
+        let part = ((compression - drive.lift) / layer).clamp(-1.0, 0.0);
+        let left = 1.0 - part * part;
+        (left * left, -4.0 * left * part / layer)
+    }
+
+    /// How the pressure that debris passes on follows the compressions, over the factor of Eq. (21).
+    fn smeared_pressure(
+        &self,
+        drive: &Drive,
+        motion: &Motion,
+        compression: &[f64],
+        fields: &Fields,
+        length: f64,
+    ) -> Mat<f64> {
+        let (n, inner) = (self.springs(), self.springs() - 1);
+        let pressure = self.operators.abel.pressure().subcols(0, inner);
+        let steps = motion.load.ncols();
+        let mut pressed = Mat::zeros(n, steps);
+        product(&mut pressed, pressure, motion.load.as_ref(), self.pressure_scale(fields));
+        let least = LEAST_DEBRIS * self.contact.mean_pressure();
+        let mean = |i: usize| pressed.row(i).iter().sum::<f64>() / steps as f64;
+        let slopes: Vec<f64> = (0..n).map(|i| pressing(mean(i), least).1).collect();
+        let touching = Mat::from_fn(n, inner, |i, j| slopes[i] * pressure[(i, j)]);
+        let mut smeared = Mat::zeros(n, inner);
+        product(&mut smeared, self.smearing(fields, length).as_ref(), touching.as_ref(), 1.0);
+        for i in 0..n {
+            let (filled, _) = self.filled(drive, compression.get(i).copied());
+            (0..inner).for_each(|j| smeared[(i, j)] *= filled);
+        }
+        smeared
     }
 
     /// Averages over a Gaussian weight along the radius, within the annulus: rows sum to one.
@@ -437,6 +495,17 @@ fn normalise(vectors: &mut Mat<f64>, components: usize) {
                 vectors[(i, c)] = if norm > 0.0 { vectors[(i, c)] / norm } else { 0.0 };
             }
         }
+    }
+}
+
+/// Pressure that debris passes on, and its slope: none of tension, and from `least` on all but half of that.
+fn pressing(p: f64, least: f64) -> (f64, f64) {
+    if p <= 0.0 {
+        (0.0, 0.0)
+    } else if p < least {
+        (0.5 * p * p / least, p / least)
+    } else {
+        (p - 0.5 * least, 1.0)
     }
 }
 
