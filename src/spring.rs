@@ -220,7 +220,7 @@ pub fn steady_cycle(
         out.periods += 1;
         // Where the path is a smooth map of the deflection onto the one a period later, Newton's method finds what repeats itself; from
         // any other deflection the spring comes to rest at the same.
-        let waits = out.periods < PLAIN_PERIODS || out.periods % 2 != 0;
+        let waits = out.periods < PLAIN_PERIODS || !out.periods.is_multiple_of(2);
         if waits || static_factor != 1.0 || change > 2.0 * last_change {
             last_change = change;
             continue;

@@ -435,7 +435,12 @@ impl Model {
         smeared
     }
 
-    /// Averages over a Gaussian weight along the radius, within the annulus: rows sum to one.
+    /// Averages over a Gaussian weight along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well
+    /// inside and to nothing there: else ground would wear where no pressure is at all.
+    ///
+    /// ```text
+    /// sum of row r = 1 - exp(-(a - r)/length)
+    /// ```
     fn smearing(&self, fields: &Fields, length: f64) -> Mat<f64> {
         let radii: Vec<f64> = self.spring_radii(fields);
         let n = radii.len();
@@ -451,8 +456,9 @@ impl Model {
         });
         for i in 0..n {
             let sum: f64 = weights.row(i).iter().sum();
+            let kept = -(-(radii[n - 1] - radii[i]) / length).exp_m1();
             for j in 0..n {
-                weights[(i, j)] /= sum;
+                weights[(i, j)] *= kept / sum;
             }
         }
         weights

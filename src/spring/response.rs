@@ -22,7 +22,7 @@ const MOST_NUMBERS: usize = 1 << 23;
 /// ```
 ///
 /// and linear between: slip begins with a root on a circle, with a kink on an ellipse, and without a limit the spring turns fast. They are
-/// second order in the cells; on 1024 the path of slip is good to `1e-5` of that of a spring without limit.
+/// second order in the cells but at kinks; on 1024 the path of slip is good to `3e-5` of that of a spring without limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
     /// `l*`, m.
