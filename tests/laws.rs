@@ -76,7 +76,7 @@ fn what_leaves_the_assumptions_ends_elsewhere() {
     let d = contact.indentation();
     let mut all: Vec<(String, Conditions, End)> = laws::other_wear_laws(&contact)
         .into_iter()
-        .map(|(name, wear)| (name.to_string(), Conditions { wear, ..plain.clone() }, End::Rate(1e-6)))
+        .map(|(name, wear)| (name.to_string(), Conditions { wear, ..plain.clone() }, End::Rate(1e-4)))
         .collect();
     let fading = History::Exponential { last: 0.0, time: 3.0 };
     all.push((
@@ -120,8 +120,9 @@ fn a_law_that_is_not_local_ends_at_a_shape_of_its_own_whatever_the_springs() {
         let case = Case::new(2.0, 0.0, 0.7, springs);
         let contact = case.contact();
         let wear = laws::other_wear_laws(&contact)[1].1;
-        laws::end(&case, &Conditions { wear, ..laws::plain(&contact) }, End::Rate(1e-6))
+        laws::end(&case, &Conditions { wear, ..laws::plain(&contact) }, End::Rate(1e-4))
     });
+    // Measured: 1.256, 1.255, 1.253, 1.253 times the volume of the limit. Below a rate of 1e-4 some meshes end in steps that are too small.
     println!("{endings:?}");
     let volumes = endings.each_ref().map(|ending| ending.volume);
     assert!(volumes.iter().all(|volume| volume - 1.0 > 0.02), "{endings:?}");

@@ -362,7 +362,6 @@ impl Model {
         for i in 0..n {
             matrix[(i, inner)] += factor * (after[i] - cycle.growth[i]) / (edge - fields.edge);
         }
-        drop(smeared);
     }
 
     /// `c_N/π Z^(-μ)`, the factor of Eq. (21).
