@@ -311,7 +311,7 @@ impl Model {
         });
         let mut by_slip = Mat::zeros(n, inner);
         product(&mut by_slip, along.as_ref(), motion.slip_slope.transpose(), 1.0);
-        let mut smeared = Mat::zeros(0, 0);
+        let smeared;
         let pressure = if let WearLaw::NonLocal { length, .. } = drive.wear {
             smeared = self.smeared_pressure(drive, &motion, compression, fields, length);
             &smeared
