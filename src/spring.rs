@@ -150,6 +150,19 @@ pub fn steady_cycle(
     shakedown: &Shakedown,
     out: &mut SpringCycle,
 ) {
+    periodic(path, law, stiffness_ratio, compression, shakedown, false, out);
+}
+
+/// [`steady_cycle`]; by Newton's method for a spring that is known to slip for ever (`slips`), for one on its way to rest must take that way.
+fn periodic(
+    path: &Path,
+    law: &FrictionLaw,
+    stiffness_ratio: f64,
+    compression: f64,
+    shakedown: &Shakedown,
+    slips: bool,
+    out: &mut SpringCycle,
+) {
     let mut reach = 0.0_f64;
     let mut straight = true;
     let mut last_lift = f64::NAN;
@@ -221,7 +234,7 @@ pub fn steady_cycle(
         // Where the path is a smooth map of the deflection onto the one a period later, Newton's method finds what repeats itself; from
         // any other deflection the spring comes to rest at the same.
         let waits = out.periods < PLAIN_PERIODS || !out.periods.is_multiple_of(2);
-        if waits || static_factor != 1.0 || change > 2.0 * last_change {
+        if !slips || waits || static_factor != 1.0 || change > 2.0 * last_change {
             last_change = change;
             continue;
         }

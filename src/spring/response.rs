@@ -1,7 +1,7 @@
 //! The periodic motion of all springs on a path at constant indentation, once for a run.
 
 use super::enclosing::{Circle, smallest_enclosing};
-use super::{Shakedown, SpringCycle, steady_cycle};
+use super::{Shakedown, SpringCycle, periodic};
 use crate::friction::{Coulomb, FrictionLaw};
 use crate::path::Path;
 
@@ -14,7 +14,7 @@ const MOST_NUMBERS: usize = 1 << 23;
 
 /// What springs slip in each substep of a path at constant indentation, as a function of the limit `l` of their deflection alone.
 ///
-/// Whatever the law of friction, how it changes with time and how far the spring is compressed, the limit is all that [`steady_cycle`] knows
+/// Whatever the law of friction, how it changes with time and how far the spring is compressed, the limit is all that [`steady_cycle`](super::steady_cycle) knows
 /// of it while static and kinetic strength are the same. With `l*` at which a spring sticks, the functions are tabulated over
 ///
 /// ```text
@@ -59,7 +59,7 @@ impl Response {
         let mut values = Vec::with_capacity((cells + 1) * width);
         for node in 0..cells {
             let limit = largest * place(node as f64 / cells as f64);
-            steady_cycle(&level, &law, 1.0, limit, &Shakedown::default(), &mut cycle);
+            periodic(&level, &law, 1.0, limit, &Shakedown::default(), true, &mut cycle);
             values.extend(cycle.slip.iter().flatten());
             values.extend([cycle.dissipation, cycle.work]);
         }
