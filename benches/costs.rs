@@ -6,12 +6,13 @@ use std::time::{Duration, Instant};
 use criterion::{Criterion, criterion_group, criterion_main};
 use fretwear::abel::AbelOperators;
 use fretwear::closed_form::{HypergeometricLimit, LimitingShape};
+use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
 use fretwear::friction::{Coulomb, FrictionLaw};
 use fretwear::grid::{Clustering, slip_annulus};
 use fretwear::half_space::Poisson;
 use fretwear::loading::Mode;
-use fretwear::model::{Fields, Model};
+use fretwear::model::{Fields, Model, OperatorStore, Resolution, Schedule};
 use fretwear::path::SampledPath;
 use fretwear::run::Run;
 use fretwear::scene::Scene;
@@ -65,11 +66,7 @@ fn parts(criterion: &mut Criterion) {
             bench.iter(|| model.evaluate(state.edge, black_box(&state.compression), &mut fields));
         });
         criterion.bench_function(&format!("explicit rates/{springs}"), |bench| {
-            let drive = model.schedule().drive(0.0, 0.0);
-            bench.iter(|| {
-                let cycle = model.cycle(&drive, &state.compression, black_box(&fields));
-                model.rates(black_box(&fields), &cycle)
-            });
+            bench.iter(|| model.rates(black_box(&fields), simulation.cycle()));
         });
         let mut stepper = Implicit::new(TOLERANCE);
         let cycles = 0.1 / contact.tau_per_cycle();
@@ -150,6 +147,34 @@ fn springs(criterion: &mut Criterion) {
     }
 }
 
+/// A cycle in closed form and passed step by step, along a line and on an ellipse, over springs and substeps.
+fn resolved_cycles(criterion: &mut Criterion) {
+    let contact = contact();
+    let plain = Conditions::plain(*contact.friction(), *contact.wear());
+    let transverse_amplitude = 0.6 * contact.amplitude();
+    let orbit = Mode::Orbit { transverse_amplitude, phase: 0.0, centre: [0.0; 2] };
+    for springs in [30, 60, 120] {
+        let mut measure = |name: &str, mode: &Mode, substeps: Option<usize>| {
+            let conditions = Conditions { mode: mode.clone(), ..plain.clone() };
+            let resolution = Resolution { resolved: substeps.is_some(), substeps };
+            let schedule = Schedule::new(&contact, &conditions, resolution).expect("a schedule");
+            let store = OperatorStore::default();
+            let model =
+                Model::under(&contact, schedule, springs, Clustering::Cubic, &store).expect("it slips");
+            let state = model.initial_state().expect("an edge is found");
+            let (fields, drive) = (model.fields(&state), model.schedule().drive(0.0, 0.0));
+            criterion.bench_function(&format!("cycle: {name}/{springs} springs"), |bench| {
+                bench.iter(|| model.cycle(&drive, black_box(&state.compression), &fields));
+            });
+        };
+        measure("closed form", &Mode::Tangential, None);
+        for substeps in [2, 16, 96] {
+            measure(&format!("line, {substeps} substeps"), &Mode::Tangential, Some(substeps));
+            measure(&format!("ellipse, {substeps} substeps"), &orbit, Some(substeps));
+        }
+    }
+}
+
 /// Maps in closed form: one thread and all threads in the same run.
 fn maps(criterion: &mut Criterion) {
     let medium = Medium::new(2.0, Poisson::Similar).expect("a paraboloid");
@@ -179,6 +204,6 @@ fn settings() -> Criterion {
 criterion_group! {
     name = costs;
     config = settings();
-    targets = closed_form, springs, maps, parts, whole_scene
+    targets = closed_form, springs, resolved_cycles, maps, parts, whole_scene
 }
 criterion_main!(costs);

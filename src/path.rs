@@ -104,6 +104,50 @@ impl Path {
         self.points.iter().zip(next).map(|(a, b)| step(a.tangential, b.tangential)).sum()
     }
 
+    /// Whether it has no component along y.
+    pub fn is_straight(&self) -> bool {
+        self.points.iter().all(|point| point.tangential[1] == 0.0)
+    }
+
+    /// Whether the indentation is the same at every point.
+    pub fn is_level(&self) -> bool {
+        self.points.iter().all(|point| point.lift == self.points[0].lift)
+    }
+
+    /// What of the period goes one way, by substep: springs slip one way only between reversals of a level path along a line, so those
+    /// substeps are one; every other substep is by itself. Counted from 0 in the order in which they begin.
+    ///
+    /// ```
+    /// use fretwear::loading::Mode;
+    /// use fretwear::path::SampledPath;
+    ///
+    /// let path = SampledPath::new(&Mode::Tangential, 3.0, 1.0, 5).path;
+    /// assert_eq!(path.ways(), [0, 0, 0, 1, 1]);
+    /// ```
+    pub fn ways(&self) -> Vec<usize> {
+        let count = self.points.len();
+        if !(self.is_straight() && self.is_level()) {
+            return (0..count).collect();
+        }
+        let moved = |m: usize| self.points[(m + 1) % count].tangential[0] - self.points[m].tangential[0];
+        let mut ways = vec![0; count];
+        let mut last = 0.0;
+        for m in 0..count {
+            let turned = last * moved(m) < 0.0;
+            ways[m] = if m == 0 { 0 } else { ways[m - 1] + usize::from(turned) };
+            if moved(m) != 0.0 {
+                last = moved(m);
+            }
+        }
+        // A path that begins between its reversals ends the way it began.
+        let first = (0..count).map(moved).find(|moved| *moved != 0.0).unwrap_or_default();
+        let whole = ways[count - 1];
+        if whole > 1 && last * first > 0.0 {
+            ways.iter_mut().filter(|way| **way == whole).for_each(|way| *way = 0);
+        }
+        ways
+    }
+
     /// Largest lift, m: springs of smaller compression at the largest indentation lift off in each period.
     pub fn largest_lift(&self) -> f64 {
         self.points.iter().fold(0.0, |largest, point| largest.max(point.lift))

@@ -258,7 +258,7 @@ impl Simulation {
                 let spent = self.wear_rate() <= fraction * self.progress.first_rate
                     && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
                 let limit = WORN_OUT * self.model.contact().slip_compression();
-                let worn_out = self.state.compression.iter().all(|q| *q <= limit);
+                let worn_out = self.state.compression.iter().all(|q| q.abs() <= limit);
                 spent.then_some(Outcome::Rate).or(worn_out.then_some(Outcome::WornOut))
             }
         }

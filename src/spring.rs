@@ -15,10 +15,12 @@
 //! The exponent of a load-dependent law makes the limit curved in the compression; taken as linear between the corners it is second order.
 
 mod enclosing;
+mod response;
 mod stick;
 
 use std::ops::ControlFlow;
 
+pub use response::Response;
 pub use stick::stick_compression;
 
 use crate::friction::FrictionLaw;
@@ -33,6 +35,18 @@ const PERIODIC: f64 = 1e-13;
 
 /// Round-off of one substep, over displacement and limit of deflection.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+
+/// Periods passed before every other one is followed by a step of Newton's method.
+const PLAIN_PERIODS: usize = 4;
+
+/// Change of the deflection, over its limit, by which the slopes of a period are found.
+const DIFFERENCE: f64 = 1e-6;
+
+/// Determinant of Newton's equations below which a period says too little.
+const SINGULAR: f64 = 1e-10;
+
+/// Deflection that Newton's method may find, over the limit onto which it is then put back.
+const FARTHEST: f64 = 1.5;
 
 /// When a spring counts as shaken down.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -136,6 +150,19 @@ pub fn steady_cycle(
     shakedown: &Shakedown,
     out: &mut SpringCycle,
 ) {
+    periodic(path, law, stiffness_ratio, compression, shakedown, false, out);
+}
+
+/// [`steady_cycle`]; by Newton's method for a spring that is known to slip for ever (`slips`), for one on its way to rest must take that way.
+fn periodic(
+    path: &Path,
+    law: &FrictionLaw,
+    stiffness_ratio: f64,
+    compression: f64,
+    shakedown: &Shakedown,
+    slips: bool,
+    out: &mut SpringCycle,
+) {
     let mut reach = 0.0_f64;
     let mut straight = true;
     let mut last_lift = f64::NAN;
@@ -189,11 +216,13 @@ pub fn steady_cycle(
     }
     let limits = std::mem::take(&mut out.limit);
     out.periods = 0;
+    let mut last_change = f64::INFINITY;
     loop {
         let before = spring;
         out.clear();
         let (slip_path, loaded) = general_period(path, &limits, compression, &mut spring, static_factor, out);
-        let change = length(difference(spring.deflection, before.deflection));
+        let step = difference(spring.deflection, before.deflection);
+        let change = length(step);
         let repeats =
             change <= PERIODIC * largest_limit && (static_factor == 1.0 || spring.sliding == before.sliding);
         let small = negligible(loaded);
@@ -202,8 +231,55 @@ pub fn steady_cycle(
             break;
         }
         out.periods += 1;
+        // Where the path is a smooth map of the deflection onto the one a period later, Newton's method finds what repeats itself; from
+        // any other deflection the spring comes to rest at the same.
+        let waits = out.periods < PLAIN_PERIODS || !out.periods.is_multiple_of(2);
+        if !slips || waits || static_factor != 1.0 || change > 2.0 * last_change {
+            last_change = change;
+            continue;
+        }
+        last_change = change;
+        let mut after = |deflection: [f64; 2]| {
+            let mut moved = Spring { deflection, ..before };
+            general_period(path, &limits, compression, &mut moved, static_factor, out);
+            moved.deflection
+        };
+        if let Some(found) = newton(before.deflection, spring.deflection, limits[0], &mut after) {
+            spring.deflection = found;
+        }
     }
     out.limit = limits;
+}
+
+/// The deflection that a period repeats, by one step of Newton's method; `None` where a period hardly changes it or it is none of the spring.
+fn newton(
+    start: [f64; 2],
+    end: [f64; 2],
+    limit: f64,
+    after: &mut impl FnMut([f64; 2]) -> [f64; 2],
+) -> Option<[f64; 2]> {
+    let nearby = |axis: usize| {
+        // Inwards, where the spring may be.
+        let difference = -(DIFFERENCE * limit).copysign(start[axis]);
+        let mut moved = start;
+        moved[axis] += difference;
+        (moved, difference)
+    };
+    let slopes = [0, 1].map(|axis| {
+        let (moved, change) = nearby(axis);
+        scaled(change.recip(), difference(after(moved), end))
+    });
+    // (1 - P') δ = P - e
+    let [a, c] = [1.0 - slopes[0][0], -slopes[0][1]];
+    let [b, d] = [-slopes[1][0], 1.0 - slopes[1][1]];
+    let determinant = a * d - b * c;
+    let step = difference(end, start);
+    let change = [(d * step[0] - b * step[1]) / determinant, (a * step[1] - c * step[0]) / determinant];
+    let found = sum(start, change);
+    // A spring that slips when the period begins is on its limit.
+    let size = length(found);
+    let usable = determinant.abs() > SINGULAR && size <= FARTHEST * limit;
+    usable.then(|| if size > limit { scaled(limit / size, found) } else { found })
 }
 
 /// The part of a substep in which a spring is loaded.

@@ -6,7 +6,7 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
-use super::motion::Motion;
+use super::motion::{Energies, Motion};
 use super::schedule::{Demand, Drive};
 use super::{Fields, Model};
 use crate::friction::{Coulomb, FrictionLaw};
@@ -20,6 +20,14 @@ const DIFFERENCE: f64 = 1e-7;
 /// `α < 1` would end at an instant, in a root.
 const LEAST_PRESSURE: f64 = 1e-9;
 
+/// Depth of the gap, over the compression at the edge of stick, that debris of a law that is not local still fills. A choice: without an
+/// end, ground that has lost contact would go on wearing for as long as anything nearby is pressed on, and the gap would deepen until no
+/// contact is left. With it the run ends, with springs between no compression and that gap, by their history.
+const DEBRIS_LAYER: f64 = 0.1;
+
+/// Pressure, over the mean one of the unworn contact, from which on debris passes it on whole: without a kink at none.
+const LEAST_DEBRIS: f64 = 1e-3;
+
 /// Agreement of two amplitudes that are the same number by two ways.
 const SAME: f64 = 1e-13;
 
@@ -32,6 +40,10 @@ pub struct CycleFields {
     pub slip: Vec<f64>,
     /// Energy that friction dissipates in a cycle, J.
     pub dissipation: f64,
+    /// What jumps from static to kinetic friction lose in a cycle beyond that, J.
+    pub jump_loss: f64,
+    /// Work of the tangential force in a cycle, J.
+    pub work: f64,
     /// Volume worn in a cycle, m³.
     pub volume: f64,
     /// Tangential amplitude of the contact, m.
@@ -67,22 +79,29 @@ impl Model {
             return cycle;
         }
         let motion = self.motion(drive, compression, fields, false);
-        let surface = self.surface(drive, &motion, fields);
+        let surface = self.surface(drive, &motion, compression, fields);
         let worn = self.worn(&drive.wear, &surface, false);
         let per_cycle = drive.cycles_per_period.recip();
-        let growth: Vec<f64> =
-            worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect();
         let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
-        let dissipation = per_cycle * self.spring_energy(fields, &motion.dissipation);
+        let energy = |part: fn(&Energies) -> f64| {
+            per_cycle * self.spring_energy(fields, motion.energies.iter().map(part))
+        };
+        let dissipation = energy(|spring| spring.dissipation);
         // Where slip turns, that of neighbouring springs does not add up on the surface, while its energy does.
         let volume = match self.volume_per_energy(drive).filter(|_| motion.components == 1) {
             Some(factor) => factor * dissipation,
-            None => per_cycle * self.volume(fields.edge, &worn.depth),
+            None => {
+                // Round-off about zero must not make up for what still wears elsewhere.
+                let worn: Vec<f64> = worn.depth.iter().map(|depth| depth.abs()).collect();
+                per_cycle * self.volume(fields.edge, &worn)
+            }
         };
         CycleFields {
-            growth,
+            growth: growth(drive, &worn, fields),
             slip: slip.collect(),
             dissipation,
+            jump_loss: energy(|spring| spring.jump_loss),
+            work: energy(|spring| spring.work),
             volume,
             amplitude: motion.amplitude,
             stick_radius: self.stick_radius(&motion, fields),
@@ -100,6 +119,8 @@ impl Model {
             growth: fields.pressure.iter().map(|p| per_pressure * p).collect(),
             slip: fields.slip_depth.iter().map(|s| factor * s).collect(),
             dissipation,
+            jump_loss: 0.0,
+            work: dissipation,
             volume: self.volume_per_energy(drive)? * dissipation,
             amplitude: drive.amplitude,
             stick_radius: fields.place.stick_area.sqrt(),
@@ -139,7 +160,7 @@ impl Model {
     }
 
     /// Pressures and slip on the surface in each step of the period.
-    fn surface(&self, drive: &Drive, motion: &Motion, fields: &Fields) -> Surface {
+    fn surface(&self, drive: &Drive, motion: &Motion, compression: &[f64], fields: &Fields) -> Surface {
         let (n, inner) = (self.springs(), self.springs() - 1);
         let (steps, components) = (motion.steps(), motion.components);
         let columns = steps * components;
@@ -152,9 +173,14 @@ impl Model {
             pressure_scale,
         );
         if let WearLaw::NonLocal { length, .. } = drive.wear {
-            let mut smeared = Mat::zeros(n, pressure.ncols());
-            product(&mut smeared, self.smearing(fields, length).as_ref(), pressure.as_ref(), 1.0);
-            pressure = smeared;
+            // Debris passes pressure on, not tension, and into gaps that it can fill.
+            let least = LEAST_DEBRIS * self.contact.mean_pressure();
+            let pressed = Mat::from_fn(n, pressure.ncols(), |i, m| pressing(pressure[(i, m)], least).0);
+            product(&mut pressure, self.smearing(fields, length).as_ref(), pressed.as_ref(), 1.0);
+            for i in 0..n {
+                let (filled, _) = self.filled(drive, compression.get(i).copied());
+                (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
+            }
         }
         let plain = self.slip_per_depth(drive, fields);
         let mut slip = Mat::zeros(n, columns);
@@ -166,10 +192,10 @@ impl Model {
             // Where slip reaches the inner end of the mesh, what a free spring would do is carried exactly.
             let free: Vec<f64> =
                 (0..columns).map(|m| if motion.slip[(0, m)] == 0.0 { 0.0 } else { motion.free[m] }).collect();
-            let moved = Mat::from_fn(inner, columns, |j, m| {
-                (motion.slip[(j, m)] - free[m]) * fields.density_factor[j]
-            });
-            product(&mut slip, self.operators.abel.profile().subcols(0, inner), moved.as_ref(), scale);
+            // Without compression, at the contact edge, springs are free.
+            let slip_of = |j: usize, m: usize| if j < inner { motion.slip[(j, m)] } else { motion.free[m] };
+            let moved = Mat::from_fn(n, columns, |j, m| (slip_of(j, m) - free[m]) * fields.density_factor[j]);
+            product(&mut slip, self.operators.abel.profile().as_ref(), moved.as_ref(), scale);
             for i in 0..n {
                 let uniform = self.uniform_slip(fields, i);
                 for m in 0..columns {
@@ -271,7 +297,7 @@ impl Model {
             return;
         }
         let motion = self.motion(drive, compression, fields, true);
-        let surface = self.surface(drive, &motion, fields);
+        let surface = self.surface(drive, &motion, compression, fields);
         let worn = self.worn(&drive.wear, &surface, true);
         let (steps, components) = (motion.steps(), motion.components);
         let mut by_pressure = Mat::zeros(n, inner);
@@ -282,23 +308,18 @@ impl Model {
             product(&mut by_pressure, worn.by_pressure.as_ref(), motion.load_slope.transpose(), 1.0);
         }
         let along = Mat::from_fn(n, steps * components, |i, c| {
-            worn.by_path[(i, c / components)] * surface.direction[(i, c)]
+            let step = c / components;
+            let slips = surface.path[(i, step)] > 0.0;
+            if slips { worn.by_path[(i, step)] * surface.direction[(i, c)] } else { 0.0 }
         });
         let mut by_slip = Mat::zeros(n, inner);
         product(&mut by_slip, along.as_ref(), motion.slip_slope.transpose(), 1.0);
-        let mut smeared = Mat::zeros(0, 0);
-        let pressure = match drive.wear {
-            WearLaw::NonLocal { length, .. } => {
-                smeared = Mat::zeros(n, inner);
-                product(
-                    &mut smeared,
-                    self.smearing(fields, length).as_ref(),
-                    pressure.subcols(0, inner),
-                    1.0,
-                );
-                &smeared
-            }
-            _ => pressure,
+        let smeared;
+        let pressure = if let WearLaw::NonLocal { length, .. } = drive.wear {
+            smeared = self.smeared_pressure(drive, &motion, compression, fields, length);
+            &smeared
+        } else {
+            pressure
         };
         let per_cycle = factor / drive.cycles_per_period;
         let scale = fields.edge.powf(self.mu());
@@ -310,6 +331,14 @@ impl Model {
                     by_pressure[(i, j)] * pressure_scale * pressure[(i, j)] + by_slip[(i, j)] * carried;
                 matrix[(i, j)] +=
                     (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
+            }
+        }
+        if let WearLaw::NonLocal { .. } = drive.wear {
+            for j in 0..inner {
+                let (filled, slope) = self.filled(drive, Some(compression[j]));
+                if filled > 0.0 {
+                    matrix[(j, j)] += factor * cycle.growth[j] * slope / filled;
+                }
             }
         }
         if let Some(by_amplitude) = &motion.amplitude_slope {
@@ -326,11 +355,16 @@ impl Model {
         let edge = fields.edge * (1.0 + DIFFERENCE);
         let mut moved = Fields::default();
         self.evaluate_at(&fields.place, edge, compression, &mut moved);
-        let after = self.cycle(drive, compression, &moved);
+        let after = if drive.path.is_some() {
+            // What springs do is a matter of their compressions alone.
+            let worn = self.worn(&drive.wear, &self.surface(drive, &motion, compression, &moved), false);
+            growth(drive, &worn, &moved)
+        } else {
+            self.cycle(drive, compression, &moved).growth
+        };
         for i in 0..n {
-            matrix[(i, inner)] += factor * (after.growth[i] - cycle.growth[i]) / (edge - fields.edge);
+            matrix[(i, inner)] += factor * (after[i] - cycle.growth[i]) / (edge - fields.edge);
         }
-        drop(smeared);
     }
 
     /// `c_N/π Z^(-μ)`, the factor of Eq. (21).
@@ -355,15 +389,60 @@ impl Model {
     }
 
     /// Energy, J, of energies per normal stiffness of the springs, m².
-    fn spring_energy(&self, fields: &Fields, energies: &[f64]) -> f64 {
+    fn spring_energy(&self, fields: &Fields, energies: impl Iterator<Item = f64>) -> f64 {
         let densities: Vec<f64> =
-            energies.iter().zip(&fields.density_factor).map(|(e, factor)| e * factor).collect();
+            energies.zip(&fields.density_factor).map(|(e, factor)| e * factor).collect();
         self.contact.half_space().normal_stiffness()
             * fields.edge
             * dot(self.operators.abel.spring_sum(), &densities)
     }
 
-    /// Averages over a Gaussian weight along the radius, within the annulus: rows sum to one.
+    /// How far debris fills the gap under a spring of some compression at the largest indentation, and the derivative.
+    ///
+    /// ```text
+    /// 1 in contact,    (1 - (q/h)²)² for -h < q < 0,    0 beyond
+    /// ```
+    fn filled(&self, drive: &Drive, compression: Option<f64>) -> (f64, f64) {
+        let Some(compression) = compression else { return (1.0, 0.0) };
+        let layer = DEBRIS_LAYER * self.contact.slip_compression();
+        let part = ((compression - drive.lift) / layer).clamp(-1.0, 0.0);
+        let left = 1.0 - part * part;
+        (left * left, -4.0 * left * part / layer)
+    }
+
+    /// How the pressure that debris passes on follows the compressions, over the factor of Eq. (21).
+    fn smeared_pressure(
+        &self,
+        drive: &Drive,
+        motion: &Motion,
+        compression: &[f64],
+        fields: &Fields,
+        length: f64,
+    ) -> Mat<f64> {
+        let (n, inner) = (self.springs(), self.springs() - 1);
+        let pressure = self.operators.abel.pressure().subcols(0, inner);
+        let steps = motion.load.ncols();
+        let mut pressed = Mat::zeros(n, steps);
+        product(&mut pressed, pressure, motion.load.as_ref(), self.pressure_scale(fields));
+        let least = LEAST_DEBRIS * self.contact.mean_pressure();
+        let mean = |i: usize| pressed.row(i).iter().sum::<f64>() / steps as f64;
+        let slopes: Vec<f64> = (0..n).map(|i| pressing(mean(i), least).1).collect();
+        let touching = Mat::from_fn(n, inner, |i, j| slopes[i] * pressure[(i, j)]);
+        let mut smeared = Mat::zeros(n, inner);
+        product(&mut smeared, self.smearing(fields, length).as_ref(), touching.as_ref(), 1.0);
+        for i in 0..n {
+            let (filled, _) = self.filled(drive, compression.get(i).copied());
+            (0..inner).for_each(|j| smeared[(i, j)] *= filled);
+        }
+        smeared
+    }
+
+    /// Averages over a Gaussian weight along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well
+    /// inside and to nothing there: else ground would wear where no pressure is at all.
+    ///
+    /// ```text
+    /// sum of row r = 1 - exp(-(a - r)/length)
+    /// ```
     fn smearing(&self, fields: &Fields, length: f64) -> Mat<f64> {
         let radii: Vec<f64> = self.spring_radii(fields);
         let n = radii.len();
@@ -379,8 +458,9 @@ impl Model {
         });
         for i in 0..n {
             let sum: f64 = weights.row(i).iter().sum();
+            let kept = -(-(radii[n - 1] - radii[i]) / length).exp_m1();
             for j in 0..n {
-                weights[(i, j)] /= sum;
+                weights[(i, j)] *= kept / sum;
             }
         }
         weights
@@ -403,6 +483,12 @@ impl Model {
     }
 }
 
+/// `W/S` at the springs.
+fn growth(drive: &Drive, worn: &Worn, fields: &Fields) -> Vec<f64> {
+    let per_cycle = drive.cycles_per_period.recip();
+    worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect()
+}
+
 /// `to = scale · left · right`.
 fn product(to: &mut Mat<f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>, scale: f64) {
     matmul(to.as_mut(), Accum::Replace, left, right, scale, Par::Seq);
@@ -417,6 +503,17 @@ fn normalise(vectors: &mut Mat<f64>, components: usize) {
                 vectors[(i, c)] = if norm > 0.0 { vectors[(i, c)] / norm } else { 0.0 };
             }
         }
+    }
+}
+
+/// Pressure that debris passes on, and its slope: none of tension, and from `least` on all but half of that.
+fn pressing(p: f64, least: f64) -> (f64, f64) {
+    if p <= 0.0 {
+        (0.0, 0.0)
+    } else if p < least {
+        (0.5 * p * p / least, p / least)
+    } else {
+        (p - 0.5 * least, 1.0)
     }
 }
 

@@ -7,7 +7,7 @@ use super::{Fields, Model};
 use crate::linear::dot;
 use crate::path::Path;
 use crate::roots::bracketed;
-use crate::spring::{Shakedown, SpringCycle, steady_cycle};
+use crate::spring::{Response, Shakedown, SpringCycle, steady_cycle};
 use crate::stick_slip::slip_amplitude_of_spring;
 use crate::wear::WearLaw;
 
@@ -27,13 +27,24 @@ pub(super) struct Motion {
     /// What presses in each step, m: the mean compression, or what resists slip where wear goes by energy; shape
     /// `(springs - 1, steps)`, or one column if it is the same in all.
     pub load: Mat<f64>,
-    /// Energy dissipated per normal stiffness, m², shape `(springs - 1,)`.
-    pub dissipation: Vec<f64>,
+    /// By spring, shape `(springs - 1,)`.
+    pub energies: Vec<Energies>,
     /// Derivatives of `slip` and `load` by the compression of their spring.
     pub slip_slope: Mat<f64>,
     pub load_slope: Mat<f64>,
     /// Where the amplitude depends on the compressions.
     pub amplitude_slope: Option<AmplitudeSlope>,
+}
+
+/// Energies of one spring in one period, over its normal stiffness, m².
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Energies {
+    /// Work of kinetic friction.
+    pub dissipation: f64,
+    /// What jumps from static to kinetic friction lose beyond it.
+    pub jump_loss: f64,
+    /// Work of the indenter.
+    pub work: f64,
 }
 
 /// How the amplitude follows the compressions.
@@ -73,8 +84,21 @@ impl Model {
         let amplitude = self.amplitude(drive, &lifted, fields);
         let slip: Vec<(f64, f64)> =
             lifted.iter().map(|q| slip_amplitude_of_spring(&drive.friction, ratio, amplitude, *q)).collect();
-        let strength = |q: &f64| drive.friction.kinetic_strength(*q);
-        let load: Vec<f64> = lifted.iter().map(|q| bearing(drive, *q)).collect();
+        let energies = |(q, slip): (&f64, &(f64, f64))| -> Energies {
+            if slip.0 == 0.0 {
+                return Energies::default();
+            }
+            let held = drive.friction.static_strength(*q);
+            let dragged = drive.friction.kinetic_strength(*q);
+            // Each way from the kinetic limit on one side to the static one on the other, and from there on at the kinetic one.
+            let stuck = 0.5 * (held * held - dragged * dragged) / ratio;
+            let slides = 2.0 * amplitude - (held + dragged) / ratio;
+            Energies {
+                dissipation: 4.0 * dragged * slip.0,
+                jump_loss: (held - dragged).powi(2) / ratio,
+                work: 2.0 * (stuck + dragged * slides),
+            }
+        };
         let inner = compression.len();
         let amplitude_slope = (slopes && drive.demand != Demand::Displacement)
             .then(|| self.amplitude_slope(drive, &lifted, &slip, fields));
@@ -84,61 +108,63 @@ impl Model {
             slip: Mat::from_fn(inner, 1, |j, _| 4.0 * slip[j].0),
             free: vec![4.0 * amplitude],
             components: 1,
-            load: Mat::from_fn(inner, 1, |j, _| load[j]),
-            dissipation: lifted.iter().zip(&slip).map(|(q, s)| 4.0 * strength(q) * s.0).collect(),
+            load: Mat::from_fn(inner, 1, |j, _| bearing(drive, compression[j], drive.lift)),
+            energies: lifted.iter().zip(&slip).map(energies).collect(),
             slip_slope: Mat::from_fn(rows, 1, |j, _| 4.0 * slip[j].1),
-            load_slope: Mat::from_fn(rows, 1, |j, _| self.slope(|q| bearing(drive, q), lifted[j])),
+            load_slope: Mat::from_fn(rows, 1, |j, _| {
+                self.slope(|q| bearing(drive, q, drive.lift), compression[j])
+            }),
             amplitude_slope,
         }
     }
 
+    /// Springs through the period of a path, with what goes one way between reversals as one step.
     fn resolved_motion(&self, drive: &Drive, path: &Path, compression: &[f64], slopes: bool) -> Motion {
-        let ratio = self.contact.half_space().stiffness_ratio();
-        let steps = path.points.len();
-        let components = if is_straight(path) { 1 } else { 2 };
+        let components = if path.is_straight() { 1 } else { 2 };
+        let ways = path.ways();
+        let steps = ways.iter().max().map_or(0, |last| last + 1);
         let (inner, columns) = (compression.len(), steps * components);
-        let mut spring = SpringCycle::default();
-        let shakedown = Shakedown::default();
-        let mut passed = |q: f64| {
-            steady_cycle(path, &drive.friction, ratio, q, &shakedown, &mut spring);
-            let slip: Vec<f64> = spring.slip.iter().flat_map(|s| s[..components].iter().copied()).collect();
-            (slip, spring.dissipation)
-        };
-        let free = passed(0.0).0;
-        let mut slip = Mat::zeros(inner, columns);
-        let mut slip_slope = Mat::zeros(if slopes { inner } else { 0 }, columns);
-        let mut dissipation = vec![0.0; inner];
-        let difference = DIFFERENCE * self.contact.slip_compression();
-        for (j, q) in compression.iter().enumerate() {
-            let (values, energy) = passed(q.max(0.0));
-            dissipation[j] = energy;
-            for (m, value) in values.iter().enumerate() {
-                slip[(j, m)] = *value;
-            }
-            if slopes {
-                let (nearby, _) = passed(q.max(0.0) + difference);
-                for (m, value) in nearby.iter().enumerate() {
-                    slip_slope[(j, m)] = (value - values[m]) / difference;
-                }
-            }
-        }
-        let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % steps].lift];
-        let constant = (0..steps).all(|m| lifts(m) == lifts(0) && lifts(m)[0] == lifts(m)[1]);
-        let different = if constant { 1 } else { steps };
-        let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing(drive, q - lift)).iter().sum::<f64>();
-        Motion {
-            amplitude: drive.amplitude,
-            slip,
-            free,
+        let mut springs = PathSprings {
+            drive,
+            path,
             components,
-            load: Mat::from_fn(inner, different, |j, m| mean(compression[j], m)),
-            dissipation,
-            slip_slope,
-            load_slope: Mat::from_fn(if slopes { inner } else { 0 }, different, |j, m| {
-                self.slope(|q| mean(q, m), compression[j])
-            }),
+            ways,
+            ratio: self.contact.half_space().stiffness_ratio(),
+            difference: DIFFERENCE * self.contact.slip_compression(),
+            cycle: SpringCycle::default(),
+        };
+        let mut values = vec![0.0; columns];
+        let mut slope = vec![0.0; if slopes { columns } else { 0 }];
+        springs.pass(0.0, &mut values, &mut []);
+        let mut motion = Motion {
+            amplitude: drive.amplitude,
+            slip: Mat::zeros(inner, columns),
+            free: values.clone(),
+            components,
+            load: Mat::zeros(0, 0),
+            energies: Vec::with_capacity(inner),
+            slip_slope: Mat::zeros(if slopes { inner } else { 0 }, columns),
+            load_slope: Mat::zeros(0, 0),
             amplitude_slope: None,
+        };
+        for (j, q) in compression.iter().enumerate() {
+            motion.energies.push(springs.pass(q.max(0.0), &mut values, &mut slope));
+            for (m, value) in values.iter().enumerate() {
+                motion.slip[(j, m)] = *value;
+            }
+            for (m, value) in slope.iter().enumerate() {
+                motion.slip_slope[(j, m)] = *value;
+            }
         }
+        let count = path.points.len();
+        let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
+        let different = if path.is_level() { 1 } else { steps };
+        let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing(drive, q, lift)).iter().sum::<f64>();
+        motion.load = Mat::from_fn(inner, different, |j, m| mean(compression[j], m));
+        motion.load_slope = Mat::from_fn(if slopes { inner } else { 0 }, different, |j, m| {
+            self.slope(|q| mean(q, m), compression[j])
+        });
+        motion
     }
 
     /// Tangential amplitude of the contact, m: as prescribed, or by the balance of forces.
@@ -211,19 +237,97 @@ impl Model {
     }
 }
 
-/// What the law of wear takes for the load of a spring: its compression, or what resists its slip where wear goes by energy.
-fn bearing(drive: &Drive, compression: f64) -> f64 {
-    match drive.wear {
-        WearLaw::DissipatedEnergy { .. } => drive.friction.kinetic_strength(compression),
-        // Springs may lose contact within the annulus.
-        WearLaw::NonLocal { .. } => compression.max(0.0),
-        _ if drive.path.is_some() || drive.lift > 0.0 => compression.max(0.0),
-        // Round-off about zero in the limit is better left as it is.
-        _ => compression,
+/// Springs on the path of a drive.
+struct PathSprings<'a> {
+    drive: &'a Drive,
+    path: &'a Path,
+    components: usize,
+    /// The step to which each substep belongs.
+    ways: Vec<usize>,
+    ratio: f64,
+    /// Change of the compression, m, by which slopes are found.
+    difference: f64,
+    cycle: SpringCycle,
+}
+
+impl PathSprings<'_> {
+    /// Slip of a spring in each step, m, and its derivatives by the compression where there is room for them; energies.
+    fn pass(&mut self, compression: f64, slip: &mut [f64], slopes: &mut [f64]) -> Energies {
+        if let Some(response) = &self.drive.response {
+            return self.tabulated(response, compression, slip, slopes);
+        }
+        let energies = self.direct(compression, slip);
+        if !slopes.is_empty() {
+            self.direct(compression + self.difference, slopes);
+            for (slope, value) in slopes.iter_mut().zip(slip) {
+                *slope = (*slope - *value) / self.difference;
+            }
+        }
+        energies
+    }
+
+    fn tabulated(
+        &self,
+        response: &Response,
+        compression: f64,
+        slip: &mut [f64],
+        slopes: &mut [f64],
+    ) -> Energies {
+        let lifted = compression - self.path.points[0].lift;
+        if lifted < 0.0 {
+            slip.fill(0.0);
+            slopes.fill(0.0);
+            return Energies::default();
+        }
+        let limit = |q: f64| self.drive.friction.kinetic_strength(q) / self.ratio;
+        let by_limit = (!slopes.is_empty()).then_some(&mut *slopes);
+        let [dissipation, work] = response.at(limit(lifted), slip, by_limit);
+        let by_compression = (limit(lifted + self.difference) - limit(lifted)) / self.difference;
+        slopes.iter_mut().for_each(|slope| *slope *= by_compression);
+        Energies { dissipation: self.ratio * dissipation, jump_loss: 0.0, work: self.ratio * work }
+    }
+
+    fn direct(&mut self, compression: f64, slip: &mut [f64]) -> Energies {
+        let cycle = &mut self.cycle;
+        steady_cycle(self.path, &self.drive.friction, self.ratio, compression, &Shakedown::default(), cycle);
+        slip.fill(0.0);
+        if self.components == 1 && self.path.is_level() {
+            // What moved less what the deflection took up: a sum over the substeps would round off as many times.
+            let count = self.path.points.len();
+            let place = |m: usize| {
+                self.path.points[m % count].tangential[0] - cycle.deflection[(m + count - 1) % count][0]
+            };
+            let slips = if cycle.slip_path > 0.0 { 1.0 } else { 0.0 };
+            for (m, way) in self.ways.iter().enumerate() {
+                let before = self.ways[(m + count - 1) % count];
+                if before != *way {
+                    slip[before] += slips * place(m);
+                    slip[*way] -= slips * place(m);
+                }
+            }
+        } else {
+            for (way, substep) in self.ways.iter().zip(&cycle.slip) {
+                for (axis, value) in substep[..self.components].iter().enumerate() {
+                    slip[self.components * way + axis] += value;
+                }
+            }
+        }
+        Energies { dissipation: cycle.dissipation, jump_loss: cycle.jump_loss, work: cycle.work }
     }
 }
 
-/// Whether the path has no component along y.
-fn is_straight(path: &Path) -> bool {
-    path.points.iter().all(|point| point.tangential[1] == 0.0)
+/// What the law of wear takes for the load of a spring of this compression at the largest indentation, lifted by `lift`, m: its
+/// compression, or what resists its slip where wear goes by energy.
+fn bearing(drive: &Drive, compression: f64, lift: f64) -> f64 {
+    let lifted = compression - lift;
+    // A spring that is never lifted loses contact by round-off only, about zero in the limit; that is better left as it is, for it wears
+    // back. Else springs may lose contact.
+    let by_round_off = lift == 0.0 && lifted < 0.0;
+    match drive.wear {
+        WearLaw::DissipatedEnergy { .. } if by_round_off => -drive.friction.kinetic_strength(-lifted),
+        WearLaw::DissipatedEnergy { .. } => drive.friction.kinetic_strength(lifted),
+        WearLaw::NonLocal { .. } => lifted.max(0.0),
+        _ if by_round_off => lifted,
+        _ => lifted.max(0.0),
+    }
 }

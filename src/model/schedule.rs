@@ -10,7 +10,7 @@ use crate::friction::FrictionLaw;
 use crate::history::History;
 use crate::loading::{Block, Clock, Mode, TangentialControl};
 use crate::path::{Path, SampledPath};
-use crate::spring::stick_compression;
+use crate::spring::{Response, stick_compression};
 use crate::wear::WearLaw;
 
 /// What is asked of the contact tangentially in one cycle.
@@ -50,6 +50,8 @@ pub struct Drive {
     pub lift: f64,
     /// The path over one period where the cycle is resolved, seen from the largest indentation of the run.
     pub path: Option<Arc<Path>>,
+    /// What springs do on that path, where their limit alone decides it.
+    pub response: Option<Arc<Response>>,
     /// Cycles in that period.
     pub cycles_per_period: f64,
 }
@@ -141,6 +143,7 @@ impl Schedule {
                 },
                 lift: 0.0,
                 path: None,
+                response: None,
                 cycles_per_period: 1.0,
             };
             let mut depth = indentation;
@@ -151,6 +154,7 @@ impl Schedule {
                     SampledPath::new(&mode, amplitude, indentation, resolution.substeps.unwrap_or(fewest));
                 depth = sampled.largest_indentation;
                 drive.cycles_per_period = f64::from(sampled.oscillations);
+                drive.response = response(&sampled.path, &drive.friction, &drives);
                 drive.path = Some(Arc::new(sampled.path));
             }
             drives.push(drive);
@@ -279,6 +283,15 @@ impl Schedule {
             && conditions.friction_history == History::Constant
             && conditions.tangential_control == TangentialControl::Displacement
     }
+}
+
+/// The table of a path that turns at constant indentation; that of an earlier block with the same path, if there is one.
+fn response(path: &Path, friction: &FrictionLaw, before: &[Drive]) -> Option<Arc<Response>> {
+    if path.is_straight() || friction.static_factor() != 1.0 {
+        return None;
+    }
+    let same = before.iter().find(|drive| drive.path.as_deref() == Some(path));
+    same.map_or_else(|| Response::new(path).map(Arc::new), |drive| drive.response.clone())
 }
 
 /// The mode with the transverse displacements of a block.

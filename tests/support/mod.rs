@@ -4,6 +4,7 @@
 #![allow(dead_code)]
 
 pub mod command;
+pub mod laws;
 pub mod reference;
 
 use fretwear::contact::InitialContact;
