@@ -192,8 +192,8 @@ impl MovingStick {
     pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
         match self.cause {
             _ if self.jumps => asked,
-            Cause::NormalForce(_) => Clustering::CreepingStick,
-            Cause::Friction | Cause::Tangential => Clustering::MovingStick,
+            _ if self.outwards => Clustering::CreepingStick,
+            _ => Clustering::MovingStick,
         }
     }
 
@@ -383,7 +383,7 @@ impl Model {
         let closure = if moving.jumps {
             passed
         } else if moving.outwards {
-            unworn_rise - risen * (-fields.log_slip[0]).exp()
+            unworn_rise - risen * self.at_stick_edge(|i| (-fields.log_slip[i]).exp())
         } else {
             profile.value(radius) - depth
         };
@@ -419,6 +419,15 @@ impl Model {
         }
         let uniform = self.unworn.at_stick(area, slip_compression, edge).limit_slip / slip_compression;
         moving.left_behind(&target.stick.left_behind, area + edge) - (risen - unworn_rise) * uniform
+    }
+
+    /// A quantity at the edge of stick, by the parabola through the first three springs.
+    ///
+    /// By the first spring alone, what the springs next to it are off by would grow in time on meshes as fine as these.
+    fn at_stick_edge(&self, value: impl Fn(usize) -> f64) -> f64 {
+        let mut weights = [0.0; 3];
+        lagrange(&self.operators.abel.nodes()[1..4], 0.0, &mut weights);
+        weights.iter().enumerate().map(|(i, weight)| weight * value(i)).sum()
     }
 
     /// `ξ ∂λ/∂ξ`, leaning to where the ground comes from: outwards, or inwards next to an edge of stick that recedes.
@@ -473,8 +482,8 @@ impl Model {
             matrix[(inner, j)] =
                 slopes[inner] * fields.slip_depth[inner] / (fields.slip_depth[inner] - behind);
             if moving.outwards && !moving.jumps {
-                matrix[(n, j)] =
-                    risen * (-fields.log_slip[0]).exp() * slopes[0] / trial.place.slip_compression;
+                let slope = self.at_stick_edge(|i| (-fields.log_slip[i]).exp() * slopes[i]);
+                matrix[(n, j)] = risen * slope / trial.place.slip_compression;
             }
             let weight = self.contact.half_space().normal_stiffness()
                 * fields.edge
