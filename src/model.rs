@@ -179,7 +179,8 @@ impl Model {
         }
         let profile = contact.equivalent_profile();
         let grading = profile.grading();
-        let moving = MovingStick::new(&schedule, contact)?;
+        // Where no stick is left in the end, the mesh reaches to the core from the start.
+        let moving = if slides { None } else { MovingStick::new(&schedule, contact)? };
         let farthest = match &moving {
             Some(moving) => moving.farthest(contact)?,
             None => contact.clone(),

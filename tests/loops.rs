@@ -10,8 +10,9 @@ use fretwear::grid::Clustering;
 use fretwear::loading::{Mode, RecordedPath, TangentialControl};
 use fretwear::model::{Demand, FrettingLoop, Model, OperatorStore, Resolution, Schedule, State};
 use fretwear::quadrature::Rule;
-use fretwear::stepper::Implicit;
-use support::{Case, distance, orders};
+use fretwear::simulation::{End, Plan, Simulation};
+use fretwear::stepper::{Implicit, MovingStickImplicit};
+use support::{Case, Record, Seen, distance, orders};
 
 /// Displacements of a loop of `2 half` equal steps.
 fn displacements(model: &Model, half: usize) -> Vec<f64> {
@@ -104,7 +105,7 @@ fn under(case: &Case, conditions: &Conditions, substeps: usize) -> Model {
 /// The loop of the cycle that begins in a state, with the energy of its period.
 fn loop_and_energy(model: &Model, state: &State, steps: usize) -> (FrettingLoop, f64) {
     let fields = model.fields(state);
-    let drive = model.schedule().drive(state.cycles, state.cycles);
+    let drive = model.drive_in(state, model.schedule().drive(state.cycles, state.cycles));
     let cycle = model.cycle(&drive, &state.compression, &fields);
     let found = model.cycle_loop(&drive, &cycle, &state.compression, &fields, steps);
     (found, cycle.dissipation * drive.cycles_per_period)
@@ -176,6 +177,8 @@ fn the_area_of_the_loop_of_every_mode_is_the_energy_of_its_period() {
             let balance = found.work / energy - 1.0;
             match name {
                 "static and kinetic" => {}
+                // What the cycle takes from its table of springs that go round, the loop has from the springs themselves; measured 2e-6.
+                "orbit" | "orbit off its centre" => assert!(balance.abs() < 2e-5, "{name}: {balance:e}"),
                 // Along a line the work of a spring is its energy; of a spring that goes round, once it repeats itself.
                 _ => assert!(balance.abs() < 1e-9, "{name}: {balance:e}"),
             }
@@ -209,12 +212,20 @@ fn a_held_force_is_the_force_of_every_loop() {
     let case = CASE;
     let (_, conditions) = modes().into_iter().find(|(name, _)| *name == "force").unwrap();
     let model = under(&case, &conditions, 64);
-    let mut state = model.initial_state().unwrap();
     let Demand::Force(asked) = model.schedule().drive(0.0, 0.0).demand else { panic!("no force") };
-    for wear in [1.0, 0.9, 0.8] {
-        state.compression.iter_mut().for_each(|q| *q *= wear);
-        let (found, _) = loop_and_energy(&model, &state, 64);
-        assert!((found.largest_force() / asked - 1.0).abs() < 1e-12, "{wear}: {}", found.largest_force());
+    let plan = Plan { outputs: vec![0.5, 3.0, 20.0], end: End::Cycles(20.0) };
+    let mut simulation =
+        Simulation::new(model, Box::new(MovingStickImplicit::new(1e-4)), 1e-4, plan).unwrap();
+    let mut seen = Record::default();
+    simulation.run(&mut [&mut seen]).unwrap();
+    let first = simulation.model().contact().amplitude();
+    for Seen { state, .. } in &seen.0 {
+        let (found, _) = loop_and_energy(simulation.model(), state, 64);
+        let force = found.largest_force();
+        // Measured: 2e-13 at most.
+        assert!((force / asked - 1.0).abs() < 2e-12, "{}: {force}, held {asked}", state.cycles);
+        // The contact gives way, so that the same force moves it farther.
+        assert!(found.displacement[0][0] > 1.001 * first, "{}", state.cycles);
     }
 }
 

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fretwear::loading::RecordedPath;
-use fretwear::model::State;
+use fretwear::model::{State, StickEdge};
 use fretwear::simulation::Progress;
 use fretwear::snapshot::{Checkpoint, LimitCurves, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
 use fretwear::stick_slip::Regime;
@@ -92,6 +92,14 @@ fn checkpoint() -> Checkpoint {
             dissipated_energy: -0.0,
             volume_by_rate: 1e-17 / 3.0,
             least_stick_radius: f64::INFINITY,
+            stick: Some(StickEdge {
+                area: 1e-9 / 3.0,
+                depth: -0.0,
+                load: 5e-324,
+                left_behind: curve(24, 6),
+                wear_depth: curve(31, 7),
+                rates: [1e-300, -1e-17 / 3.0],
+            }),
         },
         progress: Progress {
             next_step: 5e-324,
@@ -204,6 +212,11 @@ fn every_value_comes_back_bit_for_bit() {
     let (found, expected) = (run.checkpoint.expect("a checkpoint"), checkpoint());
     assert_eq!(to_bits(&found.state.compression), to_bits(&expected.state.compression));
     assert_eq!(to_bits(&found.state.compression_rate), to_bits(&expected.state.compression_rate));
+    let (stick, wanted) = (found.state.stick.as_ref().unwrap(), expected.state.stick.as_ref().unwrap());
+    let scalars = |it: &StickEdge| to_bits(&[it.area, it.depth, it.load, it.rates[0], it.rates[1]]);
+    assert_eq!(scalars(stick), scalars(wanted));
+    assert_eq!(to_bits(&stick.left_behind), to_bits(&wanted.left_behind));
+    assert_eq!(to_bits(&stick.wear_depth), to_bits(&wanted.wear_depth));
     assert_eq!(found.state.edge.to_bits(), OTHER_NAN);
     assert_eq!(found.error_estimate.map(f64::to_bits), expected.error_estimate.map(f64::to_bits));
     // `Debug` prints the shortest decimal that gives the same number, and the sign of zero.
