@@ -231,6 +231,11 @@ impl Model {
         self.slides
     }
 
+    /// What the core that stays unworn under full sliding makes the worn volume uncertain by, relative; zero where a stick zone is left.
+    pub fn core_uncertainty(&self) -> f64 {
+        if self.slides { reach::core_share(self.contact.half_space().grading()) } else { 0.0 }
+    }
+
     /// What acts when.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule

@@ -2,7 +2,7 @@
 
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::FrictionLaw;
 use crate::loading::TangentialControl;
 use crate::quadrature::Rule;
@@ -11,6 +11,14 @@ use crate::roots::bracketed;
 /// Radius, over that of the contact, of the core within which nothing is worn under full sliding: the springs need a smallest radius, and
 /// 60 of them serve for 1e-3, 120 for 1e-4.
 const CORE: f64 = 1e-3;
+
+/// Largest share of the load on the core for which full sliding is followed.
+const LARGEST_CORE_SHARE: f64 = 5e-3;
+
+/// Share of the load, in order of size, on the core that stays unworn under full sliding.
+pub(super) fn core_share(grading: f64) -> f64 {
+    CORE.powf(1.0 + grading)
+}
 
 /// Nodes of the quadrature of the first cycle's force.
 const FORCE_NODES: usize = 100;
@@ -51,7 +59,18 @@ impl Schedule {
         };
         let core = CORE * radius;
         let largest = depth - profile.value(core);
+        let grading = contact.half_space().grading();
         let slides = compression > largest;
+        if slides && core_share(grading) > LARGEST_CORE_SHARE {
+            return Err(Error::Inconsistent {
+                what: "full sliding",
+                why: format!(
+                    "the contact comes to slide as a whole, and at grading {grading} the core of its mesh, a thousandth of its radius, \
+                     would bear {:.2} of the load unworn; reduce the amplitude or the force",
+                    core_share(grading)
+                ),
+            });
+        }
         Ok(Reach { contact: contact.at(depth, compression.min(largest))?, slides })
     }
 

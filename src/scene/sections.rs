@@ -127,8 +127,8 @@ fn warning_of_another_limit(conditions: &Conditions) -> Option<String> {
     let departures = conditions.departures();
     (!departures.is_empty()).then(|| {
         format!(
-            "the closed-form limit is that of plain tangential oscillation as in the first cycle, under Coulomb's and Archard's laws; this \
-             scene has {}, with which the final shape may be another",
+            "this scene has {}: limit takes its first cycle as plain tangential oscillation, run compares with the limit of the smallest \
+             stick radius and the largest indentation of the run; docs/universality.md tells when the final shape is another",
             departures.join(", ")
         )
     })
