@@ -180,7 +180,7 @@ impl Model {
         let profile = contact.equivalent_profile();
         let grading = profile.grading();
         // Where no stick is left in the end, the mesh reaches to the core from the start.
-        let moving = if slides { None } else { MovingStick::new(&schedule, contact)? };
+        let moving = MovingStick::new(&schedule, contact, slides)?;
         let farthest = match &moving {
             Some(moving) => moving.farthest(contact)?,
             None => contact.clone(),
@@ -293,7 +293,7 @@ impl Model {
         }
         let edge = bracketed(mismatch, low, high, 0.0)?;
         let compression = self.compression_at(&place, edge, |_, values| values.slip);
-        Ok(State {
+        Ok(self.close_force(State {
             cycles: 0.0,
             edge,
             compression_rate: vec![0.0; compression.len()],
@@ -303,7 +303,7 @@ impl Model {
             least_stick_radius: f64::INFINITY,
             edge_rate: 0.0,
             stick,
-        })
+        }))
     }
 
     /// Wear depth at the edge, m, of the compressions that give the inner springs the slip depth `slip(spring, unworn)`; zero at the

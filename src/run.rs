@@ -242,6 +242,7 @@ impl Run {
             Ok(Outcome::End) => StopReason::End,
             Ok(Outcome::Rate) => StopReason::Rate,
             Ok(Outcome::WornOut) => StopReason::WornOut,
+            Ok(Outcome::Unending) => StopReason::Unending,
             Ok(Outcome::Interrupted) | Err(_) => StopReason::Interrupted,
         };
         let complete = stop_reason != StopReason::Interrupted;

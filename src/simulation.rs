@@ -1,7 +1,7 @@
 //! The loop over time: which step to try, where to land, when to stop.
 
 use crate::error::{Error, Result};
-use crate::model::{CycleFields, Fields, Model, RadialFields, State};
+use crate::model::{CycleFields, Fields, Model, MovingStick, RadialFields, State};
 use crate::stepper::Stepper;
 
 /// Safety factor and bounds of the choice of steps.
@@ -26,6 +26,9 @@ const KINKED_INTERPOLATION: f64 = 1e-2;
 
 /// How far the rate may fall below the one asked for in the last step.
 const OVERSHOT: f64 = 0.5;
+
+/// Dimensionless time for which wear without end is followed when a run is to last until its rate has fallen.
+const SHOWN_UNENDING: f64 = 1.0;
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +57,8 @@ pub enum Outcome {
     Rate,
     /// No pressure is left, so that the rate asked for is below round-off.
     WornOut,
+    /// The rate asked for is never reached: the contact slides as a whole under a held normal force.
+    Unending,
     /// An observer asked to stop.
     Interrupted,
 }
@@ -254,6 +259,10 @@ impl Simulation {
     fn finished(&self) -> Option<Outcome> {
         match self.plan.end {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
+            End::Rate(_) if self.model.moving().is_some_and(MovingStick::slides) => {
+                let tau = self.state.cycles * self.model.contact().tau_per_cycle();
+                (tau >= SHOWN_UNENDING).then_some(Outcome::Unending)
+            }
             End::Rate(fraction) => {
                 let spent = self.wear_rate() <= fraction * self.progress.first_rate
                     && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);

@@ -282,6 +282,29 @@ fn a_force_that_stick_cannot_bear_in_the_end_leads_into_full_sliding() {
     }
 }
 
+#[test]
+fn a_contact_that_slides_under_a_held_force_never_stops_wearing_and_says_so() {
+    let text =
+        Mode { loading: "amplitude_ratio = 3\nuntil_rate = 1e-6", ..PLAIN }.scene_on(60, "snapshots = 3");
+    let (held, (json, file)) = {
+        let position = text.find("indentation =").expect("a load");
+        let end = position + text[position..].find('\n').expect("a line");
+        (
+            text[position..end].to_owned(),
+            run_file(&text.replace(&text[position..end], "normal_force = \"10 N\"")),
+        )
+    };
+    println!("{held} -> {json:?}");
+    assert_eq!(json["stop_reason"], "unending");
+    assert!(json["limit_distance"].is_null());
+    let (first, last) = (&file.snapshots[0], &file.snapshots[file.snapshots.len() - 1]);
+    assert!(last.indentation > first.indentation && last.contact_radius > first.contact_radius);
+    for snapshot in &file.snapshots {
+        assert!((snapshot.normal_force / 10.0 - 1.0).abs() < 1e-10, "{}", snapshot.normal_force);
+        assert_eq!((snapshot.regime, snapshot.stick_radius), (Regime::FullSliding, 0.0));
+    }
+}
+
 /// Stops after some steps.
 struct StopAfter(u64);
 

@@ -28,12 +28,16 @@ use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::grid::{Clustering, lagrange, stencil_start};
 use crate::history::History;
+use crate::indenter::EquivalentProfile;
 use crate::linear::dot;
 use crate::loading::TangentialControl;
 use crate::roots::bracketed;
 
 /// Radii at which what was left behind is known, for interpolation over where the contact edge can be.
 const STATIONS: usize = 24;
+
+/// Indentation over the first one up to which a contact that slides under a held force is followed.
+const FARTHEST: f64 = 5.0;
 
 /// Steps of the integrals over the ground that comes to rest in a jump of the edge of stick.
 const JUMP_STEPS: usize = 1000;
@@ -53,6 +57,8 @@ enum Cause {
     NormalForce(f64),
     /// The tangential amplitude follows from a balance of forces.
     Tangential,
+    /// This normal force, N, is held while the whole contact slides: the edge stays at the core of the mesh, `q_c = d - g_0(c)` grows.
+    Sliding(f64),
 }
 
 /// How the edge of stick moves.
@@ -119,10 +125,18 @@ pub struct StickTrial {
 impl MovingStick {
     /// How the edge of stick moves under a schedule; none if it stays, or moves to and fro.
     ///
+    /// # Arguments
+    /// * `slides` -- whether no stick is left in some cycle
+    ///
     /// # Errors
     /// [`Error::Inconsistent`] for a force that is held while friction falls or amplitudes grow.
-    pub fn new(schedule: &Schedule, contact: &InitialContact) -> Result<Option<Self>> {
+    pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
         let conditions = schedule.conditions();
+        if slides {
+            let sliding = conditions.holds_normal_force && conditions.blocks.is_empty();
+            let cause = Cause::Sliding(contact.normal_force());
+            return Ok(sliding.then_some(Self { cause, outwards: false, jumps: false, span: [0.0; 2] }));
+        }
         let cause = match (conditions.holds_normal_force, conditions.tangential_control) {
             (true, TangentialControl::Displacement) => Some(Cause::NormalForce(contact.normal_force())),
             (true, _) => {
@@ -165,7 +179,7 @@ impl MovingStick {
                         .into(),
                 });
             }
-            Cause::NormalForce(_) => true,
+            Cause::NormalForce(_) | Cause::Sliding(_) => true,
             Cause::Friction if falls && rises => return Ok(None),
             Cause::Friction => rises,
             Cause::Tangential if rises || !conditions.blocks.is_empty() => return Ok(None),
@@ -178,6 +192,11 @@ impl MovingStick {
     ///
     /// Under a held force the unworn stick zone alone would bear it there.
     pub(super) fn farthest(&self, contact: &InitialContact) -> Result<InitialContact> {
+        if let Cause::Sliding(_) = self.cause {
+            // Wear goes on without end; this is how far it is followed.
+            let depth = FARTHEST * contact.indentation();
+            return contact.at(depth, depth - contact.indentation() + contact.slip_compression());
+        }
         let Cause::NormalForce(force) = self.cause else { return Ok(contact.clone()) };
         let half_space = contact.half_space();
         let exponent = 1.0 + half_space.grading();
@@ -191,10 +210,20 @@ impl MovingStick {
     /// The mesh that serves, where `asked` is the one for an edge of stick that stays.
     pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
         match self.cause {
-            _ if self.jumps => asked,
+            _ if self.jumps || self.slides() => asked,
             _ if self.outwards => Clustering::CreepingStick,
             _ => Clustering::MovingStick,
         }
+    }
+
+    /// Whether the contact slides as a whole under a held normal force, so that wear never ends.
+    pub fn slides(&self) -> bool {
+        matches!(self.cause, Cause::Sliding(_))
+    }
+
+    /// By how much area and depth of the edge of stick have changed in a stage, as far as ground passes it.
+    fn motion(&self, target: &StickTarget, area: f64, depth: f64) -> (f64, f64) {
+        if self.slides() { (0.0, 0.0) } else { (area - target.stick.area, depth - target.stick.depth) }
     }
 
     pub(super) fn with_span(mut self, first: f64, last: f64) -> Self {
@@ -234,6 +263,15 @@ impl MovingStick {
         let profile = model.contact.equivalent_profile();
         let drive = model.schedule.drive(0.0, 0.0);
         let compression = match self.cause {
+            Cause::Sliding(_) => {
+                let radius = model.place.stick_area.sqrt();
+                return Ok(StickEdge {
+                    area: model.place.stick_area,
+                    depth: model.place.slip_compression,
+                    load: unworn_load(profile, radius, model.place.slip_compression),
+                    ..StickEdge::default()
+                });
+            }
             Cause::Tangential => model.first_slip_compression(&drive)?,
             _ => drive.slip_compression(model.contact.half_space().stiffness_ratio()),
         };
@@ -245,8 +283,7 @@ impl MovingStick {
             });
         }
         let radius = profile.radius_at(depth)?;
-        let exponent = 1.0 + profile.grading();
-        let load = 0.5 * profile.load_integral(radius) + compression * radius.powf(exponent) / exponent;
+        let load = unworn_load(profile, radius, compression);
         let behind = if self.outwards { STATIONS } else { 0 };
         let nodes = if self.outwards { model.springs() } else { 0 };
         Ok(StickEdge {
@@ -258,6 +295,12 @@ impl MovingStick {
             rates: [0.0; 2],
         })
     }
+}
+
+/// `∫_0^c x^k q dx` of unworn ground, m^(2+k).
+fn unworn_load(profile: &EquivalentProfile, radius: f64, slip_compression: f64) -> f64 {
+    let exponent = 1.0 + profile.grading();
+    0.5 * profile.load_integral(radius) + slip_compression * radius.powf(exponent) / exponent
 }
 
 /// Whether a history falls, and whether it rises, somewhere.
@@ -284,8 +327,20 @@ impl Model {
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
             Cause::NormalForce(_) => drive.slip_compression(self.contact.half_space().stiffness_ratio()),
+            Cause::Sliding(_) => stick.depth,
         };
         Place { stick_area: stick.area, slip_compression, stick_load: stick.load }
+    }
+
+    /// Puts what the quadrature over the springs leaves of a held force in the first cycle on the stick zone.
+    pub(super) fn close_force(&self, mut state: State) -> State {
+        let cause = self.moving.as_ref().map(|moving| moving.cause);
+        let Some(Cause::NormalForce(force) | Cause::Sliding(force)) = cause else { return state };
+        let left = force - self.normal_force(&self.fields(&state));
+        if let Some(stick) = &mut state.stick {
+            stick.load += 0.5 * left / self.contact.half_space().normal_stiffness();
+        }
+        state
     }
 
     /// What acts in a state: the amplitude is that at which springs at the edge of stick begin to slip.
@@ -309,6 +364,9 @@ impl Model {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
                 let drive = self.schedule.drive(state.cycles, state.cycles);
                 stick.depth + self.place_of(stick, &drive).slip_compression
+            }
+            (Some(MovingStick { cause: Cause::Sliding(_), .. }), Some(stick)) => {
+                self.contact.indentation() - self.contact.slip_compression() + stick.depth
             }
             _ => self.contact.indentation(),
         }
@@ -335,20 +393,26 @@ impl Model {
         let held = self.contact.indentation();
         let (slip_compression, drive) = match moving.cause {
             Cause::Tangential => (held - depth, self.displaced(target.drive.clone(), held - depth)),
+            Cause::Sliding(_) => (depth, target.drive.clone()),
             _ => (target.drive.slip_compression(half_space.stiffness_ratio()), target.drive.clone()),
         };
         if slip_compression.is_nan() || slip_compression <= 0.0 {
             return false;
         }
         let radius = area.sqrt();
-        let (passed, risen) = (area - target.stick.area, depth - target.stick.depth);
+        let (passed, risen) = moving.motion(target, area, depth);
         let deeper = match moving.cause {
             Cause::NormalForce(_) => risen + slip_compression - target.slip_compression,
             _ => 0.0,
         };
-        let load = target.stick.load
-            + deeper * radius.powf(exponent) / exponent
-            + 0.5 * slip_compression * radius.powf(exponent - 2.0) * passed;
+        let load = if moving.slides() {
+            target.stick.load
+                + (slip_compression - target.slip_compression) * radius.powf(exponent) / exponent
+        } else {
+            target.stick.load
+                + deeper * radius.powf(exponent) / exponent
+                + 0.5 * slip_compression * radius.powf(exponent - 2.0) * passed
+        };
         trial.place = Place { stick_area: area, slip_compression, stick_load: load };
         self.evaluate_at(&trial.place, edge, compression, &mut trial.fields);
         if !trial.fields.are_physical() {
@@ -380,18 +444,19 @@ impl Model {
             return false;
         }
         trial.residual.push((free / fields.unworn[n - 1].slip).ln());
-        let closure = if moving.jumps {
-            passed
+        let closure = if moving.jumps || moving.slides() {
+            area / target.stick.area - 1.0
         } else if moving.outwards {
             unworn_rise - risen * self.at_stick_edge(|i| (-fields.log_slip[i]).exp())
         } else {
             profile.value(radius) - depth
         };
-        trial.residual.push(closure / slip_compression);
+        let closure = if moving.jumps || moving.slides() { closure } else { closure / slip_compression };
+        trial.residual.push(closure);
         let balance = match moving.cause {
             _ if moving.jumps => risen / slip_compression,
             Cause::Friction => (depth - (held - slip_compression)) / slip_compression,
-            Cause::NormalForce(force) => self.normal_force(fields) / force - 1.0,
+            Cause::NormalForce(force) | Cause::Sliding(force) => self.normal_force(fields) / force - 1.0,
             Cause::Tangential => {
                 let amplitude = drive.amplitude;
                 let force = self.force(&drive, compression, fields, amplitude);
@@ -434,7 +499,7 @@ impl Model {
     fn stick_slopes(&self, log_slip: &[f64]) -> Vec<f64> {
         let moving = self.moving.as_ref().expect("called where the stick edge moves");
         let mut along = self.along_annulus(log_slip);
-        if !moving.outwards {
+        if !moving.outwards && !moving.slides() {
             let nodes = self.operators.abel.nodes();
             for (i, slope) in along.iter_mut().enumerate().take(log_slip.len() / 2) {
                 let before = if i == 0 { 0.0 } else { log_slip[i - 1] };
@@ -458,7 +523,7 @@ impl Model {
         let (n, inner) = (self.springs(), self.springs() - 1);
         let fields = &trial.fields;
         let drive = trial.drive.as_ref().expect("set by the trial");
-        let (passed, risen) = (area - target.stick.area, depth - target.stick.depth);
+        let (passed, risen) = moving.motion(target, area, depth);
         let nodes = &self.operators.abel.nodes()[1..];
         let mut growth = Mat::zeros(n, n);
         self.add_growth_slopes(drive, compression, fields, &trial.cycle, -target.step, &mut growth);
@@ -491,7 +556,7 @@ impl Model {
                 * fields.density_factor[j];
             matrix[(n + 1, j)] = match moving.cause {
                 Cause::Friction => 0.0,
-                Cause::NormalForce(force) => weight / force,
+                Cause::NormalForce(force) | Cause::Sliding(force) => weight / force,
                 Cause::Tangential => {
                     let ratio = self.contact.half_space().stiffness_ratio();
                     let q = compression[j];
@@ -512,9 +577,28 @@ impl Model {
             (n + 1, [0.0, 0.0, DIFFERENCE * trial.place.slip_compression]),
         ];
         for (column, [by_edge, by_area, by_depth]) in steps {
-            if moving.jumps && column >= n {
-                // Between blocks the edge of stick stays.
-                matrix[(column, column)] = 1.0 / trial.place.slip_compression;
+            if let (Cause::Sliding(force), true) = (moving.cause, column == n + 1) {
+                // By a difference the small slip next to the core would change its sign.
+                let uniform = |i: usize| fields.unworn[i].limit_slip / trial.place.slip_compression;
+                let slopes: Vec<f64> = (0..n).map(|i| uniform(i) / fields.slip_depth[i]).collect();
+                let along = self.stick_slopes(&slopes);
+                for i in 0..inner {
+                    let moved = along[i] * (edge - target.edge) / edge;
+                    matrix[(i, column)] = slopes[i] * (1.0 + target.step * trial.cycle.growth[i]) - moved;
+                }
+                matrix[(inner, column)] = slopes[inner];
+                let exponent = 1.0 + self.contact.half_space().grading();
+                let stiffness = self.contact.half_space().normal_stiffness();
+                matrix[(n + 1, column)] = 2.0 * stiffness * area.powf(0.5 * exponent) / (exponent * force);
+                continue;
+            }
+            if (moving.jumps && column >= n) || (moving.slides() && column == n) {
+                // The edge of stick stays.
+                matrix[(column, column)] = if column == n {
+                    target.stick.area.recip()
+                } else {
+                    trial.place.slip_compression.recip()
+                };
                 continue;
             }
             let step = by_edge + by_area + by_depth;
@@ -539,7 +623,8 @@ impl Model {
     /// Slopes, per cycle, of what the stick edge carries along: load, what was left behind, wear depth at the radii of the output.
     pub fn stick_rates(&self, target: &StickTarget, area: f64, depth: f64, trial: &StickTrial) -> StickEdge {
         let moving = self.moving.as_ref().expect("called where the stick edge moves");
-        let (passed, risen) = (area - target.stick.area, depth - target.stick.depth);
+        let (passed, risen) = moving.motion(target, area, depth);
+        let changed = depth - target.stick.depth;
         let per_step = target.step.recip();
         let radius = area.sqrt();
         let unworn_rise = 0.5 * self.contact.equivalent_profile().derivative(radius) / radius * passed;
@@ -573,7 +658,7 @@ impl Model {
         }
         StickEdge {
             area: per_step * passed,
-            depth: per_step * risen,
+            depth: per_step * changed,
             load: per_step * (trial.place.stick_load - target.stick.load),
             left_behind,
             wear_depth,
