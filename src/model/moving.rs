@@ -314,6 +314,13 @@ impl Model {
         }
     }
 
+    /// Compression at the edge of stick at the end of a stage, m, where friction alone decides it.
+    pub fn known_slip_compression(&self, target: &StickTarget) -> Option<f64> {
+        let moving = self.moving.as_ref()?;
+        (moving.cause == Cause::Friction && !moving.jumps)
+            .then(|| target.drive.slip_compression(self.contact.half_space().stiffness_ratio()))
+    }
+
     /// Tries a state in a stage.
     pub fn try_stick(
         &self,
