@@ -661,9 +661,9 @@ impl Model {
         let moved = self.compression_at(&next, edge, |i, _| slip[i]);
         Ok(State {
             edge,
+            compression_rate: vec![0.0; moved.len()],
             compression: moved,
             edge_rate: 0.0,
-            compression_rate: vec![0.0; nodes.len()],
             stick: Some(StickEdge {
                 area: next.stick_area,
                 depth: self.contact.indentation() - compression,

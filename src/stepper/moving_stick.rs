@@ -17,6 +17,9 @@ pub struct MovingStickImplicit {
 /// Corrections of the edge of stick, relative, that are round-off of the balance that decides it.
 const STICK_ROUND_OFF: f64 = 1e-11;
 
+/// What may be left of a balance of forces, relative.
+const BALANCED: f64 = 1e-12;
+
 /// Slopes of one stage.
 struct Stage {
     log_slip: Vec<f64>,
@@ -83,7 +86,11 @@ impl MovingStickImplicit {
                 let size = largest.max(change[inner].abs() / at.edge);
                 let stick = (change[inner + 1].abs() / at.area).max(change[inner + 2].abs() / scale);
                 let left = at.compression.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
-                if size <= self.newton_tolerance * left + 10.0 * ROUND_OFF && stick <= STICK_ROUND_OFF {
+                let balanced = self.trial.residual.last().is_some_and(|it| it.abs() <= BALANCED);
+                if size <= self.newton_tolerance * left + 10.0 * ROUND_OFF
+                    && stick <= STICK_ROUND_OFF
+                    && balanced
+                {
                     return true;
                 }
                 if size.max(stick) > SLOWEST * before {
