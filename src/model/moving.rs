@@ -344,7 +344,7 @@ impl Model {
             Cause::Tangential => (held - depth, self.displaced(target.drive.clone(), held - depth)),
             _ => (target.drive.slip_compression(half_space.stiffness_ratio()), target.drive.clone()),
         };
-        if !(slip_compression > 0.0) {
+        if slip_compression.is_nan() || slip_compression <= 0.0 {
             return false;
         }
         let radius = area.sqrt();
@@ -383,7 +383,7 @@ impl Model {
         }
         let behind = self.left_behind(target, area, edge, unworn_rise, risen, slip_compression);
         let free = fields.slip_depth[n - 1] - behind;
-        if !(free > 0.0) {
+        if free.is_nan() || free <= 0.0 {
             return false;
         }
         trial.residual.push((free / fields.unworn[n - 1].slip).ln());
