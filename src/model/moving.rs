@@ -372,6 +372,13 @@ impl Model {
         }
     }
 
+    /// Compression at the edge of stick at the end of a stage, m, where friction alone decides it.
+    pub fn known_slip_compression(&self, target: &StickTarget) -> Option<f64> {
+        let moving = self.moving.as_ref()?;
+        (moving.cause == Cause::Friction && !moving.jumps)
+            .then(|| target.drive.slip_compression(self.contact.half_space().stiffness_ratio()))
+    }
+
     /// Tries a state in a stage.
     pub fn try_stick(
         &self,
@@ -739,9 +746,9 @@ impl Model {
         let moved = self.compression_at(&next, edge, |i, _| slip[i]);
         Ok(State {
             edge,
+            compression_rate: vec![0.0; moved.len()],
             compression: moved,
             edge_rate: 0.0,
-            compression_rate: vec![0.0; nodes.len()],
             stick: Some(StickEdge {
                 area: next.stick_area,
                 depth: self.contact.indentation() - compression,

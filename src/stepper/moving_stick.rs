@@ -3,6 +3,7 @@
 use super::implicit::{EMBEDDED, GAMMA, ITERATIONS, MATRIX, RENEWALS, ROUND_OFF, SLOWEST, STAGES, TIMES};
 use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
+use crate::grid::lagrange;
 use crate::linear::Factors;
 use crate::model::{Model, State, StickEdge, StickTarget, StickTrial};
 
@@ -15,6 +16,9 @@ pub struct MovingStickImplicit {
 
 /// Corrections of the edge of stick, relative, that are round-off of the balance that decides it.
 const STICK_ROUND_OFF: f64 = 1e-11;
+
+/// What may be left of a balance of forces, relative.
+const BALANCED: f64 = 1e-12;
 
 /// Slopes of one stage.
 struct Stage {
@@ -82,7 +86,11 @@ impl MovingStickImplicit {
                 let size = largest.max(change[inner].abs() / at.edge);
                 let stick = (change[inner + 1].abs() / at.area).max(change[inner + 2].abs() / scale);
                 let left = at.compression.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
-                if size <= self.newton_tolerance * left + 10.0 * ROUND_OFF && stick <= STICK_ROUND_OFF {
+                let balanced = self.trial.residual.last().is_some_and(|it| it.abs() <= BALANCED);
+                if size <= self.newton_tolerance * left + 10.0 * ROUND_OFF
+                    && stick <= STICK_ROUND_OFF
+                    && balanced
+                {
                     return true;
                 }
                 if size.max(stick) > SLOWEST * before {
@@ -115,6 +123,29 @@ impl Unknowns {
             depth: stick.depth + cycles * stick.rates[1],
         }
     }
+
+    /// At `time` by the polynomial through what there was at some times.
+    fn through(times: &[f64], known: &[Self], time: f64) -> Self {
+        let mut weights = vec![0.0; times.len()];
+        lagrange(times, time, &mut weights);
+        let sum = |part: &dyn Fn(&Self) -> f64| known.iter().zip(&weights).map(|(it, w)| w * part(it)).sum();
+        Self {
+            compression: (0..known[0].compression.len()).map(|i| sum(&|it| it.compression[i])).collect(),
+            edge: sum(&|it| it.edge),
+            area: sum(&|it| it.area),
+            depth: sum(&|it| it.depth),
+        }
+    }
+
+    /// Where the compression at the edge of stick is known, with that one: next to the edge slip is the small difference of both.
+    fn fitted(mut self, model: &Model, target: &StickTarget) -> Self {
+        let Some(known) = model.known_slip_compression(target) else { return self };
+        let held = model.contact().indentation();
+        let factor = known / (held - self.depth);
+        self.compression.iter_mut().for_each(|q| *q *= factor);
+        self.depth = held - known;
+        self
+    }
 }
 
 impl Stepper for MovingStickImplicit {
@@ -126,6 +157,8 @@ impl Stepper for MovingStickImplicit {
         let mut stages: Vec<Stage> = Vec::with_capacity(STAGES);
         let mut factors = None;
         let mut at = Unknowns::ahead(state, stick, 0.0);
+        let mut known = vec![at.clone()];
+        let times: Vec<f64> = std::iter::once(0.0).chain(TIMES).collect();
         for (index, row) in MATRIX.into_iter().enumerate() {
             let gathered = |from: f64, part: &dyn Fn(&Stage) -> f64| {
                 let sum: f64 = stages.iter().zip(row).map(|(stage, weight)| weight * part(stage)).sum();
@@ -149,17 +182,20 @@ impl Stepper for MovingStickImplicit {
                 drive: model.schedule().drive(state.cycles, state.cycles + TIMES[index] * cycles),
             };
             let from = at.clone();
-            if index == 0 {
-                at = Unknowns::ahead(state, stick, TIMES[0] * cycles);
+            at = match index {
+                0 => Unknowns::ahead(state, stick, TIMES[0] * cycles),
+                _ => Unknowns::through(&times[..=index], &known, TIMES[index]),
             }
+            .fitted(model, &target);
             if !self.solve(model, &target, &mut at, &mut factors, &mut evaluations) {
-                // The rates of the last step may lead astray.
-                at = from;
+                // What was before may lead astray.
+                at = from.fitted(model, &target);
                 factors = None;
                 if !self.solve(model, &target, &mut at, &mut factors, &mut evaluations) {
                     return Ok(Trial::failed(evaluations));
                 }
             }
+            known.push(at.clone());
             let trial = &self.trial;
             let slope = |(now, before): (&f64, &f64)| (now - before) / target.step;
             stages.push(Stage {

@@ -1,0 +1,524 @@
+//! Edges of stick that move: inwards to the limit of the last one, outwards to ends of their own.
+
+mod support;
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+
+use fretwear::closed_form::LimitingShape;
+use fretwear::conditions::Conditions;
+use fretwear::contact::InitialContact;
+use fretwear::friction::Coulomb;
+use fretwear::grid::Clustering;
+use fretwear::half_space::HalfSpace;
+use fretwear::history::History;
+use fretwear::indenter::Indenter;
+use fretwear::loading::{Amplitude, Duration, Load, Loading, TangentialControl};
+use fretwear::model::{Model, OperatorStore, Resolution, Schedule, State};
+use fretwear::run::{Resumed, Run};
+use fretwear::scene::Scene;
+use fretwear::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
+use fretwear::snapshot::{RunFile, StopReason};
+use fretwear::stepper::MovingStickImplicit;
+use fretwear::wear::{Archard, WearLaw};
+use support::{Case, distance, laws};
+
+/// What each step leaves behind, the start included: cycles, area within the edge of stick and depth of the profile there.
+#[derive(Default)]
+struct Steps(Vec<[f64; 3]>);
+
+impl Steps {
+    fn keep(&mut self, state: &State) {
+        let stick = state.stick.as_ref().expect("an edge of stick that moves");
+        self.0.push([state.cycles, stick.area, stick.depth]);
+    }
+}
+
+impl Observer for Steps {
+    fn output(&mut self, simulation: &Simulation) -> fretwear::Result<()> {
+        if simulation.progress().steps == 0 {
+            self.keep(simulation.state());
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, simulation: &Simulation) -> fretwear::Result<Flow> {
+        self.keep(simulation.state());
+        Ok(Flow::Continue)
+    }
+}
+
+/// Runs until the rate has fallen to 1e-10 of the first, through outputs at some cycles.
+fn finish(
+    contact: &InitialContact,
+    springs: usize,
+    conditions: &Conditions,
+    tolerance: f64,
+    observers: &mut [&mut dyn Observer],
+) -> Simulation {
+    finish_at(1e-10, contact, springs, conditions, tolerance, observers)
+}
+
+fn finish_at(
+    rate: f64,
+    contact: &InitialContact,
+    springs: usize,
+    conditions: &Conditions,
+    tolerance: f64,
+    observers: &mut [&mut dyn Observer],
+) -> Simulation {
+    let schedule = Schedule::new(contact, conditions, Resolution::default()).unwrap();
+    let store = OperatorStore::default();
+    let model = Model::under(contact, schedule, springs, Clustering::Cubic, &store).unwrap();
+    assert!(model.moving().is_some());
+    let plan = Plan { outputs: vec![0.3, 1.0, 3.0, 10.0, 30.0], end: End::Rate(rate) };
+    let stepper = Box::new(MovingStickImplicit::new(tolerance));
+    let mut simulation = Simulation::new(model, stepper, tolerance, plan).unwrap();
+    let outcome = simulation.run(observers).unwrap();
+    assert!([Outcome::Rate, Outcome::WornOut].contains(&outcome), "{outcome:?}");
+    simulation
+}
+
+/// Worn volume over `a0² d`, by the rates of the cycles.
+fn volume(simulation: &Simulation) -> f64 {
+    simulation.state().volume_by_rate / simulation.model().contact().indentation()
+}
+
+/// The same from the depth at the radii of the output.
+fn volume_by_depth(simulation: &Simulation) -> f64 {
+    let model = simulation.model();
+    let sum: f64 =
+        model.operators().depth_sum().iter().zip(simulation.wear_depth()).map(|(w, depth)| w * depth).sum();
+    PI * model.unworn().limit_edge() * sum / model.contact().indentation()
+}
+
+fn end_of(case: &Case, conditions: &Conditions, tolerance: f64) -> f64 {
+    volume(&finish(&case.contact(), case.springs, conditions, tolerance, &mut []))
+}
+
+fn held_force(contact: &InitialContact) -> Conditions {
+    Conditions { holds_normal_force: true, ..laws::plain(contact) }
+}
+
+fn friction(contact: &InitialContact, last: f64) -> Conditions {
+    let friction_history = History::Exponential { last, time: 3.0 };
+    Conditions { friction_history, ..laws::plain(contact) }
+}
+
+fn shrinking(contact: &InitialContact, first: f64) -> Conditions {
+    let blocks = vec![laws::block(first, 1.0, 1.0), laws::block(1.0, 0.5, 1.0)];
+    Conditions { blocks, ..laws::plain(contact) }
+}
+
+fn control(contact: &InitialContact, tangential_control: TangentialControl) -> Conditions {
+    Conditions { tangential_control, ..laws::plain(contact) }
+}
+
+/// A sphere of radius 1 pressed on to a contact of a radius of about one half.
+fn sphere(stick_ratio: f64) -> InitialContact {
+    let loading = Loading {
+        load: Load::Indentation(0.25),
+        amplitude: Amplitude::StickRatio(stick_ratio),
+        duration: Duration::Tau(1.0),
+    };
+    let indenter = Indenter::sphere(1.0).unwrap();
+    let half_space = HalfSpace::from_stiffness(0.2, 1.0, 1.0).unwrap();
+    let contact = |coefficient: f64| {
+        let wear = Archard { coefficient };
+        InitialContact::new(&indenter, &half_space, &Coulomb { coefficient: 1.0 }, &wear, &loading).unwrap()
+    };
+    contact(contact(1.0).tau_per_cycle().recip())
+}
+
+#[test]
+fn under_a_held_normal_force_the_volume_converges_over_springs_and_tolerance() {
+    // Measured with 240 springs and 1e-6; the order of the springs is 2.4 to 2.9.
+    for (grading, expected) in [(0.0, 0.34208), (-0.3, 0.22926), (0.5, 0.53322)] {
+        let at = |springs: usize, tolerance: f64| {
+            let case = Case::new(2.0, grading, 0.7, springs);
+            end_of(&case, &held_force(&case.contact()), tolerance)
+        };
+        let over_springs = [60, 120, 240].map(|springs| at(springs, 1e-4));
+        let over_tolerance = [1e-5, 1e-6].map(|tolerance| at(60, tolerance));
+        println!(
+            "k {grading}: {over_springs:.6?}, with 60 springs and ever smaller steps {over_tolerance:.6?}"
+        );
+        let change = |a: f64, b: f64| (a / b - 1.0).abs();
+        assert!(change(over_springs[1], over_springs[2]) < 5e-4, "k = {grading}: {over_springs:?}");
+        assert!(change(over_springs[2], expected) < 2e-4, "k = {grading}: {over_springs:?}");
+        let falls = (over_springs[0] - over_springs[1]).abs() / (over_springs[1] - over_springs[2]).abs();
+        assert!(falls > 3.0, "k = {grading}: {falls}");
+        assert!(
+            change(over_springs[0], over_tolerance[1]) < 3e-4
+                && change(over_tolerance[0], over_tolerance[1]) < 5e-5,
+            "k = {grading}: {over_tolerance:?}"
+        );
+    }
+}
+
+#[test]
+fn under_a_held_normal_force_the_law_of_wear_decides_the_end() {
+    // Archard's law 0.3421; prototypes had 0.346 and 0.386 for it and for p s^½.
+    let mut ends = vec![];
+    for (name, exponents, expected) in [
+        ("p s", [1.0, 1.0], 0.34209),
+        ("p s^0.5", [1.0, 0.5], 0.38588),
+        ("p^1.5 s", [1.5, 1.0], 0.35755),
+        ("p^0.5 s", [0.5, 1.0], 0.31201),
+    ] {
+        let found = [60, 120].map(|springs| {
+            let case = Case::new(2.0, 0.0, 0.7, springs);
+            let contact = case.contact();
+            let wear = laws::power(&contact, exponents[0], exponents[1]);
+            end_of(&case, &Conditions { wear, ..held_force(&contact) }, 1e-4)
+        });
+        println!("{name}: {found:.6?}");
+        for (volume, allowed) in found.iter().zip([3e-3, 1e-3]) {
+            assert!((volume / expected - 1.0).abs() < allowed, "{name}: {found:?} instead of {expected}");
+        }
+        ends.push(found[1]);
+    }
+    for (i, one) in ends.iter().enumerate() {
+        assert!(ends[..i].iter().all(|other| (one / other - 1.0).abs() > 0.03), "{ends:?}");
+    }
+}
+
+/// `∫ x^k q dx` over the ground that came to rest, from the edges of stick that were: of local cubics through four steps, in four parts each.
+fn load_at_rest(simulation: &Simulation, history: &[[f64; 3]]) -> f64 {
+    let contact = simulation.model().contact();
+    let grading = contact.half_space().grading();
+    let depth = simulation.model().indentation(simulation.state());
+    let unworn = history[0][1].sqrt();
+    let exponent = 1.0 + grading;
+    let mut load = 0.5 * contact.equivalent_profile().load_integral(unworn)
+        + (depth - history[0][2]) * unworn.powf(exponent) / exponent;
+    for cell in 1..history.len() {
+        let [low, high] = [history[cell - 1][1], history[cell][1]];
+        if high <= low {
+            continue;
+        }
+        let start = cell.saturating_sub(2).min(history.len() - 4);
+        let near = &history[start..start + 4];
+        let height = |area: f64| -> f64 {
+            let term = |j: usize| {
+                let others = (0..4).filter(|i| *i != j);
+                near[j][2] * others.map(|i| (area - near[i][1]) / (near[j][1] - near[i][1])).product::<f64>()
+            };
+            (0..4).map(term).sum()
+        };
+        let density = |area: f64| 0.5 * area.powf(0.5 * (grading - 1.0)) * (depth - height(area));
+        let step = (high - low) / 8.0;
+        load += (0..=8)
+            .map(|i| [1.0, 4.0, 2.0, 4.0, 2.0, 4.0, 2.0, 4.0, 1.0][i] * density(low + step * i as f64))
+            .sum::<f64>()
+            * step
+            / 3.0;
+    }
+    load
+}
+
+#[test]
+fn the_normal_force_is_held_by_the_profile_that_the_edge_of_stick_left_behind() {
+    for grading in [0.0, -0.3, 0.5] {
+        let case = Case::new(2.0, grading, 0.7, 60);
+        let contact = case.contact();
+        let mut errors = vec![];
+        for tolerance in [1e-3, 1e-4, 1e-5] {
+            let (mut history, mut forces) = (Steps::default(), Forces::default());
+            let simulation =
+                finish(&contact, 60, &held_force(&contact), tolerance, &mut [&mut history, &mut forces]);
+            // At the start the force is that of the quadrature, 6e-10 off with 60 springs.
+            let held = forces
+                .0
+                .iter()
+                .skip(1)
+                .fold(0.0, |m: f64, f| m.max((f / contact.normal_force() - 1.0).abs()));
+            assert!(held < 1e-10 && forces.0.len() >= 6, "k = {grading}: {held:e}");
+            // The edge creeps in the end, by less than round-off allows to interpolate.
+            let last = simulation.state().stick.as_ref().unwrap().area;
+            let mut steps = history.0.clone();
+            steps.dedup_by(|next, before| next[1] - before[1] < 1e-9 * last);
+            let found = load_at_rest(&simulation, &steps);
+            let expected = simulation.fields().place.stick_load;
+            errors.push((found / expected - 1.0).abs());
+            let all = 2.0 * contact.half_space().normal_stiffness() * found / contact.normal_force() - 1.0;
+            println!(
+                "k {grading} tolerance {tolerance:e}: held to {held:.1e}, rebuilt to {:.1e}, all {all:.1e}",
+                errors[errors.len() - 1]
+            );
+        }
+        assert!(errors[2] < 2e-7 && errors[0] > 3.0 * errors[2], "k = {grading}: {errors:?}");
+    }
+}
+
+/// Normal forces at the outputs.
+#[derive(Default)]
+struct Forces(Vec<f64>);
+
+impl Observer for Forces {
+    fn output(&mut self, simulation: &Simulation) -> fretwear::Result<()> {
+        self.0.push(simulation.model().normal_force(simulation.fields()));
+        Ok(())
+    }
+}
+
+#[test]
+fn blocks_that_shrink_end_between_the_limits_of_the_two() {
+    for (first, expected) in [(1.0, 0.08134), (3.0, 0.16317)] {
+        let ends = [25, 50, 100, 200].map(|springs| {
+            let case = Case::new(2.0, 0.0, 0.7, springs);
+            let contact = case.contact();
+            let simulation = finish(&contact, springs, &shrinking(&contact, first), 1e-4, &mut []);
+            [volume(&simulation), volume_by_depth(&simulation)]
+        });
+        let changes: Vec<f64> = ends.windows(2).map(|pair| pair[0][0] - pair[1][0]).collect();
+        let orders = support::orders(&changes);
+        println!("change at {first}: {ends:.6?}, orders {orders:.2?}");
+        assert!((ends[3][0] / expected - 1.0).abs() < 1e-4, "{ends:?}");
+        assert!((ends[2][0] / ends[3][0] - 1.0).abs() < 3e-4, "{ends:?}");
+        assert!(orders.iter().all(|order| *order > 2.0), "{orders:?}");
+        // Quadrature over the rows of the output, of which some lie on ground that came to rest within a cell.
+        assert!(ends.iter().skip(1).all(|[rate, depth]| (depth / rate - 1.0).abs() < 5e-3), "{ends:?}");
+        assert!((ends[3][1] / ends[3][0] - 1.0).abs() < 2e-3, "{ends:?}");
+        let limits = [0.0327, 0.2358];
+        assert!(ends[3][0] > limits[0] && ends[3][0] < limits[1], "{ends:?}");
+    }
+}
+
+#[test]
+fn under_rising_friction_the_volume_converges_in_few_steps() {
+    for (exponent, grading, expected) in [(2.0, 0.0, 0.10629), (1.0, -0.3, 0.04657), (2.0, 0.5, 0.12614)] {
+        let found = [60, 120, 240].map(|springs| {
+            let contact = Case::new(exponent, grading, 0.7, springs).contact();
+            let simulation = finish(&contact, springs, &friction(&contact, 2.0), 1e-4, &mut []);
+            let progress = simulation.progress();
+            // Where stages did not start from the compression that friction gives, it took 3797 steps on 240 springs.
+            assert!(progress.steps < 200 && progress.rejected_steps < 30, "{progress:?}");
+            [volume(&simulation), volume_by_depth(&simulation)]
+        });
+        println!("n {exponent} k {grading}: {found:.6?}");
+        assert!(found.iter().all(|[rate, _]| (rate / expected - 1.0).abs() < 1e-3), "{found:?}");
+        assert!((found[1][0] / found[2][0] - 1.0).abs() < 2e-4, "n = {exponent}, k = {grading}: {found:?}");
+        assert!((found[2][1] / found[2][0] - 1.0).abs() < 3e-3, "n = {exponent}, k = {grading}: {found:?}");
+    }
+}
+
+#[test]
+fn many_small_jumps_come_to_friction_that_rises() {
+    // Under one amplitude slip is μ_f(t) (q_c(t) - q)/M; in blocks the coefficient of wear takes the part of the friction before it.
+    let case = Case::new(2.0, 0.0, 0.7, 100);
+    let contact = case.contact();
+    let expected = end_of(&case, &friction(&contact, 2.0), 1e-5);
+    let blocks = |count: usize, place: f64| {
+        let factor = |at: f64| 1.0 + at / count as f64;
+        let time = |i: usize| -3.0 * (1.0 - i as f64 / count as f64).ln();
+        let block = |i: usize| {
+            let duration = if i + 1 == count { 1.0 } else { time(i + 1) - time(i) };
+            laws::block(duration, factor(i as f64 + place).recip(), 1.0)
+        };
+        let wear_history = History::Exponential { last: 2.0, time: 3.0 };
+        let blocks = (0..count).map(block).collect();
+        end_of(&case, &Conditions { blocks, wear_history, ..laws::plain(&contact) }, 1e-5)
+    };
+    let errors = [8, 16, 32, 64].map(|count| (blocks(count, 0.0) / expected - 1.0).abs());
+    let orders = support::orders(&errors);
+    println!("{expected:.6}, errors of blocks {errors:.5?}, orders {orders:.2?}");
+    assert!(orders.iter().all(|order| (order - 1.0).abs() < 0.1), "{errors:?}, {orders:?}");
+}
+
+/// Largest excess of what is asked, over it, at the outputs.
+struct Balance {
+    asked: f64,
+    /// Parts of force and displacement in it.
+    parts: [f64; 2],
+    largest: f64,
+}
+
+impl Observer for Balance {
+    fn output(&mut self, simulation: &Simulation) -> fretwear::Result<()> {
+        let amplitude = simulation.cycle().amplitude;
+        let model = simulation.model();
+        let compression = &simulation.state().compression;
+        let force = model.tangential_force(simulation.fields(), compression, amplitude);
+        let found = self.parts[0] * force + self.parts[1] * amplitude;
+        // At the start the balance is that of the continuous contact.
+        if simulation.progress().steps > 0 {
+            self.largest = self.largest.max((found / self.asked - 1.0).abs());
+        }
+        Ok(())
+    }
+}
+
+/// Depth against the limit of the last edge of stick, over its largest.
+fn distance_from_limit(simulation: &Simulation) -> f64 {
+    let model = simulation.model();
+    let shape = LimitingShape::from_contact(model.contact()).unwrap().unwrap();
+    let limit: Vec<f64> = model.offsets().iter().map(|it| shape.wear_depth_at_offset(*it)).collect();
+    distance(simulation.wear_depth(), &limit) / shape.wear_depth_max()
+}
+
+fn inward_laws(contact: &InitialContact) -> Vec<(&'static str, WearLaw)> {
+    let all = laws::wear_laws(contact);
+    all.into_iter().filter(|(name, _)| ["Archard", "energy", "p^1.5"].contains(name)).collect()
+}
+
+const MEDIA: [(f64, f64); 3] = [(2.0, 0.0), (1.0, -0.3), (2.0, 0.5)];
+
+#[test]
+fn an_edge_of_stick_that_moves_inwards_ends_at_the_limit_of_the_last_one_under_every_law_of_wear() {
+    for (exponent, grading) in MEDIA {
+        let cases = [(0.7, 0), (0.9, 1), (0.7, 2)];
+        for (stick_ratio, kind) in cases {
+            let contact = Case::new(exponent, grading, stick_ratio, 50).contact();
+            let profile = contact.equivalent_profile();
+            let (d, q) = (contact.indentation(), contact.slip_compression());
+            // Force of the first cycle, by Ciavarella and Jäger.
+            let first = contact.normal_force() - profile.load_integral(profile.radius_at(d - q).unwrap());
+            let borne = |c: f64| {
+                let strength = d - profile.value(c);
+                (strength, 2.0 * strength * c.powf(1.0 + grading) / (1.0 + grading))
+            };
+            let rig = TangentialControl::Rig { stiffness: 10.0 };
+            let (name, conditions, asked, parts) = match kind {
+                0 => ("falling friction", friction(&contact, 0.8), contact.amplitude(), [0.0, 1.0]),
+                1 => ("force", control(&contact, TangentialControl::Force), first, [1.0, 0.0]),
+                _ => ("rig", control(&contact, rig), contact.amplitude(), [0.1, 1.0]),
+            };
+            for (law, wear) in inward_laws(&contact) {
+                let mut balance = Balance { asked, parts, largest: 0.0 };
+                let conditions = Conditions { wear, ..conditions.clone() };
+                // By p^1.5 the compression falls only as τ^-2.
+                let rate = if law == "p^1.5" { 1e-14 } else { 1e-10 };
+                let simulation = finish_at(rate, &contact, 40, &conditions, 1e-4, &mut [&mut balance]);
+                let away = distance_from_limit(&simulation);
+                let c = simulation.state().stick.as_ref().unwrap().area.sqrt();
+                let (displacement, force) = borne(c);
+                let last = match kind {
+                    0 => (d - profile.value(c)) * 0.8 / q - 1.0,
+                    _ => (parts[0] * force + parts[1] * displacement) / asked - 1.0,
+                };
+                let what = format!(
+                    "n = {exponent}, k = {grading}, {name}, {law}: {away:.1e} from the limit, c = {c:.6}, \
+                     off its balance by {last:.1e}, balance of the outputs {:.1e}",
+                    balance.largest
+                );
+                println!("{what}");
+                let predicted = simulation.model().contact().stick_radius().unwrap();
+                assert!(away < 5e-10 && last.abs() < 1e-11 && (c / predicted - 1.0).abs() < 1e-9, "{what}");
+                assert!(balance.largest < 1e-10, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sphere_ends_at_its_limit_inwards_and_converges_outwards() {
+    for (name, contact, conditions) in [
+        ("falling friction", sphere(0.7), friction(&sphere(0.7), 0.8)),
+        ("force", sphere(0.9), control(&sphere(0.9), TangentialControl::Force)),
+    ] {
+        let away = distance_from_limit(&finish(&contact, 30, &conditions, 1e-4, &mut []));
+        println!("{name}: {away:.1e}");
+        assert!(away < 1e-9, "{name}: {away:e}");
+    }
+    let contact = sphere(0.7);
+    for (name, conditions) in
+        [("held normal force", held_force(&contact)), ("rising friction", friction(&contact, 2.0))]
+    {
+        let found =
+            [20, 40, 80].map(|springs| volume(&finish(&contact, springs, &conditions, 1e-4, &mut [])) / 0.25);
+        println!("{name}: {found:.6?}");
+        let [coarse, fine] = [found[0] - found[1], found[1] - found[2]].map(f64::abs);
+        assert!(fine < 5e-3 * found[2] && coarse > 2.0 * fine, "{name}: {found:?}");
+    }
+}
+
+/// A scene with some lines of `[loading]` and tables.
+fn scene(loading: &str, tables: &str) -> String {
+    format!(
+        "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = 0.2\nnormal_stiffness = 1e11\n\
+         [friction.coulomb]\ncoefficient = 0.6\n{tables}[wear.archard]\ncoefficient = 1e-12\n\
+         [loading]\nstick_ratio = 0.7\ntau = 3\n{loading}\n"
+    )
+}
+
+fn blocks_of(factors: [f64; 2]) -> String {
+    let of = |factor: f64| format!("[[loading.blocks]]\ntau = 1\namplitude_factor = {factor}\n");
+    format!("indentation = \"1 um\"\n{}{}", of(factors[0]), of(factors[1]))
+}
+
+/// Name and scene of every way in which an edge of stick moves.
+fn scenes() -> Vec<(&'static str, String)> {
+    let history = |last: f64| format!("[friction.history]\nfinal_factor = {last}\ntau = 3\n");
+    let depth = "indentation = \"1 um\"\n";
+    vec![
+        ("held normal force", scene("normal_force = \"40 mN\"", "")),
+        ("shrinking blocks", scene(&blocks_of([1.0, 0.5]), "")),
+        ("rising friction", scene(depth, &history(2.0))),
+        ("falling friction", scene(depth, &history(0.8))),
+        ("force", scene(&format!("{depth}tangential_control = \"force\""), "").replace("0.7", "0.95")),
+        ("rig", scene(&format!("{depth}rig_stiffness = \"10 MN/m\""), "")),
+    ]
+}
+
+/// Stops after some steps.
+struct StopAfter(u64);
+
+impl Observer for StopAfter {
+    fn step(&mut self, _: &Simulation) -> fretwear::Result<Flow> {
+        self.0 -= 1;
+        Ok(if self.0 == 0 { Flow::Stop } else { Flow::Continue })
+    }
+}
+
+fn without_wall_time(path: &Path) -> RunFile {
+    let mut file = RunFile::open(path).expect("a run");
+    file.checkpoint.as_mut().expect("a checkpoint").wall_seconds = 0.0;
+    file
+}
+
+#[test]
+fn resumes_to_the_same_bits_however_the_edge_moves() {
+    for (name, text) in scenes() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [whole, parts] = ["whole.h5", "parts.h5"].map(|name| folder.path().join(name));
+        let text = format!("{text}[numerics]\nsprings = 30\n[output]\nsnapshots = 5\n");
+        let scene = Scene::from_toml(&text, "scene.toml").expect(name);
+        Run::new(&scene, &whole, false).expect("a run").execute(None).expect("an end");
+        let mut run = Run::new(&scene, &parts, false).expect("a run");
+        assert!(run.simulation().model().moving().is_some(), "{name}");
+        let mut interruptions = 0;
+        while run.execute(Some(&mut StopAfter(4))).expect("an end").stop_reason == StopReason::Interrupted {
+            interruptions += 1;
+            run = match Run::resume(&parts).expect("a run that goes on") {
+                Resumed::Run(run) => *run,
+                Resumed::Complete(_) => panic!("{name}: interrupted and complete"),
+            };
+        }
+        assert!(interruptions >= 2, "{name}: {interruptions}");
+        assert!(without_wall_time(&parts) == without_wall_time(&whole), "{name}");
+    }
+}
+
+#[test]
+fn explicit_steps_are_refused_with_a_cure() {
+    for (name, text) in scenes() {
+        for stepper in ["every-cycle", "cycle-jump"] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let text = format!("{text}[numerics]\nsprings = 30\nstepper = \"{stepper}\"\n");
+            fs::write(folder.path().join("scene.toml"), text).expect("the scene");
+            let output = support::command::run(folder.path(), &["run", "scene.toml"]);
+            let message = support::command::text(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{name}, {stepper}: {message}");
+            for part in ["numerics.stepper", stepper, "implicit", "edge of stick that moves"] {
+                assert!(message.contains(part), "{name}, {stepper}: {message}");
+            }
+            assert_eq!(
+                support::command::names(folder.path()),
+                ["scene.toml"],
+                "{name}: something was written"
+            );
+        }
+    }
+}
