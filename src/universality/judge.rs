@@ -69,7 +69,7 @@ pub struct Judgement {
     pub wear_depth_limit: f64,
     /// `sup |w - w∞| / max w∞` over the radii of the output; none where the limit is not worn.
     pub distance: Option<f64>,
-    /// `w / max w∞` at `c + x (a∞ - c)`, `x` from 0 to 1 in equal steps.
+    /// `w / max w∞` at `c + x (a∞ - c)`, `x` from 0 to 1 in equal steps; not a number between `c` and the first radius of the output.
     pub curve: Vec<f64>,
     /// The same for `w∞`.
     pub curve_limit: Vec<f64>,
@@ -99,8 +99,9 @@ impl Judgement {
         let positions = (0..CURVE_POINTS).map(|i| i as f64 / (CURVE_POINTS - 1) as f64);
         let radii = positions.map(|x| stick_radius + x * limit.slip_width_limit());
         let relative = |depth: f64| depth / wear_depth_limit;
-        let curves = radii
-            .map(|r| (relative(depth_at(&run.header.radius, &last.wear_depth, r)), relative(depth_limit(r))));
+        let depth =
+            |r: f64| if r <= stick_radius { 0.0 } else { depth_at(&run.header.radius, &last.wear_depth, r) };
+        let curves = radii.map(|r| (relative(depth(r)), relative(depth_limit(r))));
         let (curve, curve_limit) = curves.unzip();
         Ok(Self {
             stop_reason: run.stop_reason,
@@ -160,10 +161,10 @@ fn limit(scene: &Scene, indentation: f64, stick_radius: f64) -> Result<LimitingS
     LimitingShape::from_stick_ratio(indenter, grading, indentation, (stick_radius / contact_radius).min(1.0))
 }
 
-/// Depth between nodes, linear; zero outside them.
+/// Depth between nodes, linear; zero beyond the last, not a number before the first, of which nothing is known.
 fn depth_at(radii: &[f64], depths: &[f64], r: f64) -> f64 {
     match radii.partition_point(|node| *node <= r) {
-        0 => 0.0,
+        0 => f64::NAN,
         after if after == radii.len() => 0.0,
         after => {
             let part = (r - radii[after - 1]) / (radii[after] - radii[after - 1]);

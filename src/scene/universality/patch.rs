@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 /// Sets of keys of a table of the scene of which a scene has one at most: a patch that sets a key of one set removes the others.
-const ALTERNATIVES: [(&str, &[&[&str]]); 10] = [
+const ALTERNATIVES: [(&str, &[&[&str]]); 11] = [
     ("indenter", &[&["paraboloid"], &["sphere"], &["cone"], &["power-law"], &["table"]]),
     ("half_space", STIFFNESS),
     ("counter_body", STIFFNESS),
@@ -11,6 +11,7 @@ const ALTERNATIVES: [(&str, &[&[&str]]); 10] = [
     ("wear", &[&["archard"], &["dissipated-energy"], &["power-law"], &["threshold"], &["non-local"]]),
     ("loading", &[&["indentation"], &["initial_force"], &["normal_force"]]),
     ("loading", &[&["amplitude"], &["amplitude_ratio"], &["stick_ratio"]]),
+    ("loading", &[AMPLITUDE, &["path"]]),
     ("loading", DURATION),
     ("loading", &[&["normal_oscillation"], &["orbit"], &["path"]]),
     ("output", &[&["snapshots"], &["at_cycles"], &["at_tau"]]),
@@ -18,6 +19,9 @@ const ALTERNATIVES: [(&str, &[&[&str]]); 10] = [
 
 const STIFFNESS: &[&[&str]] =
     &[&["modulus", "reference_depth", "poisson_ratio"], &["normal_stiffness", "stiffness_ratio"]];
+
+/// A recorded path says how far the indenter goes.
+const AMPLITUDE: &[&str] = &["amplitude", "amplitude_ratio", "stick_ratio"];
 
 const DURATION: &[&[&str]] = &[&["cycles"], &["tau"], &["until_rate"]];
 
