@@ -559,7 +559,7 @@ fn what_is_not_plain_is_warned_about_and_shown() {
     let scene = read(&text);
     let [warning] = scene.warnings() else { panic!("{:?}", scene.warnings()) };
     for words in [
-        "closed-form limit",
+        "run compares with the limit",
         "static and kinetic friction",
         "wear above a threshold",
         "blocks",
@@ -627,12 +627,34 @@ fn rich() -> String {
 fn everything_at_once_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let few = rich().replace("substeps = 100", "substeps = 40\nsprings = 16");
-    fs::write(folder.path().join("scene.toml"), few.replace("tau = 30", "cycles = 1500")).expect("the scene");
+    let few = few.replace("tau = 30", "cycles = 1500").replace("\nwear_from = \"first-cycle\"", "");
+    fs::write(folder.path().join("scene.toml"), few).expect("the scene");
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fretwear"));
     let output = command.current_dir(folder.path()).args(["run", "scene.toml"]).output().expect("a run");
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{message}");
     assert!(folder.path().join("scene.h5").exists());
+}
+
+#[test]
+fn wear_of_the_first_cycles_and_changing_friction_under_lifts_are_refused_with_nothing_written() {
+    let plain = scene(FRICTION, WEAR, &format!("{LOADING}[numerics]\nwear_from = \"first-cycle\""));
+    let history = "[friction.coulomb]\ncoefficient = 0.6\n[friction.history]\nfinal_factor = 0.8\ntau = 3";
+    let lifted = format!(
+        "{LOADING}[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1"
+    );
+    for (text, words) in
+        [(plain, "\"first-cycle\" is not offered"), (scene(history, WEAR, &lifted), "is not followed")]
+    {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("scene.toml"), &text).expect("the scene");
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fretwear"));
+        let output = command.current_dir(folder.path()).args(["run", "scene.toml"]).output().expect("a run");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(words), "{message}");
+        assert!(!folder.path().join("scene.h5").exists());
+    }
 }
 
 fn fixed() -> Config {

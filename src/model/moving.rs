@@ -129,7 +129,8 @@ impl MovingStick {
     /// * `slides` -- whether no stick is left in some cycle
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] for a force that is held while friction falls or amplitudes grow.
+    /// [`Error::Inconsistent`] for a force that is held while friction falls or amplitudes grow, and for friction that changes under
+    /// normal oscillation.
     pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
         let conditions = schedule.conditions();
         if slides {
@@ -169,6 +170,14 @@ impl MovingStick {
             (false, _) => Some(Cause::Tangential),
         };
         let Some(cause) = cause else { return Ok(None) };
+        if cause == Cause::Friction && schedule.lifts() {
+            return Err(Error::Inconsistent {
+                what: "friction.history",
+                why: "is not followed where the indentation changes within a period: springs that are loaded for a part of it would be \
+                      worn too deep at an edge of stick that moves; leave out the history, or the normal oscillation"
+                    .into(),
+            });
+        }
         let [falls, rises] = directions(&conditions.friction_history);
         let outwards = match cause {
             Cause::NormalForce(_) if falls || !conditions.blocks.is_empty() => {

@@ -254,6 +254,12 @@ impl Schedule {
         pass * self.ends[last] + self.ends[block]
     }
 
+    /// Whether the indenter is lifted within a period, so that springs lose contact.
+    pub fn lifts(&self) -> bool {
+        let lifted = |path: &Arc<Path>| path.points.iter().any(|point| point.lift != path.points[0].lift);
+        self.drives.iter().any(|drive| drive.path.as_ref().is_some_and(lifted))
+    }
+
     /// Whether periods are passed through step by step.
     pub fn resolves(&self) -> bool {
         self.drives.iter().any(|drive| drive.path.is_some())
