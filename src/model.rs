@@ -319,7 +319,7 @@ impl Model {
         slip: impl Fn(usize, &UnwornValues) -> f64,
     ) -> f64 {
         let inner = self.springs() - 1;
-        let values = self.unworn_on_springs(place, edge);
+        let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
         let elastic = |(i, values): (usize, &UnwornValues)| {
             self.operators.edge_row[i] * (values.limit_slip - slip(i, values))
         };
@@ -339,13 +339,13 @@ impl Model {
         slip: impl Fn(usize, &UnwornValues) -> f64,
     ) -> Vec<f64> {
         let inner = self.springs() - 1;
-        let values = self.unworn_on_springs(place, edge);
+        let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
         let depth = |(i, v): (usize, &UnwornValues)| v.limit_slip - slip(i, v);
         let mut solution: Vec<f64> = values.iter().take(inner).enumerate().map(depth).collect();
         self.operators.profile_factors.solve(&mut solution);
-        let scale = edge.powf(-self.mu());
+        let (scale, at_stick) = (edge.powf(-self.mu()), self.density_factor_at_stick(place));
         for (q, v) in solution.iter_mut().zip(&values) {
-            *q *= scale / self.density_factor(place, v);
+            *q *= scale / (at_stick * self.density_ratio(v));
         }
         solution
     }
@@ -371,9 +371,11 @@ impl Model {
         ] {
             part.resize(n, 0.0);
         }
-        fields.unworn = self.unworn_on_springs(place, edge);
+        fields.unworn.clear();
+        fields.unworn.extend(self.unworn_on_springs(place, edge));
+        let at_stick = self.density_factor_at_stick(place);
         for (factor, values) in fields.density_factor.iter_mut().zip(&fields.unworn) {
-            *factor = self.density_factor(place, values);
+            *factor = at_stick * self.density_ratio(values);
         }
         fields.density.clear();
         fields.density.extend(compression.iter().zip(&fields.density_factor).map(|(q, factor)| q * factor));
@@ -410,12 +412,12 @@ impl Model {
     }
 
     /// The unworn slip on every spring, with the contact edge at `edge`.
-    fn unworn_on_springs(&self, place: &Place, edge: f64) -> Vec<UnwornValues> {
-        let offsets = self.operators.abel.nodes()[1..].iter().map(|x| edge * x);
-        if self.moving.is_none() {
-            return offsets.map(|z| self.unworn.at(z)).collect();
-        }
-        offsets.map(|z| self.unworn.at_stick(place.stick_area, place.slip_compression, z)).collect()
+    fn unworn_on_springs(&self, place: &Place, edge: f64) -> impl Iterator<Item = UnwornValues> {
+        let (place, moves) = (*place, self.moving.is_some());
+        self.operators.abel.nodes()[1..].iter().map(move |x| match moves {
+            false => self.unworn.at(edge * x),
+            true => self.unworn.at_stick(place.stick_area, place.slip_compression, edge * x),
+        })
     }
 
     /// `μ = (1-k)/2`, the exponent with which the transforms scale with the edge.
@@ -423,8 +425,13 @@ impl Model {
         0.5 * (1.0 - self.contact.half_space().grading())
     }
 
-    /// `x^(k-1) = s^(ν-1)`.
-    fn density_factor(&self, place: &Place, values: &UnwornValues) -> f64 {
-        place.stick_area.powf(-self.mu()) * (-self.mu() * values.logarithm).exp()
+    /// `c^(k-1)`.
+    fn density_factor_at_stick(&self, place: &Place) -> f64 {
+        place.stick_area.powf(-self.mu())
+    }
+
+    /// `(x/c)^(k-1)`.
+    fn density_ratio(&self, values: &UnwornValues) -> f64 {
+        (-self.mu() * values.logarithm).exp()
     }
 }

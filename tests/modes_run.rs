@@ -3,20 +3,19 @@
 mod support;
 
 use std::fs;
-use std::path::Path;
 
 use fretwear::conditions::Conditions;
 use fretwear::grid::Clustering;
 use fretwear::loading::{Block, Clock};
 use fretwear::model::{Model, OperatorStore, Resolution, Schedule, State};
-use fretwear::run::{Resumed, Run};
 use fretwear::scene::Scene;
 use fretwear::simulation::{End, Flow, Observer, Outcome, Plan, Progress, Simulation};
 use fretwear::snapshot::{RunFile, Snapshot, StopReason};
 use fretwear::stepper::Implicit;
 use fretwear::stick_slip::Regime;
 use serde_json::Value;
-use support::command::object;
+use support::command::{RUN_KEYS, object};
+use support::resume::whole_and_in_parts;
 use support::{Case, distance};
 
 const COULOMB: &str = "[friction.coulomb]\ncoefficient = 0.6\n";
@@ -108,27 +107,6 @@ const MODES: [Mode; 15] = [
 /// A triangle that does not turn back on itself.
 const PATH: &str = "0,0\n0.3e-6,0\n0.1e-6,0.25e-6\n0,0\n";
 
-const KEYS: [&str; 18] = [
-    "output",
-    "stop_reason",
-    "error_estimate",
-    "cycles",
-    "tau",
-    "steps",
-    "rejected_steps",
-    "rate_evaluations",
-    "wall_seconds",
-    "indentation",
-    "normal_force",
-    "contact_radius",
-    "stick_radius",
-    "wear_volume",
-    "wear_volume_limit",
-    "limit_distance",
-    "limit_distance_relative",
-    "dissipated_energy",
-];
-
 impl Mode {
     /// The scene on few springs, with lines of `[output]`.
     fn scene(&self, output: &str) -> String {
@@ -195,11 +173,11 @@ fn every_law_and_mode_gives_the_keys_series_and_loops_promised() {
         let name = mode.name;
         let (json, file) = run_file(&mode.scene("snapshots = 8"));
         let mut keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
-        let mut expected = KEYS;
+        let mut expected = RUN_KEYS;
         keys.sort_unstable();
         expected.sort_unstable();
         assert_eq!(keys, expected, "{name}");
-        assert!(KEYS[2..].iter().all(|key| json[key].is_number()), "{name}: {json}");
+        assert!(RUN_KEYS[2..].iter().all(|key| json[key].is_number()), "{name}: {json}");
         assert_eq!((file.stop_reason, file.complete), (StopReason::End, true), "{name}");
         let estimate = json["error_estimate"].as_f64().unwrap();
         println!("{name}: {} steps, estimate {estimate:.1e}", json["steps"]);
@@ -305,44 +283,13 @@ fn a_contact_that_slides_under_a_held_force_never_stops_wearing_and_says_so() {
     }
 }
 
-/// Stops after some steps.
-struct StopAfter(u64);
-
-impl Observer for StopAfter {
-    fn step(&mut self, _: &Simulation) -> fretwear::Result<Flow> {
-        self.0 -= 1;
-        Ok(if self.0 == 0 { Flow::Stop } else { Flow::Continue })
-    }
-}
-
-fn without_wall_time(path: &Path) -> RunFile {
-    let mut file = RunFile::open(path).expect("a run");
-    file.checkpoint.as_mut().expect("a checkpoint").wall_seconds = 0.0;
-    file
-}
-
 #[test]
 fn every_law_and_mode_resumes_to_the_same_bits() {
     for mode in &MODES {
         let folder = folder_with(&mode.scene("snapshots = 5"));
-        let [whole, parts] = ["whole.h5", "parts.h5"].map(|name| folder.path().join(name));
         let scene = Scene::read(&folder.path().join("scene.toml")).expect("a scene");
-        Run::new(&scene, &whole, false).expect("a run").execute(None).expect("an end");
-        let mut run = Run::new(&scene, &parts, false).expect("a run");
-        let mut interruptions = 0;
-        loop {
-            let result = run.execute(Some(&mut StopAfter(4))).expect("an end");
-            if result.stop_reason != StopReason::Interrupted {
-                break;
-            }
-            interruptions += 1;
-            run = match Run::resume(&parts).expect("a run that goes on") {
-                Resumed::Run(run) => *run,
-                Resumed::Complete(_) => panic!("{}: interrupted and complete", mode.name),
-            };
-        }
+        let (_, [expected, found], interruptions) = whole_and_in_parts(&scene, folder.path(), 4);
         assert!(interruptions >= 2, "{}: {interruptions}", mode.name);
-        let (found, expected) = (without_wall_time(&parts), without_wall_time(&whole));
         let bits = |file: &RunFile| -> Vec<u64> {
             file.snapshots.iter().flat_map(numbers).map(f64::to_bits).collect()
         };
@@ -359,16 +306,10 @@ fn a_run_until_a_rate_with_blocks_resumes_to_the_same_end() {
         ..PLAIN
     };
     let folder = folder_with(&mode.scene("snapshots = 5"));
-    let [whole, parts] = ["whole.h5", "parts.h5"].map(|name| folder.path().join(name));
     let scene = Scene::read(&folder.path().join("scene.toml")).expect("a scene");
-    let expected = Run::new(&scene, &whole, false).expect("a run").execute(None).expect("an end");
-    assert_eq!(expected.stop_reason, StopReason::Rate);
-    let mut run = Run::new(&scene, &parts, false).expect("a run");
-    while run.execute(Some(&mut StopAfter(11))).expect("an end").stop_reason == StopReason::Interrupted {
-        let Resumed::Run(next) = Run::resume(&parts).expect("a run that goes on") else { panic!("complete") };
-        run = *next;
-    }
-    assert!(without_wall_time(&parts) == without_wall_time(&whole));
+    let (result, [expected, found], _) = whole_and_in_parts(&scene, folder.path(), 11);
+    assert_eq!(result.stop_reason, StopReason::Rate);
+    assert!(found == expected);
 }
 
 /// Blocks of a case in cycles: durations and amplitude factors; the last one goes on.

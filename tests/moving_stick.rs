@@ -4,7 +4,6 @@ mod support;
 
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
 
 use fretwear::closed_form::LimitingShape;
 use fretwear::conditions::Conditions;
@@ -16,12 +15,12 @@ use fretwear::history::History;
 use fretwear::indenter::Indenter;
 use fretwear::loading::{Amplitude, Duration, Load, Loading, TangentialControl};
 use fretwear::model::{Model, OperatorStore, Resolution, Schedule, State};
-use fretwear::run::{Resumed, Run};
+use fretwear::run::Run;
 use fretwear::scene::Scene;
 use fretwear::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
-use fretwear::snapshot::{RunFile, StopReason};
 use fretwear::stepper::MovingStickImplicit;
 use fretwear::wear::{Archard, WearLaw};
+use support::resume::whole_and_in_parts;
 use support::{Case, distance, laws};
 
 /// What each step leaves behind, the start included: cycles, area within the edge of stick and depth of the profile there.
@@ -462,42 +461,17 @@ fn scenes() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Stops after some steps.
-struct StopAfter(u64);
-
-impl Observer for StopAfter {
-    fn step(&mut self, _: &Simulation) -> fretwear::Result<Flow> {
-        self.0 -= 1;
-        Ok(if self.0 == 0 { Flow::Stop } else { Flow::Continue })
-    }
-}
-
-fn without_wall_time(path: &Path) -> RunFile {
-    let mut file = RunFile::open(path).expect("a run");
-    file.checkpoint.as_mut().expect("a checkpoint").wall_seconds = 0.0;
-    file
-}
-
 #[test]
 fn resumes_to_the_same_bits_however_the_edge_moves() {
     for (name, text) in scenes() {
         let folder = tempfile::tempdir().expect("a folder");
-        let [whole, parts] = ["whole.h5", "parts.h5"].map(|name| folder.path().join(name));
         let text = format!("{text}[numerics]\nsprings = 30\n[output]\nsnapshots = 5\n");
         let scene = Scene::from_toml(&text, "scene.toml").expect(name);
-        Run::new(&scene, &whole, false).expect("a run").execute(None).expect("an end");
-        let mut run = Run::new(&scene, &parts, false).expect("a run");
-        assert!(run.simulation().model().moving().is_some(), "{name}");
-        let mut interruptions = 0;
-        while run.execute(Some(&mut StopAfter(4))).expect("an end").stop_reason == StopReason::Interrupted {
-            interruptions += 1;
-            run = match Run::resume(&parts).expect("a run that goes on") {
-                Resumed::Run(run) => *run,
-                Resumed::Complete(_) => panic!("{name}: interrupted and complete"),
-            };
-        }
+        let (_, [expected, found], interruptions) = whole_and_in_parts(&scene, folder.path(), 4);
+        let again = Run::new(&scene, &folder.path().join("again.h5"), false).expect("a run");
+        assert!(again.simulation().model().moving().is_some(), "{name}");
         assert!(interruptions >= 2, "{name}: {interruptions}");
-        assert!(without_wall_time(&parts) == without_wall_time(&whole), "{name}");
+        assert!(found == expected, "{name}");
     }
 }
 

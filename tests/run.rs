@@ -12,28 +12,7 @@ use fretwear::closed_form::LimitingShape;
 use fretwear::scene::Scene;
 use fretwear::snapshot::{RunFile, Snapshot, StopReason};
 use serde_json::Value;
-use support::command::{names, object, program, run, text};
-
-const KEYS: [&str; 18] = [
-    "output",
-    "stop_reason",
-    "error_estimate",
-    "cycles",
-    "tau",
-    "steps",
-    "rejected_steps",
-    "rate_evaluations",
-    "wall_seconds",
-    "indentation",
-    "normal_force",
-    "contact_radius",
-    "stick_radius",
-    "wear_volume",
-    "wear_volume_limit",
-    "limit_distance",
-    "limit_distance_relative",
-    "dissipated_energy",
-];
+use support::command::{RUN_KEYS, names, object, program, run, text};
 
 const SCENES: [&str; 4] = ["paraboloid", "graded_ceramic", "cone_negative_grading", "measured_profile"];
 
@@ -127,7 +106,7 @@ fn the_scenes_that_come_along_give_the_keys_and_curves_promised() {
         let folder = tempfile::tempdir().unwrap();
         let json = object(folder.path(), &["run", path.to_str().unwrap(), "--json"]);
         let mut keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
-        let mut expected = KEYS;
+        let mut expected = RUN_KEYS;
         keys.sort_unstable();
         expected.sort_unstable();
         assert_eq!(keys, expected, "{name}");
@@ -456,7 +435,7 @@ fn extreme_scenes_end_with_finite_numbers() {
     for (name, text) in scenes {
         let (json, file) = run_file(&text);
         assert!(file.snapshots.iter().flat_map(values).all(|value| value.is_finite()), "{name}");
-        assert!(KEYS[2..].iter().all(|key| json[key].is_number()), "{name}: {json}");
+        assert!(RUN_KEYS[2..].iter().all(|key| json[key].is_number()), "{name}: {json}");
         let distance = json["limit_distance_relative"].as_f64().unwrap();
         assert!((0.0..=1.0).contains(&distance), "{name}: {distance}");
         let part = json["wear_volume"].as_f64().unwrap() / json["wear_volume_limit"].as_f64().unwrap();

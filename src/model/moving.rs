@@ -22,14 +22,14 @@ mod stage;
 
 use std::f64::consts::PI;
 
+use super::output::interpolate;
 use super::schedule::{Demand, Drive, Schedule};
-use super::{Model, POINTS, Place, State};
+use super::{Model, Place, State};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::grid::{Clustering, lagrange, stencil_start};
+use crate::grid::Clustering;
 use crate::history::History;
 use crate::indenter::EquivalentProfile;
-use crate::linear::dot;
 use crate::loading::TangentialControl;
 use crate::roots::bracketed;
 pub use stage::{StickTarget, StickTrial};
@@ -179,7 +179,7 @@ impl MovingStick {
     /// The mesh that serves, where `asked` is the one for an edge of stick that stays.
     pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
         match self.cause {
-            _ if self.jumps || self.slides() => asked,
+            _ if self.rests() => asked,
             _ if self.outwards => Clustering::CreepingStick,
             _ => Clustering::MovingStick,
         }
@@ -193,6 +193,11 @@ impl MovingStick {
     /// By how much area and depth of the edge of stick have changed in a stage, as far as ground passes it.
     fn motion(&self, target: &StickTarget, area: f64, depth: f64) -> (f64, f64) {
         if self.slides() { (0.0, 0.0) } else { (area - target.stick.area, depth - target.stick.depth) }
+    }
+
+    /// Whether the edge stays where it is during a step.
+    fn rests(&self) -> bool {
+        self.jumps || self.slides()
     }
 
     pub(super) fn with_span(mut self, first: f64, last: f64) -> Self {
@@ -345,10 +350,7 @@ impl Model {
     pub(super) fn between_springs(&self, values: &[f64], x: f64) -> f64 {
         let nodes = self.operators.abel.nodes();
         let cell = nodes.partition_point(|node| *node < x).saturating_sub(1).max(1);
-        let start = stencil_start(cell, POINTS, values.len()).min(values.len() + 1 - POINTS) - 1;
-        let mut weights = [0.0; POINTS];
-        lagrange(&nodes[1 + start..1 + start + POINTS], x, &mut weights);
-        dot(&weights, &values[start..start + POINTS])
+        interpolate(&nodes[1..], values, cell, x)
     }
 
     /// Compression at the edge of stick of the unworn contact in the balance of forces, m.

@@ -178,7 +178,7 @@ impl Model {
 }
 
 /// Local cubic interpolation at `x` in cell `cell` between nodes given from the first spring on.
-fn interpolate(nodes: &[f64], values: &[f64], cell: usize, x: f64) -> f64 {
+pub(super) fn interpolate(nodes: &[f64], values: &[f64], cell: usize, x: f64) -> f64 {
     let start = stencil_start(cell, POINTS, values.len()).min(values.len() + 1 - POINTS) - 1;
     let mut weights = [0.0; POINTS];
     lagrange(&nodes[start..start + POINTS], x, &mut weights);

@@ -256,8 +256,7 @@ impl Schedule {
 
     /// Whether the indenter is lifted within a period, so that springs lose contact.
     pub fn lifts(&self) -> bool {
-        let lifted = |path: &Arc<Path>| path.points.iter().any(|point| point.lift != path.points[0].lift);
-        self.drives.iter().any(|drive| drive.path.as_ref().is_some_and(lifted))
+        self.drives.iter().any(|drive| drive.path.as_ref().is_some_and(|path| !path.is_level()))
     }
 
     /// Whether periods are passed through step by step.

@@ -41,7 +41,7 @@ pub(super) const MATRIX: [[f64; STAGES]; STAGES] = [
     ],
 ];
 /// Weights of order 2 on the stages at `γ` and `(1+γ)/2`: `b̂_1 = γ/(1-γ)`, `b̂_2 = (1-2γ)/(1-γ)`.
-pub(super) const EMBEDDED: [f64; STAGES] = [GAMMA / (1.0 - GAMMA), (1.0 - 2.0 * GAMMA) / (1.0 - GAMMA), 0.0];
+const EMBEDDED: [f64; STAGES] = [GAMMA / (1.0 - GAMMA), (1.0 - 2.0 * GAMMA) / (1.0 - GAMMA), 0.0];
 
 /// Newton iterations before the matrix is renewed, and renewals before the step is given up.
 pub(super) const ITERATIONS: usize = 8;
@@ -127,13 +127,8 @@ impl Stepper for Implicit {
         at.dissipated_energy = state.dissipated_energy + summed(&|stage| stage.dissipation);
         at.volume_by_rate = state.volume_by_rate + summed(&|stage| stage.volume);
         at.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
-        let difference = |i: usize| {
-            let parts = stages.iter().zip(weights.iter().zip(EMBEDDED));
-            parts.map(|(stage, (weight, embedded))| cycles * (weight - embedded) * stage.log_slip[i]).sum()
-        };
-        let difference: Vec<f64> = (0..start.len() - 1).map(difference).collect();
-        let depths = self.fields.slip_depth.iter().zip(&difference).map(|(slip, change)| slip * change);
-        let error = relative_depth_error(model, depths);
+        let error =
+            embedded_error(model, &self.fields, cycles, stages.iter().map(|stage| &stage.log_slip[..]));
         Ok(Trial { state: Some(at), error, rate_evaluations: evaluations })
     }
 
@@ -235,6 +230,22 @@ impl Implicit {
         matrix[(inner, inner)] = by_edge[inner];
         matrix
     }
+}
+
+/// Estimated error of a step of `cycles` cycles from the slopes of `λ` in its stages: the difference to the embedded method.
+pub(super) fn embedded_error<'a>(
+    model: &Model,
+    fields: &Fields,
+    cycles: f64,
+    slopes: impl Iterator<Item = &'a [f64]> + Clone,
+) -> f64 {
+    let weights = MATRIX[STAGES - 1].into_iter().zip(EMBEDDED);
+    let difference = |i: usize| -> f64 {
+        let parts = slopes.clone().zip(weights.clone());
+        parts.map(|(slopes, (weight, embedded))| cycles * (weight - embedded) * slopes[i]).sum()
+    };
+    let depths = (0..model.springs() - 1).map(|i| fields.slip_depth[i] * difference(i));
+    relative_depth_error(model, depths)
 }
 
 /// Continues the straight line from a state to a later one, as a first guess of Newton's method.

@@ -1,7 +1,9 @@
 //! Implicit steps of a contact whose edge of stick moves.
 
-use super::implicit::{EMBEDDED, GAMMA, ITERATIONS, MATRIX, RENEWALS, ROUND_OFF, SLOWEST, STAGES, TIMES};
-use super::{Stepper, Trial, relative_depth_error};
+use super::implicit::{
+    GAMMA, ITERATIONS, MATRIX, RENEWALS, ROUND_OFF, SLOWEST, STAGES, TIMES, embedded_error,
+};
+use super::{Stepper, Trial};
 use crate::error::Result;
 use crate::grid::lagrange;
 use crate::linear::Factors;
@@ -233,15 +235,8 @@ impl Stepper for MovingStickImplicit {
             }),
             compression: at.compression,
         };
-        let difference = |i: usize| {
-            let parts = stages.iter().zip(weights.iter().zip(EMBEDDED));
-            parts
-                .map(|(stage, (weight, embedded))| cycles * (weight - embedded) * stage.log_slip[i])
-                .sum::<f64>()
-        };
-        let slip_depth = &self.trial.fields.slip_depth;
-        let depths = (0..start.len() - 1).map(|i| slip_depth[i] * difference(i));
-        let error = relative_depth_error(model, depths);
+        let slopes = stages.iter().map(|stage| &stage.log_slip[..]);
+        let error = embedded_error(model, &self.trial.fields, cycles, slopes);
         Ok(Trial { state: Some(next), error, rate_evaluations: evaluations })
     }
 

@@ -6,6 +6,28 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
+/// The keys of the JSON of `run`.
+pub const RUN_KEYS: [&str; 18] = [
+    "output",
+    "stop_reason",
+    "error_estimate",
+    "cycles",
+    "tau",
+    "steps",
+    "rejected_steps",
+    "rate_evaluations",
+    "wall_seconds",
+    "indentation",
+    "normal_force",
+    "contact_radius",
+    "stick_radius",
+    "wear_volume",
+    "wear_volume_limit",
+    "limit_distance",
+    "limit_distance_relative",
+    "dissipated_energy",
+];
+
 /// The program in a folder of its own, without a terminal.
 pub fn program(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fretwear"));

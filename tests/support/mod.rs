@@ -6,6 +6,7 @@
 pub mod command;
 pub mod laws;
 pub mod reference;
+pub mod resume;
 
 use fretwear::contact::InitialContact;
 use fretwear::friction::Coulomb;

@@ -8,9 +8,6 @@ use crate::roots::bracketed;
 /// Steps of the integrals over the ground that comes to rest in a jump of the edge of stick.
 const JUMP_STEPS: usize = 1000;
 
-/// Springs from the contact edge whose compression tells how it goes on beyond.
-const BEYOND: usize = 4;
-
 impl Model {
     /// The state in which a new block begins: where the edge of stick jumps outwards, the mesh begins anew there.
     ///
@@ -26,19 +23,12 @@ impl Model {
         }
         let profile = self.contact.equivalent_profile();
         let exponent = 1.0 + profile.grading();
-        let place = Place { stick_area: stick.area, slip_compression: before, stick_load: stick.load };
-        let mut fields = Fields::default();
-        self.evaluate_at(&place, state.edge, &state.compression, &mut fields);
-        let inner = state.compression.len();
         let mut on_springs = state.compression.clone();
         on_springs.push(0.0);
         // Next to the old edge, where springs may have lost their load within the first cell, the first spring's.
-        let first = self.operators.abel.nodes()[1];
-        let nodes = self.operators.abel.nodes();
-        let beyond = -on_springs[inner - BEYOND] / (1.0 - nodes[inner + 1 - BEYOND]);
+        let nodes = &self.operators.abel.nodes()[1..];
         let at = |x: f64| match x {
-            x if x < first => on_springs[0] + (before - on_springs[0]) * (1.0 - x / first),
-            x if x > 1.0 => beyond * (x - 1.0),
+            x if x < nodes[0] => on_springs[0] + (before - on_springs[0]) * (1.0 - x / nodes[0]),
             x => self.between_springs(&on_springs, x),
         };
         let part = bracketed(|x| at(x) - compression, 0.0, 1.0, 0.0)?;
@@ -67,17 +57,12 @@ impl Model {
             slip_compression: compression,
             stick_load: load,
         };
-        // Slip is what is carried over: small numbers next to the edge of stick, where compressions differ by little. The contact edge
-        // may be off by what the interpolation is.
-        let nodes = &self.operators.abel.nodes()[1..];
-        let guess = state.edge * (1.0 - part);
-        let mut slip_at = |edge: f64| {
-            self.evaluate_at(&next, edge, &state.compression, &mut fields);
-            let slipping = nodes.iter().map(|x| (compression - at(part + edge / state.edge * x)).max(0.0));
-            self.carried(&fields, slipping)
-        };
-        let edge = guess;
-        let slip = slip_at(edge);
+        // Slip is what is carried over: small numbers next to the edge of stick, where compressions differ by little.
+        let edge = state.edge * (1.0 - part);
+        let mut fields = Fields::default();
+        self.evaluate_at(&next, edge, &state.compression, &mut fields);
+        let slipping = nodes.iter().map(|x| (compression - at(part + (1.0 - part) * x)).max(0.0));
+        let slip = self.carried(&fields, slipping);
         // What is left behind is by another quadrature than the slip: the contact edge stays where it is.
         let behind = moving.left_behind(&left_behind, next.stick_area + edge);
         let off = self.mismatch_at(&next, edge, |i, _| slip[i]) - behind;

@@ -98,7 +98,7 @@ impl Model {
         }
         trial.cycle = self.cycle(&drive, compression, &trial.fields);
         let fields = &trial.fields;
-        let unworn_rise = 0.5 * profile.derivative(radius) / radius * passed;
+        let unworn_rise = self.unworn_rise(area, passed);
         let n = self.springs();
         let nodes = &self.operators.abel.nodes()[1..];
         let along = self.stick_slopes(&fields.log_slip);
@@ -122,15 +122,13 @@ impl Model {
             return false;
         }
         trial.residual.push((free / fields.unworn[n - 1].slip).ln());
-        let closure = if moving.jumps || moving.slides() {
+        trial.residual.push(if moving.rests() {
             area / target.stick.area - 1.0
         } else if moving.outwards {
-            unworn_rise - risen * self.at_stick_edge(|i| (-fields.log_slip[i]).exp())
+            (unworn_rise - risen * self.at_stick_edge(|i| (-fields.log_slip[i]).exp())) / slip_compression
         } else {
-            profile.value(radius) - depth
-        };
-        let closure = if moving.jumps || moving.slides() { closure } else { closure / slip_compression };
-        trial.residual.push(closure);
+            (profile.value(radius) - depth) / slip_compression
+        });
         let balance = match moving.cause {
             _ if moving.jumps => risen / slip_compression,
             Cause::Friction => (depth - (held - slip_compression)) / slip_compression,
@@ -144,6 +142,12 @@ impl Model {
         trial.residual.push(balance);
         trial.drive = Some(drive);
         trial.residual.iter().all(|value| value.is_finite())
+    }
+
+    /// By how much the unworn profile rises, m, where the square of the stick radius grows by `passed`, m².
+    fn unworn_rise(&self, area: f64, passed: f64) -> f64 {
+        let radius = area.sqrt();
+        0.5 * self.contact.equivalent_profile().derivative(radius) / radius * passed
     }
 
     /// `K` at the contact edge, m, at the end of a stage.
@@ -304,8 +308,7 @@ impl Model {
         let (passed, risen) = moving.motion(target, area, depth);
         let changed = depth - target.stick.depth;
         let per_step = target.step.recip();
-        let radius = area.sqrt();
-        let unworn_rise = 0.5 * self.contact.equivalent_profile().derivative(radius) / radius * passed;
+        let unworn_rise = self.unworn_rise(area, passed);
         let (mut left_behind, mut wear_depth) = (vec![], vec![]);
         if moving.outwards {
             let q = trial.place.slip_compression;

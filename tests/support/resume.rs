@@ -1,0 +1,42 @@
+//! Runs in parts, which must come to the same as whole ones.
+
+use std::path::Path;
+
+use fretwear::run::{Resumed, Run, RunResult};
+use fretwear::scene::Scene;
+use fretwear::simulation::{Flow, Observer, Simulation};
+use fretwear::snapshot::{RunFile, StopReason};
+
+/// Stops after some steps.
+struct StopAfter(u64);
+
+impl Observer for StopAfter {
+    fn step(&mut self, _: &Simulation) -> fretwear::Result<Flow> {
+        self.0 -= 1;
+        Ok(if self.0 == 0 { Flow::Stop } else { Flow::Continue })
+    }
+}
+
+/// A run as its file has it, but for the wall time.
+fn without_wall_time(path: &Path) -> RunFile {
+    let mut file = RunFile::open(path).expect("a run");
+    file.checkpoint.as_mut().expect("a checkpoint").wall_seconds = 0.0;
+    file
+}
+
+/// Runs a scene whole, and once more stopped after every few steps; what the first came to, the files of both but for the wall time, and
+/// the number of interruptions.
+pub fn whole_and_in_parts(scene: &Scene, folder: &Path, steps: u64) -> (RunResult, [RunFile; 2], usize) {
+    let [whole, parts] = ["whole.h5", "parts.h5"].map(|name| folder.join(name));
+    let result = Run::new(scene, &whole, false).expect("a run").execute(None).expect("an end");
+    let mut run = Run::new(scene, &parts, false).expect("a run");
+    let mut interruptions = 0;
+    while run.execute(Some(&mut StopAfter(steps))).expect("an end").stop_reason == StopReason::Interrupted {
+        interruptions += 1;
+        run = match Run::resume(&parts).expect("a run that goes on") {
+            Resumed::Run(run) => *run,
+            Resumed::Complete(_) => panic!("interrupted and complete"),
+        };
+    }
+    (result, [whole, parts].map(|path| without_wall_time(&path)), interruptions)
+}
