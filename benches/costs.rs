@@ -9,7 +9,7 @@ use fretwear::closed_form::{HypergeometricLimit, LimitingShape};
 use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
 use fretwear::friction::{Coulomb, FrictionLaw};
-use fretwear::grid::{Clustering, slip_annulus};
+use fretwear::grid::{Clustering, Mesh};
 use fretwear::half_space::Poisson;
 use fretwear::loading::Mode;
 use fretwear::model::{Fields, Model, OperatorStore, Resolution, Schedule};
@@ -34,7 +34,7 @@ fn contact() -> InitialContact {
 }
 
 fn model(contact: &InitialContact, springs: usize) -> Model {
-    Model::new(contact, springs, Clustering::Cubic).expect("in partial slip")
+    Model::new(contact, springs, Clustering::Smooth).expect("in partial slip")
 }
 
 /// The main scene in the middle of its transient, at τ = 3; reached with a loose tolerance, for speed.
@@ -52,9 +52,9 @@ fn midway(contact: &InitialContact, springs: usize) -> Simulation {
 fn parts(criterion: &mut Criterion) {
     let contact = contact();
     for springs in SPRINGS {
-        let nodes = slip_annulus(springs, 1.0, Clustering::Cubic);
+        let mesh = Mesh::new(springs, 1.0, Clustering::Smooth);
         criterion.bench_function(&format!("operators/{springs}"), |bench| {
-            bench.iter(|| AbelOperators::new(0.0, black_box(nodes.clone()), 3));
+            bench.iter(|| AbelOperators::new(0.0, black_box(mesh.clone())));
         });
         criterion.bench_function(&format!("model/{springs}"), |bench| {
             bench.iter(|| model(black_box(&contact), springs));

@@ -9,35 +9,37 @@
 //! ```
 //!
 //! `F` integrates the local polynomial through the densities `s^(ν-1) q`, `P` the one through the compressions `q`, both against the exact
-//! kernel. Degree 1 makes them exact for piecewise linear data, degree 3 for piecewise cubic data. In the first cell, which the mesh
+//! kernel, with Gauss-Jacobi rules where that is singular. Polynomials are those of the [`Mesh`]. Where the clustering is [`Clustering::Smooth`], the compression is linear in the last cell: the contact edge meets unworn ground
+//! there, and a polynomial of degree 5 through it makes the pressure next to it negative on coarse meshes. In the first cell, which the mesh
 //! makes tiny, the compression is constant: it may jump at the stick edge, as it does in the limit.
+
+use std::ops::Range;
 
 use faer::Mat;
 
 use crate::error::{Error, Result};
-use crate::grid::{lagrange, lagrange_derivative, stencil_start};
+use crate::grid::{Clustering, MOST_POINTS, Mesh, MeshPoint};
 use crate::quadrature::Rule;
 
-/// Nodes of the rule in the cell that holds the end-point singularity: exact for every local polynomial used here.
-const SINGULAR_NODES: usize = 6;
+/// Nodes of the rule in the cell that holds the end-point singularity.
+const SINGULAR_NODES: usize = 12;
 
-/// Sizes of the Gauss-Legendre rules for the cells beside it; the largest is enough for a gap of a twentieth of the cell.
-const REGULAR_NODES: [usize; 9] = [3, 4, 5, 6, 8, 12, 16, 24, 44];
+/// Sizes of the Gauss-Legendre rules for the cells beside it: the largest serves a gap of one cell.
+const REGULAR_NODES: [usize; 5] = [6, 8, 10, 12, 16];
 
-/// Indices in [`REGULAR_NODES`] of the rules for the plain integrals: exact for the local polynomials, and accurate for a power.
-const PLAIN: usize = 1;
-const POWER: usize = 5;
+/// Index in [`REGULAR_NODES`] of the rule for the plain integrals.
+const PLAIN: usize = 4;
 
-/// Most nodes of a local polynomial.
-const MOST_POINTS: usize = 4;
+/// Part of a cell below which differences of the map lose digits.
+const LEAST_DIFFERENCE: f64 = 0.02;
 
-/// Nodes of the local polynomial through the wear depth in its integral: two more, so that the volume keeps up with the depth.
+/// Nodes of the local polynomial through the wear depth in its integral, so that the volume keeps up with the depth.
 const SUM_POINTS: usize = 6;
 
 /// Product-integration operators of one grading on one mesh.
 #[derive(Debug, Clone)]
 pub struct AbelOperators {
-    nodes: Vec<f64>,
+    mesh: Mesh,
     profile: Mat<f64>,
     pressure: Mat<f64>,
     spring_sum: Vec<f64>,
@@ -49,31 +51,25 @@ impl AbelOperators {
     ///
     /// # Arguments
     /// * `grading` -- `k` in (-1, 1)
-    /// * `nodes` -- `ξ`, shape `(n + 1,)`, increasing from 0 to 1, `n >= 4`
-    /// * `degree` -- degree of the local polynomials: 1, 2 or 3
+    /// * `mesh` -- `n` cells
     ///
     /// # Errors
     /// Those of the quadrature rules.
-    ///
-    /// # Panics
-    /// If the nodes or the degree are not as stated.
-    pub fn new(grading: f64, nodes: Vec<f64>, degree: usize) -> Result<Self> {
-        let n = nodes.len() - 1;
-        assert!((1..MOST_POINTS).contains(&degree) && n > degree, "degree {degree} on {n} cells");
-        assert!(nodes[0] == 0.0 && nodes[n] == 1.0 && nodes.windows(2).all(|pair| pair[1] > pair[0]));
-        let assembly = Assembly::new(grading, &nodes, degree + 1)?;
-        let mut operators = Self {
-            profile: Mat::zeros(n, n),
-            pressure: Mat::zeros(n, n),
-            spring_sum: vec![0.0; n],
-            depth_sum: vec![0.0; n],
-            nodes: vec![],
-        };
-        for cell in 0..n {
-            assembly.add_cell(cell, &mut operators);
+    pub fn new(grading: f64, mesh: Mesh) -> Result<Self> {
+        let n = mesh.cells();
+        let (mut profile, mut pressure) = (Mat::zeros(n, n), Mat::zeros(n, n));
+        let (mut spring_sum, mut depth_sum) = (vec![0.0; n], vec![0.0; n]);
+        let assembly = Assembly::new(grading, &mesh)?;
+        for index in 0..n {
+            let mut cell = Cell { assembly: &assembly, index, regular: Default::default() };
+            cell.add_profile(&mut profile);
+            if index > 0 {
+                cell.add_pressure(&mut pressure);
+            }
+            cell.add_spring_sum(&mut spring_sum);
+            cell.add_depth_sum(&mut depth_sum);
         }
-        operators.nodes = nodes;
-        Ok(operators)
+        Ok(Self { mesh, profile, pressure, spring_sum, depth_sum })
     }
 
     /// Number of nodes with `ξ > 0`.
@@ -86,9 +82,14 @@ impl AbelOperators {
         self.len() == 0
     }
 
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
     /// Nodes `ξ`, shape `(n + 1,)`, from 0 at the stick edge to 1 at the contact edge.
     pub fn nodes(&self) -> &[f64] {
-        &self.nodes
+        self.mesh.nodes()
     }
 
     /// Matrix `F` of Eq. (20), shape `(n, n)`: densities at `ξ_1 ... ξ_n` to depths there, for `Z = 1`.
@@ -120,110 +121,88 @@ pub(crate) fn profile_factor(nu: f64, mu: f64) -> f64 {
 
 /// Everything that the weights of one cell need.
 struct Assembly<'a> {
-    nodes: &'a [f64],
-    points: usize,
+    mesh: &'a Mesh,
     nu: f64,
     mu: f64,
     /// `sin(πν)/(π (1-ν))`: finite as `k → 1`, where `1/(1-ν)` diverges.
     profile_factor: f64,
     upper_end: Rule,
     lower_end: Rule,
-    depth_end: Rule,
     legendre: Vec<Rule>,
 }
 
+/// Weights of one row over the stencil of a cell.
+type Weights = [f64; MOST_POINTS];
+
 /// A rule mapped into a cell with the local polynomials on its points.
-#[derive(Clone)]
 struct Mapped {
-    points: Vec<f64>,
-    /// Weight times polynomial, shape `(points,)` of arrays over the stencil.
-    values: Vec<[f64; MOST_POINTS]>,
-    slopes: Vec<[f64; MOST_POINTS]>,
+    points: Vec<MeshPoint>,
+    /// Weight times polynomial times `dξ/dy`.
+    values: Vec<Weights>,
+    /// Weight times derivative by `y` of the polynomial.
+    slopes: Vec<Weights>,
 }
 
 impl<'a> Assembly<'a> {
-    fn new(grading: f64, nodes: &'a [f64], points: usize) -> Result<Self> {
+    fn new(grading: f64, mesh: &'a Mesh) -> Result<Self> {
         let (nu, mu) = (0.5 * (1.0 + grading), 0.5 * (1.0 - grading));
         if !(nu > 0.0 && mu > 0.0) {
             return Err(Error::OutOfRange { name: "half_space.grading", value: grading, range: "(-1, 1)" });
         }
         Ok(Self {
-            nodes,
-            points,
+            mesh,
             nu,
             mu,
             profile_factor: profile_factor(nu, mu),
             upper_end: Rule::jacobi(SINGULAR_NODES, -nu, 0.0)?,
             lower_end: Rule::jacobi(SINGULAR_NODES, 0.0, -mu)?,
-            depth_end: Rule::jacobi(SINGULAR_NODES, 0.0, mu)?,
             legendre: REGULAR_NODES.into_iter().map(Rule::legendre).collect::<Result<_>>()?,
         })
     }
 
-    /// Index of the Gauss-Legendre rule that integrates a kernel singular `gap` widths from the cell to round-off.
-    fn regular_rule(gap: f64) -> usize {
+    /// Index of the Gauss-Legendre rule that integrates a kernel singular `gap` cells from the cell to 1e-13.
+    fn regular_rule(gap: usize) -> usize {
+        let gap = gap as f64;
         let ellipse = 1.0 + 2.0 * gap + 2.0 * (gap * (1.0 + gap)).sqrt();
-        let needed = 18.5 / ellipse.ln() + 2.0;
+        let needed = 15.0 / ellipse.ln() + 4.0;
         REGULAR_NODES.partition_point(|nodes| (*nodes as f64) < needed).min(REGULAR_NODES.len() - 1)
     }
 
-    /// Nodes of the local polynomial of a cell: indices of the first and one past the last.
-    fn stencil(&self, cell: usize) -> (usize, usize) {
-        if cell == 0 {
-            return (1, 2);
+    /// `dξ/dy` on average over `width` from `y` on, within a cell.
+    fn mean_slope(&self, y: f64, width: f64) -> f64 {
+        if width > LEAST_DIFFERENCE {
+            return self.mesh.at(y + width).minus(&self.mesh.at(y)) / width;
         }
-        let start = stencil_start(cell, self.points, self.nodes.len() - 1);
-        (start, start + self.points)
+        self.legendre[0].mean(|part| self.mesh.at(y + part * width).slope)
     }
 
-    fn map(&self, cell: usize, rule: &Rule, (start, end): (usize, usize)) -> Mapped {
-        let (left, width) = (self.nodes[cell], self.nodes[cell + 1] - self.nodes[cell]);
-        let stencil = &self.nodes[start..end];
-        let (mut points, mut values, mut slopes) = (vec![], vec![], vec![]);
+    /// Nodes of the local polynomial of a cell.
+    fn stencil(&self, cell: usize) -> Range<usize> {
+        let last = self.mesh.cells();
+        match self.mesh.clustering() {
+            _ if cell == 0 => 1..2,
+            Clustering::Smooth if cell + 1 == last => last - 1..last + 1,
+            clustering => Mesh::stencil(cell, clustering.degree() + 1, last),
+        }
+    }
+
+    fn map(&self, cell: usize, rule: &Rule, stencil: &Range<usize>) -> Mapped {
+        let count = rule.len();
+        let mut mapped = Mapped {
+            points: Vec::with_capacity(count),
+            values: Vec::with_capacity(count),
+            slopes: Vec::with_capacity(count),
+        };
         for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
-            let x = left + width * node;
-            let (mut value, mut slope) = ([0.0; MOST_POINTS], [0.0; MOST_POINTS]);
-            lagrange(stencil, x, &mut value);
-            lagrange_derivative(stencil, x, &mut slope);
-            points.push(width * node);
-            values.push(value.map(|v| v * weight));
-            slopes.push(slope.map(|v| v * weight));
+            let y = cell as f64 + node;
+            let point = self.mesh.at(y);
+            let value = self.mesh.lagrange(stencil, y, &point);
+            let slope = self.mesh.lagrange_derivative(stencil, y, &point);
+            mapped.values.push(value.map(|v| v * weight * point.slope));
+            mapped.slopes.push(slope.map(|v| v * weight));
+            mapped.points.push(point);
         }
-        Mapped { points, values, slopes }
-    }
-
-    fn add_cell(&self, cell: usize, into: &mut AbelOperators) {
-        let mut mapped = Cell { assembly: self, index: cell, regular: vec![None; REGULAR_NODES.len()] };
-        mapped.add_profile(&mut into.profile);
-        if cell > 0 {
-            mapped.add_pressure(&mut into.pressure);
-        }
-        self.add_sums(cell, self.nodes[cell + 1] - self.nodes[cell], self.stencil(cell), into);
-    }
-
-    /// Adds the cell's part of the weights of the plain integrals.
-    fn add_sums(&self, cell: usize, width: f64, stencil: (usize, usize), into: &mut AbelOperators) {
-        let spring = self.map(cell, &self.legendre[PLAIN], stencil);
-        for value in &spring.values {
-            for (weight, part) in into.spring_sum[stencil.0 - 1..stencil.1 - 1].iter_mut().zip(value) {
-                *weight += width * part;
-            }
-        }
-        let last = self.nodes.len() - 1;
-        let points = SUM_POINTS.min(last);
-        let start = stencil_start(cell, points, last);
-        let left = self.nodes[cell];
-        let rule = if cell == 0 { &self.depth_end } else { &self.legendre[POWER] };
-        for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
-            let x = left + width * node;
-            let power = if cell == 0 { width.powf(self.mu) / (1.0 + self.mu) } else { x.powf(self.mu) };
-            let mut values = [0.0; SUM_POINTS];
-            lagrange(&self.nodes[start..start + points], x, &mut values);
-            for (index, value) in (start..start + points).zip(values) {
-                into.depth_sum[index - 1] +=
-                    width * power * weight * value * self.nodes[index].powf(-self.mu);
-            }
-        }
+        mapped
     }
 }
 
@@ -231,66 +210,98 @@ impl<'a> Assembly<'a> {
 struct Cell<'a> {
     assembly: &'a Assembly<'a>,
     index: usize,
-    regular: Vec<Option<Mapped>>,
+    regular: [Option<Mapped>; REGULAR_NODES.len()],
 }
 
 impl Cell<'_> {
     /// Adds what the densities of the cell contribute to the depths at its outer end and beyond.
     fn add_profile(&mut self, matrix: &mut Mat<f64>) {
         let (assembly, cell) = (self.assembly, self.index);
-        let (left, right, width) = self.bounds();
-        let (first, points) = (assembly.stencil(cell).0, assembly.points);
-        let end = assembly.map(cell, &assembly.upper_end, assembly.stencil(cell));
-        let factor = assembly.profile_factor;
-        add(matrix, cell, first, factor * width.powf(assembly.mu), &end.values, points);
-        for row in cell + 2..assembly.nodes.len() {
-            let node = assembly.nodes[row];
-            let mapped = self.regular((node - right) / width);
-            let kernel = |point: f64| (node - left - point).powf(-assembly.nu);
-            let sum = weighted_sum(&mapped.points, &mapped.values, kernel);
-            add(matrix, row - 1, first, factor * assembly.mu * width, &[sum], points);
+        let (stencil, factor) = (assembly.stencil(cell), assembly.profile_factor);
+        add(matrix, cell, &stencil, factor, self.at_outer_end(&stencil));
+        for row in cell + 2..=assembly.mesh.cells() {
+            let node = assembly.mesh.node(row);
+            let mapped = self.regular(row - cell - 1);
+            let kernel = |at: usize| node.minus(&mapped.points[at]).powf(-assembly.nu);
+            add(matrix, row - 1, &stencil, factor * assembly.mu, weighted_sum(&mapped.values, kernel));
         }
+    }
+
+    /// Weights of the densities of the cell in the integral over it with the kernel that is singular at its outer end, times `μ`.
+    fn at_outer_end(&self, stencil: &Range<usize>) -> Weights {
+        let (assembly, cell) = (self.assembly, self.index);
+        let (mesh, rule) = (assembly.mesh, &assembly.upper_end);
+        if cell + 1 == mesh.cells() {
+            // The map is flat at the contact edge: here the rule is one in ξ.
+            let width = mesh.node(cell).complement;
+            let on_line = |at: usize| {
+                let complement = width * rule.complements[at];
+                let point = MeshPoint { value: 1.0 - complement, complement, slope: width };
+                mesh.lagrange(stencil, mesh.place_before_end(complement), &point)
+            };
+            let values: Vec<Weights> = (0..rule.len()).map(on_line).collect();
+            let scale = width.powf(assembly.mu);
+            return weighted_sum(&values, |at| scale * rule.weights[at]);
+        }
+        let mapped = assembly.map(cell, rule, stencil);
+        let steepness = |at: usize| {
+            let left = rule.complements[at];
+            assembly.mean_slope((cell + 1) as f64 - left, left).powf(-assembly.nu)
+        };
+        weighted_sum(&mapped.values, steepness)
     }
 
     /// Adds what the compressions of the cell contribute to the pressures at its inner end and further in.
     fn add_pressure(&mut self, matrix: &mut Mat<f64>) {
         let (assembly, cell) = (self.assembly, self.index);
-        let (left, _, width) = self.bounds();
-        let (first, points) = (assembly.stencil(cell).0, assembly.points);
-        let end = assembly.map(cell, &assembly.lower_end, assembly.stencil(cell));
-        add(matrix, cell - 1, first, -width.powf(assembly.nu) / assembly.nu, &end.slopes, points);
+        let (stencil, rule) = (assembly.stencil(cell), &assembly.lower_end);
+        let mapped = assembly.map(cell, rule, &stencil);
+        let steepness = |at: usize| assembly.mean_slope(cell as f64, rule.nodes[at]).powf(-assembly.mu);
+        add(matrix, cell - 1, &stencil, -1.0 / assembly.nu, weighted_sum(&mapped.slopes, steepness));
         for row in 1..cell {
-            let node = assembly.nodes[row];
-            let mapped = self.regular((left - node) / width);
-            let kernel = |point: f64| (left - node + point).powf(-assembly.mu);
-            let sum = weighted_sum(&mapped.points, &mapped.slopes, kernel);
-            add(matrix, row - 1, first, -width, &[sum], points);
+            let node = assembly.mesh.node(row);
+            let mapped = self.regular(cell - row);
+            let kernel = |at: usize| mapped.points[at].minus(&node).powf(-assembly.mu);
+            add(matrix, row - 1, &stencil, -1.0, weighted_sum(&mapped.slopes, kernel));
         }
     }
 
-    /// The Gauss-Legendre rule for a kernel that is singular `gap` widths from the cell.
-    fn regular(&mut self, gap: f64) -> &Mapped {
-        let rule = Assembly::regular_rule(gap);
-        let (assembly, cell) = (self.assembly, self.index);
-        self.regular[rule]
-            .get_or_insert_with(|| assembly.map(cell, &assembly.legendre[rule], assembly.stencil(cell)))
+    /// Adds the cell's part of `∫ u dξ`.
+    fn add_spring_sum(&self, sum: &mut [f64]) {
+        let stencil = self.assembly.stencil(self.index);
+        let mapped = self.assembly.map(self.index, &self.assembly.legendre[PLAIN], &stencil);
+        let part = weighted_sum(&mapped.values, |_| 1.0);
+        for (weight, part) in sum[stencil.start - 1..stencil.end - 1].iter_mut().zip(part) {
+            *weight += part;
+        }
     }
 
-    /// Left and right end and width.
-    fn bounds(&self) -> (f64, f64, f64) {
-        let (left, right) = (self.assembly.nodes[self.index], self.assembly.nodes[self.index + 1]);
-        (left, right, right - left)
+    /// Adds the cell's part of `∫ w dξ`, where `ξ^(-μ) w` is the polynomial.
+    fn add_depth_sum(&self, sum: &mut [f64]) {
+        let (mesh, mu) = (self.assembly.mesh, self.assembly.mu);
+        let stencil = Mesh::stencil(self.index, SUM_POINTS.min(mesh.cells()), mesh.cells());
+        let mapped = self.assembly.map(self.index, &self.assembly.legendre[PLAIN], &stencil);
+        let part = weighted_sum(&mapped.values, |at| mapped.points[at].value.powf(mu));
+        for ((weight, part), node) in
+            sum[stencil.start - 1..stencil.end - 1].iter_mut().zip(part).zip(stencil)
+        {
+            *weight += part * mesh.node(node).value.powf(-mu);
+        }
+    }
+
+    /// The Gauss-Legendre rule for a kernel that is singular `gap` cells from the cell.
+    fn regular(&mut self, gap: usize) -> &Mapped {
+        let (assembly, cell) = (self.assembly, self.index);
+        let rule = Assembly::regular_rule(gap);
+        self.regular[rule]
+            .get_or_insert_with(|| assembly.map(cell, &assembly.legendre[rule], &assembly.stencil(cell)))
     }
 }
 
-fn weighted_sum(
-    points: &[f64],
-    weights: &[[f64; MOST_POINTS]],
-    kernel: impl Fn(f64) -> f64,
-) -> [f64; MOST_POINTS] {
+fn weighted_sum(weights: &[Weights], kernel: impl Fn(usize) -> f64) -> Weights {
     let mut sum = [0.0; MOST_POINTS];
-    for (point, values) in points.iter().zip(weights) {
-        let factor = kernel(*point);
+    for (at, values) in weights.iter().enumerate() {
+        let factor = kernel(at);
         for (total, value) in sum.iter_mut().zip(values) {
             *total += factor * value;
         }
@@ -298,20 +309,9 @@ fn weighted_sum(
     sum
 }
 
-/// Adds `scale` times the sum of `parts` to a row, from the column of node `first` on.
-fn add(
-    matrix: &mut Mat<f64>,
-    row: usize,
-    first: usize,
-    scale: f64,
-    parts: &[[f64; MOST_POINTS]],
-    points: usize,
-) {
-    for part in parts {
-        for (offset, value) in part.iter().enumerate().take(points) {
-            if first - 1 + offset < matrix.ncols() {
-                matrix[(row, first - 1 + offset)] += scale * value;
-            }
-        }
+/// Adds `scale` times the weights of a stencil to a row; what is at the contact edge is zero where there is no column for it.
+fn add(matrix: &mut Mat<f64>, row: usize, stencil: &Range<usize>, scale: f64, weights: Weights) {
+    for (node, weight) in stencil.clone().zip(weights) {
+        matrix[(row, node - 1)] += scale * weight;
     }
 }

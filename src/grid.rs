@@ -1,48 +1,284 @@
 //! Meshes of the slip annulus.
 
-/// How strongly nodes cluster at the contact edge.
+use std::ops::Range;
+
+/// Most nodes of a local polynomial on a [`Mesh`].
+pub const MOST_POINTS: usize = 6;
+
+/// How nodes cluster at the two ends of the slip annulus, and the degree of the polynomials between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clustering {
-    /// Spacing `n^-3` at the edge: the more accurate of the two.
+    /// For wear that is smooth along the annulus, with the edge of stick at rest: degree 5. Towards the edge of stick nodes lie nearly
+    /// evenly in `ln(r² - c²)`, where wear proceeds as a front; at the contact edge their spacing is `n^-4`.
+    Smooth,
+    /// For wear with kinks along the annulus: degree 3, spacing `n^-4` at the edge of stick and `n^-3` at the contact edge.
     Cubic,
-    /// Spacing `n^-2` at the edge: less stiff, so that explicit steps may be longer.
+    /// As [`Clustering::Cubic`] with a spacing of `n^-2` at the contact edge: less stiff, so that explicit steps may be longer.
     Quadratic,
-    /// Spacing `n^-3` at the contact edge and `n^-2` at an edge of stick that creeps: ground passes through the springs there, and finer ones
-    /// amplify what they are off by.
+    /// Degree 3, spacing `n^-3` at the contact edge and `n^-2` at an edge of stick that creeps: ground passes through the springs there, and
+    /// finer ones amplify what they are off by.
     CreepingStick,
-    /// Spacing `n^-3` at the contact edge and `n^-1` at an edge of stick that moves as fast as wear.
+    /// Degree 3, spacing `n^-3` at the contact edge and `n^-1` at an edge of stick that moves as fast as wear.
     MovingStick,
 }
 
-/// Nodes of the slip annulus, graded towards the stick edge and towards the contact edge.
+impl Clustering {
+    /// Exponents of the spacing at the edge of stick and at the contact edge.
+    fn exponents(self) -> (i32, i32) {
+        match self {
+            Self::Smooth => (1, 3),
+            Self::Cubic => (3, 2),
+            Self::Quadratic => (3, 1),
+            Self::CreepingStick => (1, 2),
+            Self::MovingStick => (0, 2),
+        }
+    }
+
+    /// Degree of the local polynomials.
+    pub fn degree(self) -> usize {
+        if self == Self::Smooth { 5 } else { 3 }
+    }
+
+    /// Stretch `Λ` of the mesh where the limit's area is `e^natural` times that of the stick zone.
+    fn stretch(self, natural: f64) -> f64 {
+        // By e^-10 of the annulus the front next to the edge of stick has passed from what the output shows.
+        if self == Self::Smooth { (natural + 3.0).max(10.0) } else { natural }
+    }
+}
+
+/// Nodes of the slip annulus as a smooth map of evenly spaced ones, `y = 0, 1, ... n`.
 ///
 /// ```text
-/// ξ = expm1(Λ g(x)) / expm1(Λ),    x = 0, 1/n, ... 1,    g(x) = x³ (10 - 15 x + 6 x²)  or  x³ (4 - 3 x)
+/// ξ = expm1(Λ g(y/n)) / expm1(Λ),      g(x) = ∫_0^x t^a (1-t)^b dt / B(a+1, b+1)
 /// ```
 ///
-/// `ξ = (s - c²)/(a² - c²)` with `s = x²` is the fraction of the annulus' area. Both ends of the annulus carry singularities of the worn
-/// solution, hence the clustering of `g`; `Λ = ln(a²/c²)` spreads the nodes evenly in `ln s` where the stick zone is small.
-///
-/// # Arguments
-/// * `cells` -- number of cells `n`, at least 1
-/// * `stretch` -- `Λ >= 0`
-/// * `clustering` -- at the contact edge
-///
-/// Returns `ξ`, shape `(cells + 1,)`, increasing from 0 to 1.
-pub fn slip_annulus(cells: usize, stretch: f64, clustering: Clustering) -> Vec<f64> {
-    let fraction = |i: usize| {
-        let x = i as f64 / cells as f64;
-        let clustered = match clustering {
-            Clustering::Cubic => x.powi(4) * (15.0 + x * (10.0 * x - 24.0)),
-            Clustering::Quadratic => x.powi(4) * (5.0 - 4.0 * x),
-            Clustering::CreepingStick => x * x * (6.0 + x * (3.0 * x - 8.0)),
-            Clustering::MovingStick => x * (3.0 + x * (x - 3.0)),
+/// `ξ = (s - c²)/(a² - c²)` with `s = x²` is the fraction of the annulus' area, from 0 at the edge of stick to 1 at the contact edge. Both
+/// ends carry singularities of the worn solution, powers of the distance, which are smooth in `y` as the nodes cluster there: the local
+/// polynomials of [`Clustering::Smooth`] are polynomials in `y`, but for straight lines. Those of the other meshes are polynomials in `ξ`: over
+/// kinks, and over ground that passes through the springs, they have proved the steadier ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    clustering: Clustering,
+    stretch: f64,
+    /// `g` from either end as polynomials, lowest power first, after `x^(a+1)` and `(1-x)^(b+1)`.
+    rising: Vec<f64>,
+    falling: Vec<f64>,
+    ends: Vec<MeshPoint>,
+    nodes: Vec<f64>,
+}
+
+/// A place on a [`Mesh`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshPoint {
+    /// `ξ`.
+    pub value: f64,
+    /// `1 - ξ`, to full relative accuracy.
+    pub complement: f64,
+    /// `dξ/dy`.
+    pub slope: f64,
+}
+
+impl MeshPoint {
+    /// `ξ` less that of another place, to the accuracy of the places at both ends of the mesh.
+    pub fn minus(&self, other: &Self) -> f64 {
+        if self.value < 0.5 { self.value - other.value } else { other.complement - self.complement }
+    }
+}
+
+impl Mesh {
+    /// Lays out a mesh.
+    ///
+    /// # Arguments
+    /// * `cells` -- number of cells `n`, more than the degree of the clustering
+    /// * `natural_stretch` -- `ln(a²/c²) >= 0`, which spreads the nodes evenly in `ln s` where the stick zone is small
+    /// * `clustering` -- at the ends
+    ///
+    /// # Panics
+    /// If there are too few cells.
+    pub fn new(cells: usize, natural_stretch: f64, clustering: Clustering) -> Self {
+        assert!(
+            cells > clustering.degree(),
+            "{cells} cells for polynomials of degree {}",
+            clustering.degree()
+        );
+        let (low, high) = clustering.exponents();
+        let mut mesh = Self {
+            clustering,
+            stretch: clustering.stretch(natural_stretch),
+            rising: incomplete_beta(low, high),
+            falling: incomplete_beta(high, low),
+            ends: Vec::new(),
+            nodes: vec![0.0; cells + 1],
         };
-        if stretch > 1e-8 { (stretch * clustered).exp_m1() / stretch.exp_m1() } else { clustered }
+        mesh.ends = (0..=cells).map(|i| mesh.at(i as f64)).collect();
+        for (node, end) in mesh.nodes.iter_mut().zip(&mesh.ends) {
+            *node = end.value;
+        }
+        mesh.nodes[cells] = 1.0;
+        mesh
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.nodes.len() - 1
+    }
+
+    /// How the nodes cluster.
+    pub fn clustering(&self) -> Clustering {
+        self.clustering
+    }
+
+    /// Nodes `ξ`, shape `(n + 1,)`, increasing from 0 to 1.
+    pub fn nodes(&self) -> &[f64] {
+        &self.nodes
+    }
+
+    /// The node of an index, up to `n`.
+    pub fn node(&self, index: usize) -> MeshPoint {
+        self.ends[index]
+    }
+
+    /// The place at `y` in [0, n].
+    pub fn at(&self, y: f64) -> MeshPoint {
+        let cells = self.cells() as f64;
+        let (low, high) = self.clustering.exponents();
+        let (x, left) = (y / cells, (cells - y) / cells);
+        let (part, rest) = if x < 0.5 {
+            let part = x.powi(low + 1) * polynomial(&self.rising, x);
+            (part, 1.0 - part)
+        } else {
+            let rest = left.powi(high + 1) * polynomial(&self.falling, left);
+            (1.0 - rest, rest)
+        };
+        let slope = self.rising[0] * f64::from(low + 1) * x.powi(low) * left.powi(high) / cells;
+        if self.stretch < 1e-8 {
+            return MeshPoint { value: part, complement: rest, slope };
+        }
+        let (whole, grown) = (self.stretch.exp_m1(), (self.stretch * part).exp());
+        MeshPoint {
+            value: (self.stretch * part).exp_m1() / whole,
+            complement: grown * (self.stretch * rest).exp_m1() / whole,
+            slope: self.stretch * grown * slope / whole,
+        }
+    }
+
+    /// The cell in which `ξ` in [0, 1) lies.
+    pub fn cell(&self, fraction: f64) -> usize {
+        self.nodes.partition_point(|node| *node <= fraction).clamp(1, self.cells()) - 1
+    }
+
+    /// `y` of `ξ` in [0, 1).
+    pub fn place(&self, fraction: f64) -> f64 {
+        let cell = self.cell(fraction) as f64;
+        let (mut low, mut high) = (cell, cell + 1.0);
+        let mut y = cell + 0.5;
+        for _ in 0..60 {
+            let point = self.at(y);
+            let off = point.value - fraction;
+            if off > 0.0 {
+                high = y;
+            } else {
+                low = y;
+            }
+            let newton = y - off / point.slope;
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - y).abs() <= 1e-14 * next {
+                return next;
+            }
+            y = next;
+        }
+        y
+    }
+
+    /// `y` of `1 - ξ` in the last cell.
+    pub fn place_before_end(&self, complement: f64) -> f64 {
+        let cells = self.cells() as f64;
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.at(cells - middle).complement > complement {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        cells - 0.5 * (low + high)
+    }
+
+    /// The `points` nodes of the local polynomial of cell `cell`, from 1 to `last` on: centred, shifted inwards at the ends.
+    pub fn stencil(cell: usize, points: usize, last: usize) -> Range<usize> {
+        let start = (cell + 1).saturating_sub(points / 2).max(1).min(last + 1 - points.min(last));
+        start..start + points
+    }
+
+    /// The local polynomials of a stencil at `y`, where the place `point` is.
+    pub fn lagrange(&self, stencil: &Range<usize>, y: f64, point: &MeshPoint) -> [f64; MOST_POINTS] {
+        let mut values = [0.0; MOST_POINTS];
+        let nodes = self.coordinates(stencil);
+        lagrange(&nodes[..stencil.len()], self.coordinate(stencil, y, point), &mut values);
+        values
+    }
+
+    /// Derivatives by `y` of [`Mesh::lagrange`].
+    pub fn lagrange_derivative(
+        &self,
+        stencil: &Range<usize>,
+        y: f64,
+        point: &MeshPoint,
+    ) -> [f64; MOST_POINTS] {
+        let mut slopes = [0.0; MOST_POINTS];
+        let nodes = self.coordinates(stencil);
+        lagrange_derivative(&nodes[..stencil.len()], self.coordinate(stencil, y, point), &mut slopes);
+        if self.is_even(stencil) { slopes } else { slopes.map(|slope| slope * point.slope) }
+    }
+
+    /// Whether the local polynomial is one of `y`.
+    fn is_even(&self, stencil: &Range<usize>) -> bool {
+        self.clustering == Clustering::Smooth && stencil.len() > 2
+    }
+
+    /// What the local polynomial is a polynomial of: `y`, or `ξ` as it is next to the edge of stick and less one next to the contact edge.
+    fn coordinate(&self, stencil: &Range<usize>, y: f64, point: &MeshPoint) -> f64 {
+        if self.is_even(stencil) {
+            y
+        } else if self.ends[stencil.start].value < 0.5 {
+            point.value
+        } else {
+            -point.complement
+        }
+    }
+
+    fn coordinates(&self, stencil: &Range<usize>) -> [f64; MOST_POINTS] {
+        let last = self.cells();
+        std::array::from_fn(|i| {
+            let node = stencil.start + i;
+            self.coordinate(stencil, node as f64, &self.ends[node.min(last)])
+        })
+    }
+
+    /// Value at `y` of what is given at the nodes from the first one off the edge of stick on, by the local polynomial.
+    pub fn interpolate(&self, values: &[f64], y: f64) -> f64 {
+        let cell = (y as usize).min(self.cells() - 1);
+        let stencil = Self::stencil(cell, self.clustering.degree() + 1, values.len());
+        let weights = self.lagrange(&stencil, y, &self.at(y));
+        weights.iter().zip(&values[stencil.start - 1..stencil.end - 1]).map(|(w, v)| w * v).sum()
+    }
+}
+
+/// Coefficients of `∫_0^x t^a (1-t)^b dt / (B(a+1, b+1) x^(a+1))`, lowest power first.
+fn incomplete_beta(a: i32, b: i32) -> Vec<f64> {
+    let beta = (1..=b).map(|j| f64::from(j) / f64::from(a + j)).product::<f64>() / f64::from(a + b + 1);
+    let mut binomial = 1.0;
+    let coefficient = |j: i32| {
+        let found = binomial / f64::from(a + 1 + j) / beta;
+        binomial *= -f64::from(b - j) / f64::from(j + 1);
+        found
     };
-    let mut nodes: Vec<f64> = (0..=cells).map(fraction).collect();
-    nodes[cells] = 1.0;
-    nodes
+    (0..=b).map(coefficient).collect()
+}
+
+fn polynomial(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
 /// Lagrange polynomials on a few neighbouring nodes.
@@ -77,22 +313,53 @@ pub fn lagrange_derivative(nodes: &[f64], x: f64, values: &mut [f64]) {
     }
 }
 
-/// First of the `points` nodes that interpolate best in cell `cell` of nodes `1..=last`: centred, shifted inwards at the ends.
-pub fn stencil_start(cell: usize, points: usize, last: usize) -> usize {
-    (cell + 1).saturating_sub(points / 2).max(1).min(last + 1 - points.min(last))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const ALL: [Clustering; 5] = [
+        Clustering::Smooth,
+        Clustering::Cubic,
+        Clustering::Quadratic,
+        Clustering::CreepingStick,
+        Clustering::MovingStick,
+    ];
+
     #[test]
     fn nodes_rise_from_zero_to_one_for_every_stretch() {
-        for clustering in [Clustering::Cubic, Clustering::Quadratic] {
+        for clustering in ALL {
             for stretch in [0.0, 1e-12, 0.5, 5.0, 30.0] {
-                let nodes = slip_annulus(50, stretch, clustering);
-                assert_eq!((nodes[0], nodes[50]), (0.0, 1.0));
+                let mesh = Mesh::new(50, stretch, clustering);
+                let nodes = mesh.nodes();
+                assert_eq!((nodes[0], nodes[50], mesh.node(50).complement), (0.0, 1.0, 0.0));
                 assert!(nodes.windows(2).all(|pair| pair[1] > pair[0]), "stretch {stretch}: {nodes:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_and_complements_are_those_of_the_map() {
+        for clustering in ALL {
+            for stretch in [0.0, 2.0] {
+                let mesh = Mesh::new(20, stretch, clustering);
+                for i in 1..200 {
+                    let y = 0.1 * f64::from(i);
+                    let (low, point, high) = (mesh.at(y - 1e-4), mesh.at(y), mesh.at(y + 1e-4));
+                    let slope = high.minus(&low) / 2e-4;
+                    assert!(
+                        (slope / point.slope - 1.0).abs() < 1e-5,
+                        "{clustering:?} at {y}: {slope}, {point:?}"
+                    );
+                    assert!(
+                        (point.value + point.complement - 1.0).abs() < 3e-15,
+                        "{clustering:?}: {point:?}"
+                    );
+                    let back = mesh.place(point.value);
+                    assert!(
+                        (back - y).abs() < 1e-9 * 20.0 / point.complement,
+                        "{clustering:?}: {y} came back as {back}"
+                    );
+                }
             }
         }
     }
@@ -111,9 +378,9 @@ mod tests {
 
     #[test]
     fn stencils_stay_inside_the_nodes() {
-        assert_eq!(stencil_start(1, 4, 50), 1);
-        assert_eq!(stencil_start(10, 4, 50), 9);
-        assert_eq!(stencil_start(49, 4, 50), 47);
-        assert_eq!(stencil_start(2, 2, 50), 2);
+        assert_eq!(Mesh::stencil(1, 4, 50), 1..5);
+        assert_eq!(Mesh::stencil(10, 4, 50), 9..13);
+        assert_eq!(Mesh::stencil(49, 4, 50), 47..51);
+        assert_eq!(Mesh::stencil(2, 2, 50), 2..4);
     }
 }

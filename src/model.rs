@@ -43,9 +43,9 @@ pub use output::RadialFields;
 use reach::Reach;
 pub use schedule::{Demand, Drive, Resolution, Schedule};
 
-/// Degree of the local polynomials of the transforms, of the derivative along the annulus and of output between the springs.
-const DEGREE: usize = 3;
-const POINTS: usize = DEGREE + 1;
+/// Part of the annulus, next to the edge of stick, of which the springs of a [`Clustering::Smooth`] mesh are not shown: the front in which wear
+/// proceeds towards the edge is followed well as long as some springs are left before it.
+const HIDDEN: f64 = 3e-5;
 
 /// Fewest springs on which the local polynomials fit.
 pub const FEWEST_SPRINGS: usize = 8;
@@ -125,7 +125,10 @@ pub struct Model {
     operators: Arc<Operators>,
     /// `F` without signs, where slip may turn: the direction of slip on the surface.
     positive: Option<Mat<f64>>,
+    /// The unworn slip on the springs of the limit.
     radial_unworn: Vec<UnwornValues>,
+    /// Springs next to the edge of stick that the output does not show.
+    hidden: usize,
     /// The edge of stick, its innermost place where it moves.
     place: Place,
     moving: Option<MovingStick>,
@@ -198,7 +201,11 @@ impl Model {
         let compression = contact.slip_compression();
         let stick_load = 0.5 * profile.load_integral(stick_radius)
             + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
-        let depth_scale: f64 = radial_unworn.iter().map(|u| u.limit_slip - u.slip).fold(0.0, f64::max);
+        let depth_scale = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
+        let hidden = match clustering {
+            Clustering::Smooth => operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN),
+            _ => 0,
+        };
         let positive = schedule.resolves().then(|| {
             let profile = operators.abel.profile();
             Mat::from_fn(springs, springs, |i, j| profile[(i, j)].abs())
@@ -210,6 +217,7 @@ impl Model {
             operators,
             positive,
             radial_unworn,
+            hidden,
             place: Place {
                 stick_area: stick_radius_squared,
                 slip_compression: contact.slip_compression(),
@@ -261,15 +269,15 @@ impl Model {
         self.depth_scale
     }
 
-    /// Radii of the output, m, shape `(springs,)`, increasing from just outside the stick radius to the limiting contact radius.
+    /// Radii of the output, m, shape `(node,)`, increasing from just outside the stick radius to the limiting contact radius.
     pub fn radii(&self) -> Vec<f64> {
-        let limit = self.unworn.limit_edge();
-        self.operators.abel.nodes()[1..].iter().map(|x| (self.place.stick_area + limit * x).sqrt()).collect()
+        self.offsets().iter().map(|offset| (self.place.stick_area + offset).sqrt()).collect()
     }
 
     /// `r² - c²`, m², at [`Model::radii`], without the rounding of the radii.
     pub fn offsets(&self) -> Vec<f64> {
-        self.operators.abel.nodes()[1..].iter().map(|x| self.unworn.limit_edge() * x).collect()
+        let shown = &self.operators.abel.nodes()[1 + self.hidden..];
+        shown.iter().map(|x| self.unworn.limit_edge() * x).collect()
     }
 
     /// The unworn state: the edge and the compressions whose wear depth is zero at every spring.
@@ -408,7 +416,7 @@ impl Model {
 
     /// Depth that the limit takes away at [`Model::radii`] by the program's own quadrature, m.
     pub fn limit_depth(&self) -> Vec<f64> {
-        self.radial_unworn.iter().map(|u| (u.limit_slip - u.slip).max(0.0)).collect()
+        self.radial_unworn[self.hidden..].iter().map(UnwornValues::limit_depth).collect()
     }
 
     /// The unworn slip on every spring, with the contact edge at `edge`.

@@ -277,12 +277,13 @@ impl Parts {
         let numerics = scene.numerics();
         let springs = numerics.springs.unwrap_or_else(|| springs_for(numerics.accuracy));
         check_memory(springs)?;
+        check_start(numerics)?;
+        let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
         let clustering = match numerics.stepper {
+            StepperChoice::Implicit if schedule.wears_smoothly() => Clustering::Smooth,
             StepperChoice::Implicit => Clustering::Cubic,
             StepperChoice::EveryCycle | StepperChoice::CycleJump => Clustering::Quadratic,
         };
-        check_start(numerics)?;
-        let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
         let model = Model::under(&contact, schedule, springs, clustering, &shared.operators)?;
         check_sliding(&model)?;
         let unlimited = model.slides() || scene.conditions().holds_normal_force;

@@ -1,6 +1,7 @@
 //! The loop over time: which step to try, where to land, when to stop.
 
 use crate::error::{Error, Result};
+use crate::grid::Clustering;
 use crate::model::{CycleFields, Fields, Model, MovingStick, RadialFields, State};
 use crate::stepper::Stepper;
 
@@ -18,8 +19,10 @@ const FIRST_GROWTH: f64 = 1e-3;
 /// Compression, relative to `q_c`, below which no pressure is left but round-off.
 const WORN_OUT: f64 = 1e-13;
 
-/// Loss of wear depth, relative to the limit's largest, that the output's interpolation between moving springs may show.
+/// Loss of wear depth, relative to the limit's largest, that the output's interpolation between moving springs may show: at least this, and
+/// `(3/n)^4` on few springs of a smooth mesh. Explicit steps are rejected by it before they are unstable.
 const INTERPOLATION: f64 = 1e-6;
+const COARSE_INTERPOLATION: f64 = 3.0;
 
 /// The same where the edge of stick moves through the mesh.
 const KINKED_INTERPOLATION: f64 = 1e-2;
@@ -356,8 +359,12 @@ impl Simulation {
         target: Option<f64>,
     ) -> Result<bool> {
         let radial = self.model.radial_fields(&state, &fields, &cycle);
-        let interpolation =
-            if self.model.schedule().is_uniform() { INTERPOLATION } else { KINKED_INTERPOLATION };
+        let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
+        let interpolation = match self.model.operators().mesh().clustering() {
+            Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
+            _ if self.model.schedule().is_uniform() => INTERPOLATION,
+            _ => KINKED_INTERPOLATION,
+        };
         let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
         let mut pairs = radial.wear_depth.iter().zip(&self.radial.wear_depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);

@@ -62,6 +62,13 @@ pub struct UnwornSlopes {
     pub log_slip: f64,
 }
 
+impl UnwornValues {
+    /// Depth that the limit takes away, m: zero where it would add.
+    pub fn limit_depth(&self) -> f64 {
+        (self.limit_slip - self.slip).max(0.0)
+    }
+}
+
 impl UnwornSlip {
     /// Tabulates the slip depth by the quadrature of `F`.
     ///

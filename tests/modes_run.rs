@@ -418,7 +418,7 @@ fn the_estimate_of_a_plain_run_is_that_of_its_energy() {
     let by_energy = number("dissipated_energy") * 1e-12 / 0.6;
     let expected = (by_energy - number("wear_volume")).abs() / number("wear_volume_limit");
     // The program forms the limit by its own quadrature.
-    assert!((number("error_estimate") / expected - 1.0).abs() < 1e-6, "{expected:e}: {json}");
+    assert!((number("error_estimate") / expected - 1.0).abs() < 1e-4, "{expected:e}: {json}");
     let by_rate = file.checkpoint.unwrap().state.volume_by_rate;
     assert!((by_rate / by_energy - 1.0).abs() < 1e-14, "{by_rate:e}, {by_energy:e}");
 }

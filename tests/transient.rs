@@ -11,7 +11,7 @@ const TAUS: [f64; 3] = [1.0, 3.0, 10.0];
 
 /// Paraboloid on a homogeneous half-space, `c/a0 = 0.7`.
 fn paraboloid(springs: usize) -> Case {
-    Case::new(2.0, 0.0, 0.7, springs)
+    Case::new(2.0, 0.0, 0.7, springs).smooth()
 }
 
 fn run(case: Case, taus: &[f64]) -> Vec<Seen> {
@@ -21,20 +21,20 @@ fn run(case: Case, taus: &[f64]) -> Vec<Seen> {
 /// `ΔV/(a0² d)` by boundary-element codes of the three-dimensional half-space, which know nothing of the springs.
 #[test]
 fn the_worn_volume_agrees_with_boundary_elements() {
-    let case = paraboloid(200);
+    let case = paraboloid(60);
     let seen = case.run(Box::new(Implicit::new(1e-6)), 1e-6, &[1.0, 3.0, 10.0, 30.0]);
     for (seen, reference) in seen.iter().zip([0.0268731, 0.0830288, 0.213381, 0.235817]) {
         let volume = seen.wear_volume / case.indentation();
         let error = volume / reference - 1.0;
-        // Measured with 200 springs: 6.4e-6; with 100: 7e-5, too much; the references carry six digits.
+        // Measured with 60 springs: 4.6e-6; the references carry six digits.
         assert!(error.abs() < 5e-5, "τ = {}: {volume}, not {reference}: {error:e}", seen.state.cycles);
     }
 }
 
 #[test]
 fn volume_and_profile_converge_and_the_energy_balances_as_springs_are_doubled() {
-    const FINEST: usize = 400;
-    let counts = [25, 50, 100, 200];
+    const FINEST: usize = 120;
+    let counts = [12, 24, 48];
     let reference = run(paraboloid(FINEST), &TAUS);
     let runs = counts.map(|springs| run(paraboloid(springs), &TAUS));
     for (at, tau) in TAUS.into_iter().enumerate() {
@@ -42,13 +42,7 @@ fn volume_and_profile_converge_and_the_energy_balances_as_springs_are_doubled() 
         let deepest = exact.wear_depth.iter().fold(0.0, |m: f64, w| m.max(*w));
         let volumes: Vec<f64> =
             runs.iter().map(|run| (run[at].wear_volume / exact.wear_volume - 1.0).abs()).collect();
-        // The nodes of a mesh are among those of the finest one.
-        let profile = |run: &Vec<Seen>| {
-            let stride = FINEST / run[at].wear_depth.len();
-            let common: Vec<f64> =
-                exact.wear_depth.iter().skip(stride - 1).step_by(stride).copied().collect();
-            distance(&run[at].wear_depth, &common) / deepest
-        };
+        let profile = |run: &Vec<Seen>| distance(&run[at].depth_at_parts, &exact.depth_at_parts) / deepest;
         let profiles: Vec<f64> = runs.iter().map(profile).collect();
         // μ_f = 1, and the wear coefficient turns energy into volume.
         let coefficient = paraboloid(8).contact().wear().coefficient;
@@ -57,10 +51,10 @@ fn volume_and_profile_converge_and_the_energy_balances_as_springs_are_doubled() 
         };
         let balances: Vec<f64> = runs.iter().map(balance).collect();
         for (name, errors, least) in
-            [("volume", &volumes, 2.0), ("profile", &profiles, 1.5), ("energy balance", &balances, 2.0)]
+            [("volume", &volumes, 3.5), ("profile", &profiles, 3.5), ("energy balance", &balances, 2.0)]
         {
-            // Measured over the doublings: volume 2.2 to 3.1, profile 2.0 to 3.0, balance 2.3 to 2.9.
-            let mean = (errors[0] / errors[3]).log2() / 3.0;
+            // Measured over the doublings: volume 4.8 to 6.2, profile 4.7 to 5.2, balance 2.7 to 5.9.
+            let mean = (errors[0] / errors[2]).log2() / 2.0;
             assert!(
                 mean >= least,
                 "τ = {tau}, {name}: errors {errors:?} with {counts:?} springs, orders {:?}",

@@ -2,27 +2,40 @@
 
 use faer::Mat;
 
-use super::{CycleFields, Fields, Model, POINTS};
+use super::{CycleFields, Fields, Model};
 use crate::error::{Error, Result};
-use crate::grid::{lagrange_derivative, stencil_start};
+use crate::grid::{Clustering, MOST_POINTS, Mesh};
 use crate::linear::{dot, multiply};
 
 /// Weights of a derivative `ξ d/dξ` at one spring.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stencil {
     first: usize,
-    weights: [f64; POINTS],
+    count: usize,
+    weights: [f64; MOST_POINTS],
+}
+
+impl Stencil {
+    fn apply(&self, values: &[f64]) -> f64 {
+        dot(&self.weights[..self.count], &values[self.first..self.first + self.count])
+    }
 }
 
 /// Weights of `ξ d/dξ` at every spring.
-pub(super) fn derivative_stencils(nodes: &[f64]) -> Vec<Stencil> {
-    let last = nodes.len() - 1;
+///
+/// The material moves inwards past the springs, so the stencils lean outwards. On a smooth mesh they reach beyond the contact edge, where
+/// nothing wears: so do those of the last springs not depend on what lies behind the wave alone.
+pub(super) fn derivative_stencils(mesh: &Mesh) -> Vec<Stencil> {
+    let last = mesh.cells();
+    let smooth = mesh.clustering() == Clustering::Smooth;
+    let points = mesh.clustering().degree() + 1;
     let stencil = |node: usize| {
-        // The material moves inwards past the springs, so the stencil leans outwards.
-        let start = stencil_start(node, POINTS, last);
-        let mut weights = [0.0; POINTS];
-        lagrange_derivative(&nodes[start..start + POINTS], nodes[node], &mut weights);
-        Stencil { first: start - 1, weights: weights.map(|w| w * nodes[node]) }
+        let nodes = Mesh::stencil(node, points, if smooth { last + points } else { last });
+        let place = mesh.node(node);
+        // At the contact edge itself the slope of the map is zero, and nothing asks for a derivative there.
+        let scale = if node == last { 0.0 } else { place.value / place.slope };
+        let weights = mesh.lagrange_derivative(&nodes, node as f64, &place).map(|w| w * scale);
+        Stencil { first: nodes.start - 1, count: nodes.end.min(last + 1) - nodes.start, weights }
     };
     (1..=last).map(stencil).collect()
 }
@@ -30,11 +43,7 @@ pub(super) fn derivative_stencils(nodes: &[f64]) -> Vec<Stencil> {
 impl Model {
     /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
     pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
-        self.operators
-            .derivative
-            .iter()
-            .map(|s| dot(&s.weights, &values[s.first..s.first + POINTS]))
-            .collect()
+        self.operators.derivative.iter().map(|stencil| stencil.apply(values)).collect()
     }
 
     /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.
@@ -128,7 +137,7 @@ impl Model {
         let mut changed = vec![0.0; n];
         for j in 0..n - 1 {
             // Cells inside a radius add nothing to it but through the stencils that reach one node back and two ahead.
-            let first = j.saturating_sub(POINTS);
+            let first = j.saturating_sub(MOST_POINTS);
             let factor = fields.density_factor[j];
             let column = self.operators.abel.profile().col_as_slice(j);
             for ((change, column), slip) in changed.iter_mut().zip(column).zip(&per_slip).skip(first) {
@@ -136,7 +145,7 @@ impl Model {
             }
             let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.operators.derivative);
             for (i, (entry, stencil)) in rows.enumerate().take(n - 1).skip(first) {
-                let along = dot(&stencil.weights, &changed[stencil.first..stencil.first + POINTS]);
+                let along = stencil.apply(&changed);
                 *entry += changed[i] - theta * along;
             }
             changed[first] = 0.0;

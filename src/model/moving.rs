@@ -22,7 +22,6 @@ mod stage;
 
 use std::f64::consts::PI;
 
-use super::output::interpolate;
 use super::schedule::{Demand, Drive, Schedule};
 use super::{Model, Place, State};
 use crate::contact::InitialContact;
@@ -346,11 +345,10 @@ impl Model {
         }
     }
 
-    /// Value between the springs of a quantity given at all of them, by local cubics.
+    /// Value between the springs of a quantity given at all of them.
     pub(super) fn between_springs(&self, values: &[f64], x: f64) -> f64 {
-        let nodes = self.operators.abel.nodes();
-        let cell = nodes.partition_point(|node| *node < x).saturating_sub(1).max(1);
-        interpolate(&nodes[1..], values, cell, x)
+        let mesh = self.operators.abel.mesh();
+        mesh.interpolate(values, mesh.place(x))
     }
 
     /// Compression at the edge of stick of the unworn contact in the balance of forces, m.

@@ -2,11 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::DEGREE;
 use super::derivatives::{Stencil, derivative_stencils};
 use crate::abel::AbelOperators;
 use crate::error::Result;
-use crate::grid::{Clustering, slip_annulus};
+use crate::grid::{Clustering, Mesh};
 use crate::linear::Factors;
 
 /// The transforms and what follows from them alone.
@@ -65,11 +64,11 @@ impl OperatorStore {
 
 impl Operators {
     fn new(grading: f64, stretch: f64, springs: usize, clustering: Clustering) -> Result<Self> {
-        let abel = AbelOperators::new(grading, slip_annulus(springs, stretch, clustering), DEGREE)?;
+        let abel = AbelOperators::new(grading, Mesh::new(springs, stretch, clustering))?;
         let inner = springs - 1;
         let profile_factors = Factors::new(abel.profile().submatrix(0, 0, inner, inner).to_owned());
         let mut edge_row: Vec<f64> = (0..inner).map(|j| abel.profile()[(inner, j)]).collect();
         profile_factors.solve_transposed(&mut edge_row);
-        Ok(Self { derivative: derivative_stencils(abel.nodes()), abel, profile_factors, edge_row })
+        Ok(Self { derivative: derivative_stencils(abel.mesh()), abel, profile_factors, edge_row })
     }
 }

@@ -2,16 +2,16 @@
 
 use std::f64::consts::PI;
 
-use super::{CycleFields, Fields, Model, POINTS, State};
-use crate::grid::{lagrange, stencil_start};
+use super::{CycleFields, Fields, Model, State};
 use crate::linear::dot;
+use crate::slip_depth::UnwornValues;
 use crate::stick_slip::Regime;
 
 /// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
 /// innermost of them may be as strong as the core.
 const MIDDLE: f64 = 2.0;
 
-/// The fields on the fixed radii of the output, shape `(springs,)` each.
+/// The fields on the fixed radii of the output, shape `(node,)` each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RadialFields {
     /// Wear depth, m.
@@ -38,7 +38,8 @@ impl Model {
 
     /// Worn volume of the limit by the program's own quadrature, m³.
     pub fn limit_volume(&self) -> f64 {
-        self.volume(self.unworn.limit_edge(), &self.limit_depth())
+        let depth: Vec<f64> = self.radial_unworn.iter().map(UnwornValues::limit_depth).collect();
+        self.volume(self.unworn.limit_edge(), &depth)
     }
 
     pub(super) fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
@@ -128,23 +129,43 @@ impl Model {
         self.slides && stick_radius < MIDDLE * self.place.stick_area.sqrt()
     }
 
-    /// The fields at [`Model::radii`], by local cubic interpolation between the springs.
+    /// Wear depth, m, at `offset = r² - c²`, m², any place of the annulus, where the edge of stick left no worn ground behind.
+    pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
+        let (stick_area, passed) = match &state.stick {
+            None => (self.place.stick_area, 0.0),
+            Some(stick) => (stick.area, stick.area - self.place.stick_area),
+        };
+        let z = offset - passed;
+        let x = z / fields.edge;
+        if x <= 0.0 || x >= 1.0 {
+            return 0.0;
+        }
+        let mesh = self.operators.abel.mesh();
+        let growth = mesh.interpolate(&fields.log_slip, mesh.place(x)).exp_m1();
+        match self.moving {
+            None => self.unworn.at(z).slip * growth,
+            Some(_) => self.unworn.at_stick(stick_area, fields.place.slip_compression, z).slip * growth,
+        }
+    }
+
+    /// The fields at [`Model::radii`], by local interpolation between the springs.
     pub fn radial_fields(&self, state: &State, fields: &Fields, cycle: &CycleFields) -> RadialFields {
-        let n = self.springs();
-        let nodes = self.operators.abel.nodes();
+        let mesh = self.operators.abel.mesh();
+        let (n, nodes) = (self.springs(), mesh.nodes());
         let nu = 1.0 - self.mu();
         // Slip over slip depth is smooth along the annulus.
         let per_depth: Vec<f64> =
             cycle.slip.iter().zip(&fields.slip_depth).map(|(slip, depth)| slip / depth).collect();
         let eased: Vec<f64> =
-            (0..n - 1).map(|i| fields.pressure[i] * (1.0 - nodes[i + 1]).powf(-nu)).collect();
+            (0..n - 1).map(|i| fields.pressure[i] * mesh.node(i + 1).complement.powf(-nu)).collect();
+        let shown = n - self.hidden;
         let mut radial =
-            RadialFields { wear_depth: vec![0.0; n], pressure: vec![0.0; n], slip: vec![0.0; n] };
-        let mut cell = 1;
-        for i in 0..n {
-            let offset = self.unworn.limit_edge() * nodes[i + 1];
+            RadialFields { wear_depth: vec![0.0; shown], pressure: vec![0.0; shown], slip: vec![0.0; shown] };
+        for i in 0..shown {
+            let spring = i + self.hidden;
+            let offset = self.unworn.limit_edge() * nodes[spring + 1];
             let x = match &state.stick {
-                None => nodes[i + 1] * (self.unworn.limit_edge() / fields.edge),
+                None => nodes[spring + 1] * (self.unworn.limit_edge() / fields.edge),
                 Some(stick) => (self.place.stick_area + offset - stick.area) / fields.edge,
             };
             if let Some(worn) = state.stick.as_ref().and_then(|stick| stick.wear_depth.get(i)) {
@@ -156,12 +177,10 @@ impl Model {
             if x <= 0.0 {
                 continue;
             }
-            while nodes[cell + 1] < x {
-                cell += 1;
-            }
-            let log_slip = interpolate(&nodes[1..], &fields.log_slip, cell, x);
+            let y = mesh.place(x);
+            let log_slip = mesh.interpolate(&fields.log_slip, y);
             let unworn = match &state.stick {
-                None => self.radial_unworn[i].slip,
+                None => self.radial_unworn[spring].slip,
                 Some(stick) => {
                     let z = self.place.stick_area + offset - stick.area;
                     self.unworn.at_stick(stick.area, fields.place.slip_compression, z).slip
@@ -170,17 +189,9 @@ impl Model {
             if state.stick.as_ref().is_none_or(|stick| stick.wear_depth.is_empty()) {
                 radial.wear_depth[i] = unworn * log_slip.exp_m1();
             }
-            radial.slip[i] = interpolate(&nodes[1..], &per_depth, cell, x) * unworn * log_slip.exp();
-            radial.pressure[i] = interpolate(&nodes[1..n], &eased, cell, x) * (1.0 - x).powf(nu);
+            radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
+            radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
         }
         radial
     }
-}
-
-/// Local cubic interpolation at `x` in cell `cell` between nodes given from the first spring on.
-pub(super) fn interpolate(nodes: &[f64], values: &[f64], cell: usize, x: f64) -> f64 {
-    let start = stencil_start(cell, POINTS, values.len()).min(values.len() + 1 - POINTS) - 1;
-    let mut weights = [0.0; POINTS];
-    lagrange(&nodes[start..start + POINTS], x, &mut weights);
-    dot(&weights, &values[start..start + POINTS])
 }

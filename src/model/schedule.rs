@@ -288,6 +288,13 @@ impl Schedule {
             && conditions.friction_history == History::Constant
             && conditions.tangential_control == TangentialControl::Displacement
     }
+
+    /// Whether nothing makes a kink in wear along the slip annulus. A resolved cycle does: it takes what is pulled as without contact.
+    pub fn wears_smoothly(&self) -> bool {
+        self.is_uniform()
+            && !self.resolves()
+            && matches!(self.conditions.wear, WearLaw::Archard(_) | WearLaw::DissipatedEnergy { .. })
+    }
 }
 
 /// The table of a path that turns at constant indentation; that of an earlier block with the same path, if there is one.

@@ -38,6 +38,11 @@ impl Case {
         Self { exponent, grading, stick_ratio, springs, clustering, tau_per_cycle: 1.0 }
     }
 
+    /// The same on the mesh of plain runs.
+    pub fn smooth(self) -> Self {
+        Self { clustering: Clustering::Smooth, ..self }
+    }
+
     /// Indentation `d`; the first contact radius is one.
     pub fn indentation(&self) -> f64 {
         power_law_factor(self.exponent, self.grading)
@@ -80,7 +85,17 @@ pub struct Seen {
     pub state: State,
     pub wear_volume: f64,
     pub wear_depth: Vec<f64>,
+    /// Wear depth, m, at fixed parts of the annulus of the limit, whatever the springs.
+    pub depth_at_parts: Vec<f64>,
     pub steps: u64,
+}
+
+fn depth_at_parts(simulation: &Simulation) -> Vec<f64> {
+    let model = simulation.model();
+    let limit = model.unworn().limit_edge();
+    let near = (0..40).map(|i| 10f64.powf(-4.0 + 0.1 * f64::from(i)));
+    let parts = near.chain((1..100).map(|i| 0.01 * f64::from(i)));
+    parts.map(|part| model.wear_depth_at(simulation.state(), simulation.fields(), part * limit)).collect()
 }
 
 /// Keeps what it sees at the outputs after the start.
@@ -94,6 +109,7 @@ impl Observer for Record {
                 state: simulation.state().clone(),
                 wear_volume: simulation.model().wear_volume(simulation.fields()),
                 wear_depth: simulation.wear_depth().to_vec(),
+                depth_at_parts: depth_at_parts(simulation),
                 steps: simulation.progress().steps,
             });
         }
