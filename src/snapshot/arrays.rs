@@ -60,7 +60,8 @@ pub struct ArrayFile {
 
 impl ArrayFile {
     /// The formats there are.
-    pub const FORMATS: [&str; 3] = ["fretwear-map", "fretwear-universality", SweepFile::FORMAT];
+    pub const FORMATS: [&str; 4] =
+        ["fretwear-map", "fretwear-universality", "fretwear-tradeoff", SweepFile::FORMAT];
 
     /// Version of the layout, the root attribute `format_version`.
     pub const FORMAT_VERSION: i32 = 1;

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::{CURVE_POINTS, Judgement, Row};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::UniversalityStudy;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{Array, ArrayFile, AtomicFile, Coordinate, TextArray};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, TextArray};
 
 const ARRAYS: &str = "universality.h5";
 const TABLE: &str = "universality.csv";
@@ -98,14 +98,7 @@ fn of(row: &Row, number: impl Fn(&Judgement) -> f64) -> f64 {
 
 /// Makes the directory if it is missing, and checks that both files can be written there; creates no file.
 pub(super) fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| Error::File {
-        path: folder.to_owned(),
-        why: format!("the directory cannot be made: {error}"),
-    })?;
-    [ARRAYS, TABLE]
-        .map(|name| AtomicFile::new(&folder.join(name), overwrite))
-        .into_iter()
-        .try_for_each(|it| it.map(drop))
+    snapshot::check_folder(folder, &[ARRAYS, TABLE], overwrite)
 }
 
 /// Writes both files, each as a whole or not at all; returns their paths.
@@ -172,22 +165,9 @@ fn array_file(study: &UniversalityStudy, rows: &[Row]) -> ArrayFile {
 
 fn csv(rows: &[Row]) -> String {
     let names = WORDS.iter().map(|it| it.0).chain(NUMBERS.iter().map(|it| it.0.name));
-    let mut table = names.collect::<Vec<_>>().join(",") + "\n";
-    for row in rows {
-        let words = WORDS.iter().map(|(_, _, word)| quoted(word(row)));
-        let numbers = NUMBERS.iter().map(|(_, number)| match number(row) {
-            value if value.is_nan() => String::new(),
-            value => format!("{value:e}"),
-        });
-        table += &(words.chain(numbers).collect::<Vec<_>>().join(",") + "\n");
-    }
-    table
-}
-
-/// A cell of words; quotes where it needs them.
-fn quoted(word: &str) -> String {
-    match word.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", word.replace('"', "\"\"")),
-        false => word.to_owned(),
-    }
+    let cells = rows.iter().map(|row| {
+        let words = WORDS.iter().map(|(_, _, word)| snapshot::quoted(word(row)));
+        words.chain(NUMBERS.iter().map(|(_, number)| snapshot::cell(number(row)))).collect()
+    });
+    snapshot::table(names, cells)
 }

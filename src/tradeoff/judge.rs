@@ -1,0 +1,280 @@
+//! How wrong a run is: against the closed-form limit, the Gibson transient, or a finer run, whichever is known best.
+
+use super::profile::Shape;
+use crate::closed_form::{GibsonTransient, LimitingShape};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::snapshot::{RunFile, Snapshot, largest};
+
+/// Cycles of two runs are the same up to this part of them.
+pub(super) const SAME_CYCLES: f64 = 1e-9;
+
+/// An error is a number of its own from so many times the uncertainty of the judge on; below it is bounded.
+const CLEAR: f64 = 3.0;
+
+/// Who judged a snapshot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// Nobody: the reference has no snapshot of that time, and the limit is far.
+    None,
+    /// The closed-form limit.
+    Limit,
+    /// The logistic transient of `k → 1`.
+    Gibson,
+    /// A run with more springs and smaller steps.
+    Reference,
+}
+
+impl Source {
+    /// All of them; the place is the number in files.
+    pub const ALL: [Self; 4] = [Self::None, Self::Limit, Self::Gibson, Self::Reference];
+
+    /// Name in JSON: `none`, `limit`, `gibson` or `reference`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Limit => "limit",
+            Self::Gibson => "gibson",
+            Self::Reference => "reference",
+        }
+    }
+}
+
+/// An error as far as it is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// The error, or its bound: what was found and the uncertainty of the judge together.
+    pub value: f64,
+    /// Whether it is only a bound.
+    pub bounded: bool,
+}
+
+impl Measured {
+    /// From what was found against a judge who may be off himself.
+    ///
+    /// ```
+    /// use fretwear::tradeoff::Measured;
+    /// assert_eq!(Measured::new(1e-3, 1e-5), Measured { value: 1e-3, bounded: false });
+    /// assert_eq!(Measured::new(2e-5, 1e-5), Measured { value: 2e-5 + 1e-5, bounded: true });
+    /// ```
+    pub fn new(found: f64, uncertainty: f64) -> Self {
+        let bounded = found < CLEAR * uncertainty;
+        Self { value: if bounded { found + uncertainty } else { found }, bounded }
+    }
+
+    fn larger(self, other: Self) -> Self {
+        if other.value > self.value { other } else { self }
+    }
+}
+
+/// Errors of one snapshot; those of the volume are relative to the limit's volume, those of depths to the limit's largest depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Errors {
+    /// Cycles of the snapshot.
+    pub cycles: f64,
+    /// Its dimensionless time.
+    pub tau: f64,
+    /// Its worn volume, m³.
+    pub wear_volume: f64,
+    /// That of the judge, m³.
+    pub wear_volume_judge: f64,
+    /// Who judged.
+    pub source: Source,
+    /// Uncertainty of the judge in the volume and in the depth.
+    pub uncertainty: [f64; 2],
+    /// Error of the worn volume.
+    pub volume: Measured,
+    /// Largest error of the depth on radii common to all candidates, to which it is interpolated.
+    pub profile: Measured,
+    /// Largest error of the depth at the radii of its own file.
+    pub nodes: Measured,
+}
+
+/// The largest errors over the snapshots of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Worst {
+    /// Of the worn volume.
+    pub volume: Measured,
+    /// Of the profile on common radii.
+    pub profile: Measured,
+    /// Of the profile at its own radii.
+    pub nodes: Measured,
+}
+
+impl Worst {
+    /// None where no snapshot could be judged.
+    pub fn of(errors: &[Errors]) -> Option<Self> {
+        let judged = errors.iter().filter(|it| it.source != Source::None);
+        judged.map(|it| Self { volume: it.volume, profile: it.profile, nodes: it.nodes }).reduce(|a, b| {
+            Self {
+                volume: a.volume.larger(b.volume),
+                profile: a.profile.larger(b.profile),
+                nodes: a.nodes.larger(b.nodes),
+            }
+        })
+    }
+}
+
+/// Whoever judges, at one time.
+struct Truth<'a> {
+    source: Source,
+    uncertainty: [f64; 2],
+    volume: f64,
+    depth: Box<dyn Fn(&[f64]) -> Vec<f64> + 'a>,
+}
+
+/// All that runs are judged by.
+pub(super) struct Judge {
+    shape: Shape,
+    limit: Option<LimitingShape>,
+    gibson: Option<(GibsonTransient, f64)>,
+    reference: RunFile,
+    /// Largest difference of the two references over all snapshots: volume and depth.
+    pub(super) uncertainty: [f64; 2],
+    /// Distance of the reference from the limit at each of its snapshots.
+    to_limit: Vec<f64>,
+    /// What errors are relative to: a volume, m³, and a depth, m.
+    pub(super) scales: [f64; 2],
+}
+
+impl Judge {
+    /// From two runs, of which the first is the finer.
+    ///
+    /// # Errors
+    /// Those of the closed form.
+    pub(super) fn new(scene: &Scene, references: [RunFile; 2]) -> Result<Self> {
+        let [reference, other] = references;
+        let contact = scene.contact()?;
+        let limit = LimitingShape::from_contact(&contact)?.filter(|it| is_limit_of(it, &reference));
+        let moves = reference.checkpoint.as_ref().is_some_and(|it| it.state.stick.is_some());
+        let stays = !moves && limit.is_some();
+        let shape = Shape::new(&contact, stays, &reference);
+        let last = reference.snapshots.last();
+        let scales = match &limit {
+            Some(limit) => [limit.wear_volume(), limit.wear_depth_max()],
+            None => last.map_or([f64::NAN; 2], |it| [it.wear_volume, largest(&it.wear_depth)]),
+        };
+        let grading = scene.half_space().grading();
+        let gibson = match scene.conditions().is_plain() {
+            true => GibsonTransient::from_contact(&contact)?.map(|it| (it, 1.0 - grading)),
+            false => None,
+        };
+        let mut judge =
+            Self { shape, limit, gibson, reference, uncertainty: [0.0; 2], to_limit: vec![], scales };
+        judge.uncertainty = judge.difference(&other);
+        judge.to_limit = judge.distances_to_limit();
+        Ok(judge)
+    }
+
+    /// Largest differences of the reference and another run over the snapshots they share.
+    fn difference(&self, other: &RunFile) -> [f64; 2] {
+        let radii = &self.shape.radii;
+        other.snapshots.iter().fold([0.0_f64; 2], |[volume, depth], theirs| {
+            let Some(own) = self.snapshot(theirs.cycles) else { return [volume, depth] };
+            let one = self.shape.depth_at(&self.reference.header.radius, &own.wear_depth, radii);
+            let two = self.shape.depth_at(&other.header.radius, &theirs.wear_depth, radii);
+            [
+                volume.max((own.wear_volume - theirs.wear_volume).abs() / self.scales[0]),
+                depth.max(distance(&one, &two) / self.scales[1]),
+            ]
+        })
+    }
+
+    fn distances_to_limit(&self) -> Vec<f64> {
+        let Some(limit) = &self.limit else { return vec![] };
+        let depths = limit_depths(limit, &self.shape.radii);
+        let gap = |it: &Snapshot| {
+            let own = self.shape.depth_at(&self.reference.header.radius, &it.wear_depth, &self.shape.radii);
+            let volume = (it.wear_volume - limit.wear_volume()).abs() / self.scales[0];
+            volume.max(distance(&own, &depths) / self.scales[1])
+        };
+        self.reference.snapshots.iter().map(gap).collect()
+    }
+
+    fn snapshot(&self, cycles: f64) -> Option<&Snapshot> {
+        self.reference.snapshots.iter().find(|it| (it.cycles - cycles).abs() <= SAME_CYCLES * cycles)
+    }
+
+    /// Whoever is least uncertain of what is right after some cycles.
+    fn truth(&self, cycles: f64, tau: f64) -> Option<Truth<'_>> {
+        let reference = self.snapshot(cycles).map(|it| Truth {
+            source: Source::Reference,
+            uncertainty: self.uncertainty,
+            volume: it.wear_volume,
+            depth: Box::new(move |radii| {
+                self.shape.depth_at(&self.reference.header.radius, &it.wear_depth, radii)
+            }),
+        });
+        // The distance falls, so that an earlier one is a bound.
+        let before =
+            self.reference.snapshots.iter().rposition(|it| it.cycles <= cycles * (1.0 + SAME_CYCLES));
+        let gap = before.and_then(|place| self.to_limit.get(place));
+        let limit = self.limit.as_ref().zip(gap).map(|(limit, gap)| Truth {
+            source: Source::Limit,
+            uncertainty: [*gap; 2],
+            volume: limit.wear_volume(),
+            depth: Box::new(move |radii| limit_depths(limit, radii)),
+        });
+        let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Truth {
+            source: Source::Gibson,
+            uncertainty: [*uncertainty; 2],
+            volume: gibson.wear_volume(tau),
+            depth: Box::new(move |radii| radii.iter().map(|r| gibson.wear_depth(*r, tau)).collect()),
+        });
+        let worse = |truth: &Truth| truth.uncertainty[0].max(truth.uncertainty[1]);
+        // A limit that is far off or a medium far from Gibson's is no judge where there is no other.
+        const TOO_UNCERTAIN: f64 = 0.1;
+        let all = [reference, limit, gibson].into_iter().flatten().filter(|it| worse(it) < TOO_UNCERTAIN);
+        all.min_by(|a, b| worse(a).total_cmp(&worse(b)))
+    }
+
+    /// The errors of a run at each of its snapshots after the start.
+    pub(super) fn errors(&self, run: &RunFile) -> Vec<Errors> {
+        run.snapshots.iter().filter(|it| it.cycles > 0.0).map(|it| self.errors_at(run, it)).collect()
+    }
+
+    fn errors_at(&self, run: &RunFile, snapshot: &Snapshot) -> Errors {
+        let unknown = Measured { value: f64::NAN, bounded: false };
+        let mut errors = Errors {
+            cycles: snapshot.cycles,
+            tau: snapshot.tau,
+            wear_volume: snapshot.wear_volume,
+            wear_volume_judge: f64::NAN,
+            source: Source::None,
+            uncertainty: [f64::NAN; 2],
+            volume: unknown,
+            profile: unknown,
+            nodes: unknown,
+        };
+        let Some(truth) = self.truth(snapshot.cycles, snapshot.tau) else { return errors };
+        let (own, radii) = (&run.header.radius, &self.shape.radii);
+        let common = self.shape.depth_at(own, &snapshot.wear_depth, radii);
+        let [volume, depth] = truth.uncertainty;
+        let found = (snapshot.wear_volume - truth.volume).abs() / self.scales[0];
+        errors.wear_volume_judge = truth.volume;
+        errors.source = truth.source;
+        errors.uncertainty = truth.uncertainty;
+        errors.volume = Measured::new(found, volume);
+        errors.profile = Measured::new(distance(&common, &(truth.depth)(radii)) / self.scales[1], depth);
+        let nodes = distance(&snapshot.wear_depth, &(truth.depth)(own));
+        errors.nodes = Measured::new(nodes / self.scales[1], depth);
+        errors
+    }
+}
+
+/// Whether a run has this limit: the edge of stick may have moved, or no limit be known.
+fn is_limit_of(limit: &LimitingShape, run: &RunFile) -> bool {
+    const SAME: f64 = 1e-6;
+    let depths = limit_depths(limit, &run.header.radius);
+    let own = run.header.limit.as_ref();
+    own.is_some_and(|own| distance(&own.wear_depth, &depths) <= SAME * limit.wear_depth_max())
+}
+
+fn limit_depths(limit: &LimitingShape, radii: &[f64]) -> Vec<f64> {
+    let c = limit.stick_radius();
+    radii.iter().map(|r| limit.wear_depth_at_offset((r - c) * (r + c))).collect()
+}
+
+fn distance(one: &[f64], two: &[f64]) -> f64 {
+    one.iter().zip(two).fold(0.0, |largest: f64, (a, b)| largest.max((a - b).abs()))
+}

@@ -1,0 +1,68 @@
+//! Worn profiles on other radii than their own.
+
+use crate::contact::InitialContact;
+use crate::grid::{Clustering, lagrange, slip_annulus, stencil_start};
+use crate::snapshot::RunFile;
+
+/// Cells of the mesh that gives the common radii.
+const COMMON: usize = 64;
+
+/// Points of the local polynomials.
+const POINTS: usize = 4;
+
+/// The factor that makes a wear depth smooth, and the radii on which depths are compared.
+#[derive(Debug, Clone)]
+pub(super) struct Shape {
+    /// Stick radius, m, and the exponent `(1-k)/2`; none where the edge of stick moves over worn ground, or there is none.
+    edge: Option<(f64, f64)>,
+    /// Radii that all candidates are compared on, m.
+    pub(super) radii: Vec<f64>,
+}
+
+impl Shape {
+    /// For runs whose edge of stick stays, or does not.
+    pub(super) fn new(contact: &InitialContact, stays: bool, run: &RunFile) -> Self {
+        let exponent = 0.5 * (1.0 - contact.half_space().grading());
+        let edge = contact.stick_radius().filter(|_| stays).map(|c| (c, exponent));
+        let first = run.header.radius.first().map_or(0.0, |r| r * r);
+        let inner = edge.map_or(first, |(c, _)| c * c);
+        let outer = run.header.radius.last().map_or(0.0, |r| r * r);
+        let stretch = if edge.is_some() { (outer / inner).ln() } else { 0.0 };
+        let mesh = slip_annulus(COMMON, stretch, Clustering::Cubic);
+        let radii = mesh[1..COMMON].iter().map(|x| (inner + x * (outer - inner)).sqrt()).collect();
+        Self { edge, radii }
+    }
+
+    /// `(r²-c²)^((1-k)/2)`, by which a depth is divided to make it smooth; m to the same power twice.
+    fn factor(&self, r: f64) -> f64 {
+        self.edge.map_or(1.0, |(c, exponent)| ((r - c) * (r + c)).max(0.0).powf(exponent))
+    }
+
+    /// Depth, m, at some radii, by local cubics of the smooth part in r²; zero beyond the last node.
+    pub(super) fn depth_at(&self, nodes: &[f64], depths: &[f64], radii: &[f64]) -> Vec<f64> {
+        let squares: Vec<f64> = nodes.iter().map(|r| r * r).collect();
+        let smooth: Vec<f64> = nodes
+            .iter()
+            .zip(depths)
+            .map(|(r, depth)| {
+                let factor = self.factor(*r);
+                if factor > 0.0 { depth / factor } else { 0.0 }
+            })
+            .collect();
+        let at = |r: &f64| match r * r {
+            s if s > squares[squares.len() - 1] => 0.0,
+            s => self.factor(*r) * cubic(&squares, &smooth, s),
+        };
+        radii.iter().map(at).collect()
+    }
+}
+
+fn cubic(nodes: &[f64], values: &[f64], x: f64) -> f64 {
+    let points = POINTS.min(nodes.len());
+    let cell = nodes.partition_point(|node| *node < x).clamp(1, nodes.len().max(2) - 1);
+    let start = stencil_start(cell, points, nodes.len()) - 1;
+    let start = start.min(nodes.len() - points);
+    let mut weights = [0.0; POINTS];
+    lagrange(&nodes[start..start + points], x, &mut weights[..points]);
+    weights.iter().zip(&values[start..start + points]).map(|(weight, value)| weight * value).sum()
+}
