@@ -124,8 +124,8 @@ pub struct SnapshotReport {
     pub cycles: f64,
     /// Dimensionless time.
     pub tau: f64,
-    /// `none`, `limit`, `gibson` or `reference`.
-    pub judge: &'static str,
+    /// Who judged volume and depth: `none`, `limit`, `gibson` or `reference`.
+    pub judges: [&'static str; 2],
     /// Worn volume, m³.
     pub wear_volume: f64,
     /// That of the judge, m³.
@@ -146,13 +146,13 @@ impl SnapshotReport {
         Self {
             cycles: errors.cycles,
             tau: errors.tau,
-            judge: errors.source.name(),
+            judges: errors.sources.map(Source::name),
             wear_volume: errors.wear_volume,
             wear_volume_judge: errors.wear_volume_judge,
             volume_error: errors.volume.value,
             profile_error: errors.profile.value,
             node_error: errors.nodes.value,
-            bounded: (errors.source != Source::None).then(|| three.map(|it| it.bounded)),
+            bounded: (!errors.sources.contains(&Source::None)).then(|| three.map(|it| it.bounded)),
         }
     }
 }

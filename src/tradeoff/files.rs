@@ -98,22 +98,19 @@ const NUMBERS: [Number; 16] = [
     }),
 ];
 
+const WHO: &str =
+    "who judged: 0 nobody, 1 the closed-form limit, 2 the Gibson transient, 3 the reference run";
+
 /// A number of each snapshot.
 type Series = (Label<'static>, fn(&Errors) -> f64);
 
-const SERIES: [Series; 13] = [
+const SERIES: [Series; 14] = [
     (label("cycles", "1", "number of cycles"), |it| it.cycles),
     (label("tau", "1", "dimensionless time"), |it| it.tau),
     (label("wear_volume", "m3", "worn volume"), |it| it.wear_volume),
     (label("wear_volume_judge", "m3", "worn volume of the judge"), |it| it.wear_volume_judge),
-    (
-        label(
-            "judge",
-            "1",
-            "who judged: 0 nobody, 1 the closed-form limit, 2 the Gibson transient, 3 the reference run",
-        ),
-        |it| Source::ALL.iter().position(|source| *source == it.source).unwrap_or(0) as f64,
-    ),
+    (label("volume_judge", "1", WHO), |it| number_of(it.sources[0])),
+    (label("profile_judge", "1", WHO), |it| number_of(it.sources[1])),
     (
         label("volume_uncertainty", "1", "uncertainty of the judge in the volume, over that of the limit"),
         |it| it.uncertainty[0],
@@ -145,13 +142,11 @@ const SERIES: [Series; 13] = [
         ),
         |it| it.nodes.value,
     ),
-    (label("volume_error_bounded", "1", "1 where the error of the volume is a bound"), |it| {
-        known(it, it.volume)
-    }),
+    (label("volume_error_bounded", "1", "1 where the error of the volume is a bound"), |it| known(it.volume)),
     (label("profile_error_bounded", "1", "1 where the error on common radii is a bound"), |it| {
-        known(it, it.profile)
+        known(it.profile)
     }),
-    (label("node_error_bounded", "1", "1 where the error at own radii is a bound"), |it| known(it, it.nodes)),
+    (label("node_error_bounded", "1", "1 where the error at own radii is a bound"), |it| known(it.nodes)),
 ];
 
 /// On which fronts a candidate lies, and the knob's cost over theirs.
@@ -201,8 +196,12 @@ fn flag(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
-fn known(errors: &Errors, measured: Measured) -> f64 {
-    if errors.source == Source::None { f64::NAN } else { flag(measured.bounded) }
+fn known(measured: Measured) -> f64 {
+    if measured.value.is_nan() { f64::NAN } else { flag(measured.bounded) }
+}
+
+fn number_of(source: Source) -> f64 {
+    Source::ALL.iter().position(|it| *it == source).unwrap_or(0) as f64
 }
 
 /// Makes the directory if it is missing, and checks that all files can be written there; creates no file.

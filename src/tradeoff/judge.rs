@@ -78,8 +78,8 @@ pub struct Errors {
     pub wear_volume: f64,
     /// That of the judge, m³.
     pub wear_volume_judge: f64,
-    /// Who judged.
-    pub source: Source,
+    /// Who judged volume and depth.
+    pub sources: [Source; 2],
     /// Uncertainty of the judge in the volume and in the depth.
     pub uncertainty: [f64; 2],
     /// Error of the worn volume.
@@ -104,7 +104,7 @@ pub struct Worst {
 impl Worst {
     /// None where no snapshot could be judged.
     pub fn of(errors: &[Errors]) -> Option<Self> {
-        let judged = errors.iter().filter(|it| it.source != Source::None);
+        let judged = errors.iter().filter(|it| !it.sources.contains(&Source::None));
         judged.map(|it| Self { volume: it.volume, profile: it.profile, nodes: it.nodes }).reduce(|a, b| {
             Self {
                 volume: a.volume.larger(b.volume),
@@ -115,12 +115,21 @@ impl Worst {
     }
 }
 
-/// Whoever judges, at one time.
-struct Truth<'a> {
+/// What somebody holds to be right, and how far he may be off.
+struct Truth<T> {
     source: Source,
-    uncertainty: [f64; 2],
-    volume: f64,
-    depth: Box<dyn Fn(&[f64]) -> Vec<f64> + 'a>,
+    uncertainty: f64,
+    value: T,
+}
+
+/// Depths, m, at radii, m.
+type Depths<'a> = Box<dyn Fn(&[f64]) -> Vec<f64> + 'a>;
+
+/// Whoever is least uncertain. A limit that is far off, or a medium far from Gibson's, is no judge even where there is no other.
+fn best<T>(all: impl IntoIterator<Item = Truth<T>>) -> Option<Truth<T>> {
+    const TOO_UNCERTAIN: f64 = 0.1;
+    let usable = all.into_iter().filter(|it| it.uncertainty < TOO_UNCERTAIN);
+    usable.min_by(|a, b| a.uncertainty.total_cmp(&b.uncertainty))
 }
 
 /// All that runs are judged by.
@@ -195,37 +204,53 @@ impl Judge {
         self.reference.snapshots.iter().find(|it| (it.cycles - cycles).abs() <= SAME_CYCLES * cycles)
     }
 
-    /// Whoever is least uncertain of what is right after some cycles.
-    fn truth(&self, cycles: f64, tau: f64) -> Option<Truth<'_>> {
+    /// Distance of the limit from the run after some cycles: it falls, so that an earlier one is a bound.
+    fn limit_at(&self, cycles: f64) -> Option<(&LimitingShape, f64)> {
+        let mut before = self.reference.snapshots.iter();
+        let place = before.rposition(|it| it.cycles <= cycles * (1.0 + SAME_CYCLES));
+        self.limit.as_ref().zip(place.and_then(|place| self.to_limit.get(place).copied()))
+    }
+
+    /// The worn volume, m³, after some cycles.
+    fn volume(&self, cycles: f64, tau: f64) -> Option<Truth<f64>> {
         let reference = self.snapshot(cycles).map(|it| Truth {
             source: Source::Reference,
-            uncertainty: self.uncertainty,
-            volume: it.wear_volume,
-            depth: Box::new(move |radii| {
-                self.shape.depth_at(&self.reference.header.radius, &it.wear_depth, radii)
-            }),
+            uncertainty: self.uncertainty[0],
+            value: it.wear_volume,
         });
-        // The distance falls, so that an earlier one is a bound.
-        let before =
-            self.reference.snapshots.iter().rposition(|it| it.cycles <= cycles * (1.0 + SAME_CYCLES));
-        let gap = before.and_then(|place| self.to_limit.get(place));
-        let limit = self.limit.as_ref().zip(gap).map(|(limit, gap)| Truth {
+        let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
             source: Source::Limit,
-            uncertainty: [*gap; 2],
-            volume: limit.wear_volume(),
-            depth: Box::new(move |radii| limit_depths(limit, radii)),
+            uncertainty,
+            value: limit.wear_volume(),
         });
         let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Truth {
             source: Source::Gibson,
-            uncertainty: [*uncertainty; 2],
-            volume: gibson.wear_volume(tau),
-            depth: Box::new(move |radii| radii.iter().map(|r| gibson.wear_depth(*r, tau)).collect()),
+            uncertainty: *uncertainty,
+            value: gibson.wear_volume(tau),
         });
-        let worse = |truth: &Truth| truth.uncertainty[0].max(truth.uncertainty[1]);
-        // A limit that is far off or a medium far from Gibson's is no judge where there is no other.
-        const TOO_UNCERTAIN: f64 = 0.1;
-        let all = [reference, limit, gibson].into_iter().flatten().filter(|it| worse(it) < TOO_UNCERTAIN);
-        all.min_by(|a, b| worse(a).total_cmp(&worse(b)))
+        best([reference, limit, gibson].into_iter().flatten())
+    }
+
+    /// The wear depths after some cycles.
+    fn depths(&self, cycles: f64, tau: f64) -> Option<Truth<Depths<'_>>> {
+        let own = &self.reference.header.radius;
+        let reference = self.snapshot(cycles).map(|it| Truth {
+            source: Source::Reference,
+            uncertainty: self.uncertainty[1],
+            value: Box::new(move |radii: &[f64]| self.shape.depth_at(own, &it.wear_depth, radii)) as Depths,
+        });
+        let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
+            source: Source::Limit,
+            uncertainty,
+            value: Box::new(move |radii: &[f64]| limit_depths(limit, radii)) as Depths,
+        });
+        let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Truth {
+            source: Source::Gibson,
+            uncertainty: *uncertainty,
+            value: Box::new(move |radii: &[f64]| radii.iter().map(|r| gibson.wear_depth(*r, tau)).collect())
+                as Depths,
+        });
+        best([reference, limit, gibson].into_iter().flatten())
     }
 
     /// The errors of a run at each of its snapshots after the start.
@@ -240,24 +265,28 @@ impl Judge {
             tau: snapshot.tau,
             wear_volume: snapshot.wear_volume,
             wear_volume_judge: f64::NAN,
-            source: Source::None,
+            sources: [Source::None; 2],
             uncertainty: [f64::NAN; 2],
             volume: unknown,
             profile: unknown,
             nodes: unknown,
         };
-        let Some(truth) = self.truth(snapshot.cycles, snapshot.tau) else { return errors };
-        let (own, radii) = (&run.header.radius, &self.shape.radii);
-        let common = self.shape.depth_at(own, &snapshot.wear_depth, radii);
-        let [volume, depth] = truth.uncertainty;
-        let found = (snapshot.wear_volume - truth.volume).abs() / self.scales[0];
-        errors.wear_volume_judge = truth.volume;
-        errors.source = truth.source;
-        errors.uncertainty = truth.uncertainty;
-        errors.volume = Measured::new(found, volume);
-        errors.profile = Measured::new(distance(&common, &(truth.depth)(radii)) / self.scales[1], depth);
-        let nodes = distance(&snapshot.wear_depth, &(truth.depth)(own));
-        errors.nodes = Measured::new(nodes / self.scales[1], depth);
+        if let Some(truth) = self.volume(snapshot.cycles, snapshot.tau) {
+            let found = (snapshot.wear_volume - truth.value).abs() / self.scales[0];
+            errors.volume = Measured::new(found, truth.uncertainty);
+            errors.wear_volume_judge = truth.value;
+            (errors.sources[0], errors.uncertainty[0]) = (truth.source, truth.uncertainty);
+        }
+        if let Some(truth) = self.depths(snapshot.cycles, snapshot.tau) {
+            let (own, common) = (&run.header.radius, &self.shape.radii);
+            let there = self.shape.depth_at(own, &snapshot.wear_depth, common);
+            let measured = |depths: &[f64], radii: &[f64]| {
+                Measured::new(distance(depths, &(truth.value)(radii)) / self.scales[1], truth.uncertainty)
+            };
+            errors.profile = measured(&there, common);
+            errors.nodes = measured(&snapshot.wear_depth, own);
+            (errors.sources[1], errors.uncertainty[1]) = (truth.source, truth.uncertainty);
+        }
         errors
     }
 }

@@ -38,9 +38,14 @@ impl Shape {
         self.edge.map_or(1.0, |(c, exponent)| ((r - c) * (r + c)).max(0.0).powf(exponent))
     }
 
-    /// Depth, m, at some radii, by local cubics of the smooth part in r²; zero beyond the last node.
+    /// The variable of the interpolation, `(r²-c²)^(1/3)` as the springs are graded: the layer at the edge of stick narrows in time.
+    fn place(&self, r: f64) -> f64 {
+        self.edge.map_or(r * r, |(c, _)| ((r - c) * (r + c)).cbrt())
+    }
+
+    /// Depth, m, at some radii, by local cubics of the smooth part; zero beyond the last node.
     pub(super) fn depth_at(&self, nodes: &[f64], depths: &[f64], radii: &[f64]) -> Vec<f64> {
-        let squares: Vec<f64> = nodes.iter().map(|r| r * r).collect();
+        let places: Vec<f64> = nodes.iter().map(|r| self.place(*r)).collect();
         let smooth: Vec<f64> = nodes
             .iter()
             .zip(depths)
@@ -49,9 +54,9 @@ impl Shape {
                 if factor > 0.0 { depth / factor } else { 0.0 }
             })
             .collect();
-        let at = |r: &f64| match r * r {
-            s if s > squares[squares.len() - 1] => 0.0,
-            s => self.factor(*r) * cubic(&squares, &smooth, s),
+        let at = |r: &f64| match self.place(*r) {
+            place if place > places[places.len() - 1] => 0.0,
+            place => self.factor(*r) * cubic(&places, &smooth, place),
         };
         radii.iter().map(at).collect()
     }
