@@ -180,8 +180,8 @@ impl Judge {
         let radii = &self.shape.radii;
         other.snapshots.iter().fold([0.0_f64; 2], |[volume, depth], theirs| {
             let Some(own) = self.snapshot(theirs.cycles) else { return [volume, depth] };
-            let one = self.shape.depth_at(&self.reference.header.radius, &own.wear_depth, radii);
-            let two = self.shape.depth_at(&other.header.radius, &theirs.wear_depth, radii);
+            let one = self.shape.depth_at(&self.reference.header.radius, own, radii);
+            let two = self.shape.depth_at(&other.header.radius, theirs, radii);
             [
                 volume.max((own.wear_volume - theirs.wear_volume).abs() / self.scales[0]),
                 depth.max(distance(&one, &two) / self.scales[1]),
@@ -193,7 +193,7 @@ impl Judge {
         let Some(limit) = &self.limit else { return vec![] };
         let depths = limit_depths(limit, &self.shape.radii);
         let gap = |it: &Snapshot| {
-            let own = self.shape.depth_at(&self.reference.header.radius, &it.wear_depth, &self.shape.radii);
+            let own = self.shape.depth_at(&self.reference.header.radius, it, &self.shape.radii);
             let volume = (it.wear_volume - limit.wear_volume()).abs() / self.scales[0];
             volume.max(distance(&own, &depths) / self.scales[1])
         };
@@ -237,7 +237,7 @@ impl Judge {
         let reference = self.snapshot(cycles).map(|it| Truth {
             source: Source::Reference,
             uncertainty: self.uncertainty[1],
-            value: Box::new(move |radii: &[f64]| self.shape.depth_at(own, &it.wear_depth, radii)) as Depths,
+            value: Box::new(move |radii: &[f64]| self.shape.depth_at(own, it, radii)) as Depths,
         });
         let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
             source: Source::Limit,
@@ -279,7 +279,7 @@ impl Judge {
         }
         if let Some(truth) = self.depths(snapshot.cycles, snapshot.tau) {
             let (own, common) = (&run.header.radius, &self.shape.radii);
-            let there = self.shape.depth_at(own, &snapshot.wear_depth, common);
+            let there = self.shape.depth_at(own, snapshot, common);
             let measured = |depths: &[f64], radii: &[f64]| {
                 Measured::new(distance(depths, &(truth.value)(radii)) / self.scales[1], truth.uncertainty)
             };

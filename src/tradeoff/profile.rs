@@ -2,10 +2,13 @@
 
 use crate::contact::InitialContact;
 use crate::grid::{Clustering, lagrange, slip_annulus, stencil_start};
-use crate::snapshot::RunFile;
+use crate::snapshot::{RunFile, Snapshot};
 
 /// Cells of the mesh that gives the common radii.
 const COMMON: usize = 64;
+
+/// A node next to the contact edge gives way to it from this part of its distance from its neighbour on.
+const CLOSE: f64 = 1e-2;
 
 /// Points of the local polynomials.
 const POINTS: usize = 4;
@@ -43,19 +46,28 @@ impl Shape {
         self.edge.map_or(r * r, |(c, _)| ((r - c) * (r + c)).cbrt())
     }
 
-    /// Depth, m, at some radii, by local cubics of the smooth part; zero beyond the last node.
-    pub(super) fn depth_at(&self, nodes: &[f64], depths: &[f64], radii: &[f64]) -> Vec<f64> {
-        let places: Vec<f64> = nodes.iter().map(|r| self.place(*r)).collect();
-        let smooth: Vec<f64> = nodes
-            .iter()
-            .zip(depths)
-            .map(|(r, depth)| {
-                let factor = self.factor(*r);
-                if factor > 0.0 { depth / factor } else { 0.0 }
-            })
-            .collect();
+    /// Depth, m, at some radii, by local cubics of the smooth part; zero beyond the contact edge, which is a node of its own.
+    pub(super) fn depth_at(&self, nodes: &[f64], snapshot: &Snapshot, radii: &[f64]) -> Vec<f64> {
+        let (mut places, mut smooth) = (vec![], vec![]);
+        for (r, depth) in nodes.iter().zip(&snapshot.wear_depth) {
+            let factor = self.factor(*r);
+            places.push(self.place(*r));
+            smooth.push(if factor > 0.0 { depth / factor } else { 0.0 });
+        }
+        let edge = self.place(snapshot.contact_radius);
+        let inside = places.partition_point(|place| *place < edge);
+        if self.edge.is_some() && (2..places.len()).contains(&inside) {
+            let spacing = places[inside - 1] - places[inside - 2];
+            let close = edge - places[inside - 1] < CLOSE * spacing;
+            let kept = if close { inside - 1 } else { inside };
+            places.truncate(kept);
+            smooth.truncate(kept);
+            places.push(edge);
+            smooth.push(0.0);
+        }
+        let last = places.last().copied().unwrap_or(0.0);
         let at = |r: &f64| match self.place(*r) {
-            place if place > places[places.len() - 1] => 0.0,
+            place if place > last => 0.0,
             place => self.factor(*r) * cubic(&places, &smooth, place),
         };
         radii.iter().map(at).collect()
