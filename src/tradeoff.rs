@@ -13,6 +13,7 @@ mod front;
 mod judge;
 mod measure;
 mod profile;
+mod reference;
 
 pub(crate) use files::OBJECT;
 
@@ -20,8 +21,8 @@ pub use candidates::{Candidate, Choice, Ladders};
 pub use front::{cheapest, pareto_front};
 pub use judge::{Errors, Measured, Source, Worst};
 pub use measure::{Cost, Measurement};
+pub use reference::Reference;
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -29,7 +30,6 @@ use crate::error::{Error, Result};
 use crate::progress::SceneProgress;
 use crate::run::{Run, Shared};
 use crate::scene::{Output, Scene, Stepper};
-use judge::Judge;
 use measure::Runs;
 
 /// Most snapshots of a scene that is measured.
@@ -37,14 +37,6 @@ const MOST_SNAPSHOTS: usize = 1000;
 
 /// Accuracy at which a scene must be ready to run.
 const PREFLIGHT: f64 = 1e-4;
-
-/// Time for a reference over the time for a candidate.
-const REFERENCE_PATIENCE: f64 = 20.0;
-
-/// Springs of the two references over those of the finest candidate, and their tolerances over its own; first the better, then what is left
-/// where that takes too long.
-const FINER: [[(f64, f64); 2]; 3] =
-    [[(2.0, 0.25), (1.42, 0.5)], [(1.5, 0.25), (1.2, 0.5)], [(1.25, 0.5), (1.1, 1.0)]];
 
 /// How a scene is measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -144,19 +136,6 @@ impl Front {
     }
 }
 
-/// The runs that candidates were judged by.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// Springs of both, the finer first.
-    pub springs: [usize; 2],
-    /// Tolerances of both.
-    pub tolerance: [f64; 2],
-    /// Wall time of both, s.
-    pub wall_seconds: [f64; 2],
-    /// Their largest differences over all snapshots, in volume and profile, relative as errors are.
-    pub uncertainty: [f64; 2],
-}
-
 /// What a measurement came to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
@@ -252,7 +231,10 @@ impl<'a> Tradeoff<'a> {
             }
             measured.push((*candidate, measurement));
         }
-        let Some((judge, reference)) = self.judge(&runs, &measured)? else { return Ok(None) };
+        let most_seconds = self.options.most_seconds;
+        let Some((judge, reference)) = reference::judge(self.scene, &runs, &measured, most_seconds)? else {
+            return Ok(None);
+        };
         let mut rows = vec![];
         for (number, (candidate, measurement)) in measured.into_iter().enumerate() {
             let errors = match measurement.cost() {
@@ -284,97 +266,6 @@ impl<'a> Tradeoff<'a> {
             runs.remove();
         }
         Ok(Some(outcome))
-    }
-
-    /// Runs finer than the finest candidate, at the times of all of them; none if a signal came.
-    fn judge(
-        &self,
-        runs: &Runs,
-        measured: &[(Candidate, Measurement)],
-    ) -> Result<Option<(Judge, Reference)>> {
-        let unjudged = |why: String| Error::NotConverged { what: "reference of the trade-off", why };
-        let done: Vec<(usize, &Cost)> = (0..)
-            .zip(measured)
-            .filter_map(|(number, (_, measurement))| measurement.cost().map(|cost| (number, cost)))
-            .collect();
-        let way = (Stepper::default(), candidates::cycles(self.scene)[0]);
-        let is_default = |number: usize| (measured[number].0.stepper, measured[number].0.cycle) == way;
-        let finest = done.iter().max_by(|(one, a), (two, b)| {
-            let rank = is_default(*one).cmp(&is_default(*two)).then(a.springs.cmp(&b.springs));
-            rank.then(b.tolerance.total_cmp(&a.tolerance))
-        });
-        let Some((_, finest)) = finest else {
-            let reasons: BTreeSet<&str> = measured.iter().map(|it| it.1.reason()).collect();
-            let reasons: Vec<&str> = reasons.into_iter().filter(|why| !why.is_empty()).take(3).collect();
-            return Err(unjudged(format!("no candidate came to its end: {}", reasons.join("; "))));
-        };
-        let times = self.times(runs, &done)?;
-        let mut why = String::new();
-        for factors in FINER {
-            let Some(pair) = self.references(runs, finest, factors, &times)? else { return Ok(None) };
-            match pair {
-                Ok((judge, reference)) => return Ok(Some((judge, reference))),
-                Err(reason) => why = reason,
-            }
-        }
-        Err(unjudged(why))
-    }
-
-    /// The cycles of all snapshots of all candidates.
-    fn times(&self, runs: &Runs, done: &[(usize, &Cost)]) -> Result<Vec<f64>> {
-        let mut times = vec![];
-        for (number, _) in done {
-            times.extend(
-                runs.read(&name(*number))?.snapshots.iter().map(|it| it.cycles).filter(|it| *it > 0.0),
-            );
-        }
-        times.sort_by(f64::total_cmp);
-        times.dedup_by(|later, earlier| *later - *earlier <= judge::SAME_CYCLES * *later);
-        Ok(times)
-    }
-
-    /// One pair of references, or why it could not be had; none if a signal came.
-    fn references(
-        &self,
-        runs: &Runs,
-        finest: &Cost,
-        factors: [(f64, f64); 2],
-        times: &[f64],
-    ) -> Result<Option<std::result::Result<(Judge, Reference), String>>> {
-        let patch = format!(
-            "loading = {{ cycles = {:e} }}\noutput = {{ at_cycles = [{}] }}",
-            times.last().copied().unwrap_or(f64::NAN),
-            times.iter().map(|it| format!("{it:e}")).collect::<Vec<_>>().join(", ")
-        );
-        let (mut costs, mut files) = (vec![], vec![]);
-        for (number, (springs, tolerance)) in factors.into_iter().enumerate() {
-            let springs = (springs * finest.springs as f64).ceil() as usize;
-            let choice = Choice::Hand { springs, tolerance: tolerance * finest.tolerance };
-            let cycle = candidates::cycles(self.scene)[0];
-            let candidate = Candidate { choice, stepper: Stepper::default(), cycle };
-            let scene = self.scene.varied(&candidate.numerics(self.scene), &patch)?;
-            let name = format!("reference{number}");
-            let Some(measurement) =
-                runs.measure(&name, &scene, REFERENCE_PATIENCE * self.options.most_seconds)?
-            else {
-                return Ok(None);
-            };
-            match measurement {
-                Measurement::Done(cost) => costs.push(cost),
-                other => return Ok(Some(Err(format!("{springs} springs: {}", other.reason())))),
-            }
-            files.push(runs.read(&name)?);
-        }
-        let files: [_; 2] = files.try_into().expect("two were pushed");
-        let judge = Judge::new(self.scene, files)?;
-        let of = |number: usize| &costs[number];
-        let reference = Reference {
-            springs: [0, 1].map(|it| of(it).springs),
-            tolerance: [0, 1].map(|it| of(it).tolerance),
-            wall_seconds: [0, 1].map(|it| of(it).wall_seconds),
-            uncertainty: judge.uncertainty,
-        };
-        Ok(Some(Ok((judge, reference))))
     }
 }
 

@@ -1,6 +1,10 @@
 //! Who is better than whom.
 
-/// Those of some candidates that no other beats: at most as dear and at most as wrong, and better in one of the two.
+/// An error below another by less than this part of it is no smaller: the last digits are worth no cost.
+const SAME_ERROR: f64 = 1e-2;
+
+/// Those of some candidates that no other beats: at most as dear and at most as wrong, and better in one of the two. An error that is
+/// smaller by less than a hundredth is the same.
 ///
 /// # Arguments
 /// * `points` -- cost and error of each candidate; one that is not finite has none
@@ -19,8 +23,10 @@ pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     order.sort_by(|a, b| points[*a].0.total_cmp(&points[*b].0).then(points[*a].1.total_cmp(&points[*b].1)));
     let mut least = f64::INFINITY;
     order.retain(|i| {
-        let better = points[*i].1 < least;
-        least = least.min(points[*i].1);
+        let better = points[*i].1 < least * (1.0 - SAME_ERROR) || least.is_infinite();
+        if better {
+            least = points[*i].1;
+        }
         better
     });
     order

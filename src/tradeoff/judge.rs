@@ -138,8 +138,8 @@ pub(super) struct Judge {
     limit: Option<LimitingShape>,
     gibson: Option<(GibsonTransient, f64)>,
     reference: RunFile,
-    /// Largest difference of the two references over all snapshots: volume and depth.
-    pub(super) uncertainty: [f64; 2],
+    /// Difference of the two references at each snapshot and those around it: volume and depth.
+    uncertainty: Vec<[f64; 2]>,
     /// Distance of the reference from the limit at each of its snapshots.
     to_limit: Vec<f64>,
     /// What errors are relative to: a volume, m³, and a depth, m.
@@ -169,24 +169,39 @@ impl Judge {
             false => None,
         };
         let mut judge =
-            Self { shape, limit, gibson, reference, uncertainty: [0.0; 2], to_limit: vec![], scales };
+            Self { shape, limit, gibson, reference, uncertainty: vec![], to_limit: vec![], scales };
         judge.uncertainty = judge.difference(&other);
         judge.to_limit = judge.distances_to_limit();
         Ok(judge)
     }
 
-    /// Largest differences of the reference and another run over the snapshots they share.
-    fn difference(&self, other: &RunFile) -> [f64; 2] {
-        let radii = &self.shape.radii;
-        other.snapshots.iter().fold([0.0_f64; 2], |[volume, depth], theirs| {
-            let Some(own) = self.snapshot(theirs.cycles) else { return [volume, depth] };
-            let one = self.shape.depth_at(&self.reference.header.radius, own, radii);
+    /// Largest differences of the references over all snapshots: volume and depth.
+    pub(super) fn largest_uncertainty(&self) -> [f64; 2] {
+        self.uncertainty.iter().copied().fold([0.0; 2], larger)
+    }
+
+    /// Differences of the reference and the other one at each snapshot: the largest within a factor of two of its cycles, and of its
+    /// neighbours, because a difference that changes its sign is small by chance.
+    fn difference(&self, other: &RunFile) -> Vec<[f64; 2]> {
+        const AROUND: f64 = 2.0;
+        let own = &self.reference.snapshots;
+        let at = |it: &Snapshot| {
+            let Some(theirs) = snapshot(other, it.cycles) else { return [f64::INFINITY; 2] };
+            let radii = &self.shape.radii;
+            let one = self.shape.depth_at(&self.reference.header.radius, it, radii);
             let two = self.shape.depth_at(&other.header.radius, theirs, radii);
-            [
-                volume.max((own.wear_volume - theirs.wear_volume).abs() / self.scales[0]),
-                depth.max(distance(&one, &two) / self.scales[1]),
-            ]
-        })
+            let volume = (it.wear_volume - theirs.wear_volume).abs();
+            [volume / self.scales[0], distance(&one, &two) / self.scales[1]]
+        };
+        let here: Vec<[f64; 2]> = own.iter().map(at).collect();
+        let around = |place: usize| {
+            let near = |other: &usize| {
+                let ratio = own[*other].cycles / own[place].cycles;
+                other.abs_diff(place) <= 1 || (ratio <= AROUND && ratio * AROUND >= 1.0)
+            };
+            (0..own.len()).filter(near).map(|it| here[it]).fold([0.0; 2], larger)
+        };
+        (0..own.len()).map(around).collect()
     }
 
     fn distances_to_limit(&self) -> Vec<f64> {
@@ -200,8 +215,9 @@ impl Judge {
         self.reference.snapshots.iter().map(gap).collect()
     }
 
-    fn snapshot(&self, cycles: f64) -> Option<&Snapshot> {
-        self.reference.snapshots.iter().find(|it| (it.cycles - cycles).abs() <= SAME_CYCLES * cycles)
+    fn reference_at(&self, cycles: f64) -> Option<(&Snapshot, [f64; 2])> {
+        let mut all = self.reference.snapshots.iter().zip(&self.uncertainty);
+        all.find(|(it, _)| is_same(it.cycles, cycles)).map(|(it, uncertainty)| (it, *uncertainty))
     }
 
     /// Distance of the limit from the run after some cycles: it falls, so that an earlier one is a bound.
@@ -213,9 +229,9 @@ impl Judge {
 
     /// The worn volume, m³, after some cycles.
     fn volume(&self, cycles: f64, tau: f64) -> Option<Truth<f64>> {
-        let reference = self.snapshot(cycles).map(|it| Truth {
+        let reference = self.reference_at(cycles).map(|(it, uncertainty)| Truth {
             source: Source::Reference,
-            uncertainty: self.uncertainty[0],
+            uncertainty: uncertainty[0],
             value: it.wear_volume,
         });
         let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
@@ -234,9 +250,9 @@ impl Judge {
     /// The wear depths after some cycles.
     fn depths(&self, cycles: f64, tau: f64) -> Option<Truth<Depths<'_>>> {
         let own = &self.reference.header.radius;
-        let reference = self.snapshot(cycles).map(|it| Truth {
+        let reference = self.reference_at(cycles).map(|(it, uncertainty)| Truth {
             source: Source::Reference,
-            uncertainty: self.uncertainty[1],
+            uncertainty: uncertainty[1],
             value: Box::new(move |radii: &[f64]| self.shape.depth_at(own, it, radii)) as Depths,
         });
         let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
@@ -289,6 +305,18 @@ impl Judge {
         }
         errors
     }
+}
+
+fn snapshot(run: &RunFile, cycles: f64) -> Option<&Snapshot> {
+    run.snapshots.iter().find(|it| is_same(it.cycles, cycles))
+}
+
+fn is_same(one: f64, two: f64) -> bool {
+    (one - two).abs() <= SAME_CYCLES * two
+}
+
+fn larger(one: [f64; 2], two: [f64; 2]) -> [f64; 2] {
+    [one[0].max(two[0]), one[1].max(two[1])]
 }
 
 /// Whether a run has this limit: the edge of stick may have moved, or no limit be known.
