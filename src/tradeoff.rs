@@ -38,12 +38,15 @@ const MOST_SNAPSHOTS: usize = 1000;
 /// Accuracy at which a scene must be ready to run.
 const PREFLIGHT: f64 = 1e-4;
 
+/// Time for the knob over the time for other candidates: what it chooses is of interest even where it is dear.
+const KNOB_PATIENCE: f64 = 5.0;
+
 /// How a scene is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// What is tried.
     pub ladders: Ladders,
-    /// Wall time up to which a candidate is run, s.
+    /// Wall time up to which a candidate by hand is run, s; the knob may take five times, a reference twenty times as long.
     pub most_seconds: f64,
     /// Most runs of a candidate for its wall time.
     pub repeats: usize,
@@ -203,6 +206,11 @@ impl<'a> Tradeoff<'a> {
         Ok(Self { scene, folder: folder.to_owned(), options, candidates, shared, started })
     }
 
+    /// Wall time up to which a candidate is run, s.
+    fn patience(&self, candidate: &Candidate) -> f64 {
+        self.options.most_seconds * if candidate.accuracy().is_some() { KNOB_PATIENCE } else { 1.0 }
+    }
+
     /// Number of candidates.
     pub fn candidates(&self) -> usize {
         self.candidates.len()
@@ -221,7 +229,7 @@ impl<'a> Tradeoff<'a> {
         for (number, (candidate, scene)) in self.candidates.iter().enumerate() {
             let measurement = match too_dear(candidate, &measured, self.options.most_seconds) {
                 Some(why) => Measurement::Skipped(why),
-                None => match runs.measure(&name(number), scene, self.options.most_seconds)? {
+                None => match runs.measure(&name(number), scene, self.patience(candidate))? {
                     Some(measurement) => measurement,
                     None => return Ok(None),
                 },

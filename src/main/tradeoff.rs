@@ -33,7 +33,7 @@ pub struct Tradeoff {
     /// Steppers; by default all
     #[arg(long, value_name = "S1,S2,...", value_delimiter = ',', value_parser = stepper)]
     steppers: Option<Vec<Stepper>>,
-    /// Wall time up to which a candidate is run, s; a reference may take twenty times as long
+    /// Wall time up to which a candidate is run, s; the knob may take five times, a reference twenty times as long
     #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = super::seconds)]
     most_seconds: f64,
     /// Runs of which the least wall time is taken, fewer where a run takes long

@@ -13,9 +13,9 @@ use crate::scene::{Scene, Stepper};
 const PATIENCE: f64 = 20.0;
 const PLANNED: f64 = 0.5;
 
-/// Springs of the two references over those of the finest candidate: by third order the second is off by some three times as much as the
-/// first. First the better, then what is left where that takes too long.
-const SPRINGS: [[f64; 2]; 3] = [[2.0, 1.42], [1.5, 1.1], [1.25, 0.9]];
+/// Springs of the two references over those of the finest candidate: from second order on their difference is more than the better one is off
+/// by. First the better pair, then what is left where that takes too long.
+const SPRINGS: [[f64; 2]; 2] = [[1.5, 1.0], [1.25, 0.8]];
 
 /// Tolerance of the references over the smallest of the candidates.
 const TOLERANCES: [f64; 2] = [0.25, 0.5];
@@ -66,11 +66,12 @@ pub(super) fn judge(
     Err(unjudged(reason))
 }
 
-/// The candidate with the most springs, and the smallest tolerance of those with at least a quarter of them; of the default method where that
+/// The candidate by hand with the most springs, and the smallest tolerance of those with at least a quarter of them; of the default method where that
 /// came to an end.
 fn finest<'a>(scene: &Scene, measured: &'a [(Candidate, Measurement)]) -> Option<(&'a Cost, f64)> {
     let way = (Stepper::default(), cycles(scene)[0]);
-    let done = || measured.iter().filter_map(|(candidate, it)| it.cost().map(|cost| (candidate, cost)));
+    let by_hand = measured.iter().filter(|(candidate, _)| candidate.accuracy().is_none());
+    let done = || by_hand.clone().filter_map(|(candidate, it)| it.cost().map(|cost| (candidate, cost)));
     let default = || done().filter(|(candidate, _)| (candidate.stepper, candidate.cycle) == way);
     let all: Vec<&Cost> = if default().next().is_some() {
         default().map(|it| it.1).collect()
