@@ -16,7 +16,7 @@ mod reader;
 mod shard;
 mod writer;
 
-pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray};
+pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray, TextColumn};
 pub(crate) use atomic::{AtomicFile, remove_abandoned};
 pub(crate) use folder::{cell, check_folder, make_folder, quoted, table};
 pub use reader::RunFile;

@@ -154,7 +154,7 @@ fn a_gibson_medium_follows_the_logistic_curve() {
 fn the_gibson_transient_obeys_its_equation_and_tends_to_the_limit() {
     let case = Case::new(2.0, 1.0 - 1e-9, 0.7, 3);
     let contact = case.contact();
-    let transient = GibsonTransient::from_contact(contact).unwrap().expect("it slips");
+    let transient = GibsonTransient::from_contact(&contact).unwrap().expect("it slips");
     let d = contact.indentation();
     let (r, tau, step) = (0.85_f64, 2.0, 1e-4);
     let f = |tau: f64| r * r + transient.wear_depth(r, tau) / d;

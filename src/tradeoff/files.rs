@@ -6,7 +6,7 @@ use super::{Cost, Errors, FRONTS, Measured, Outcome, Row, Source, Worst};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, TextArray};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, TextArray, TextColumn};
 
 const ARRAYS: &str = "tradeoff.h5";
 const TABLE: &str = "tradeoff.csv";
@@ -17,10 +17,7 @@ const CANDIDATE: Label<'static> = label("candidate", "1", "number of the candida
 const SNAPSHOT: Label<'static> =
     label("snapshot", "1", "number of the snapshot, from the first after the start");
 
-/// A column of words.
-type Words = (&'static str, &'static str, fn(&Row) -> &str);
-
-const WORDS: [Words; 4] = [
+const WORDS: [TextColumn<Row>; 4] = [
     ("stepper", "method of time stepping", |row| row.candidate.stepper.name()),
     ("cycle", "how a cycle is passed through: closed-form or resolved", |row| row.candidate.cycle.name()),
     ("status", "done, failed, stopped after the time allowed, or skipped as too costly", |row| {
@@ -266,14 +263,7 @@ fn array_file(scene: &Scene, outcome: &Outcome) -> ArrayFile {
             Coordinate { label: SNAPSHOT, values: index(snapshots) },
         ],
         arrays: numbers.chain(series).collect(),
-        texts: WORDS
-            .iter()
-            .map(|(name, long_name, word)| TextArray {
-                label: label(name, "1", long_name),
-                axis: CANDIDATE.name,
-                values: rows.iter().map(|row| word(row).to_owned()).collect(),
-            })
-            .collect(),
+        texts: TextArray::columns(&WORDS, rows, CANDIDATE.name),
     }
 }
 

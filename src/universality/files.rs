@@ -6,7 +6,7 @@ use super::{CURVE_POINTS, Judgement, Row};
 use crate::error::Result;
 use crate::scene::UniversalityStudy;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, TextArray};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, TextArray, TextColumn};
 
 const ARRAYS: &str = "universality.h5";
 const TABLE: &str = "universality.csv";
@@ -15,10 +15,7 @@ const CASE: Label<'static> = label("case", "1", "number of the case in the study
 const POSITION: Label<'static> =
     label("position", "1", "distance from the stick radius over the width of the limit's worn annulus");
 
-/// A column of words.
-type Words = (&'static str, &'static str, fn(&Row) -> &str);
-
-const WORDS: [Words; 9] = [
+const WORDS: [TextColumn<Row>; 9] = [
     ("name", "name of the case", |row| &row.case.name),
     ("medium", "medium and indenter; empty where the study names none", |row| &row.case.levels[0]),
     ("wear", "law of wear; empty where the study names none", |row| &row.case.levels[1]),
@@ -152,14 +149,7 @@ fn array_file(study: &UniversalityStudy, rows: &[Row]) -> ArrayFile {
             Coordinate { label: POSITION, values: index(CURVE_POINTS).map(|i| i / last).collect() },
         ],
         arrays: numbers.chain(curves).collect(),
-        texts: WORDS
-            .iter()
-            .map(|(name, long_name, word)| TextArray {
-                label: label(name, "1", long_name),
-                axis: CASE.name,
-                values: rows.iter().map(|row| word(row).to_owned()).collect(),
-            })
-            .collect(),
+        texts: TextArray::columns(&WORDS, rows, CASE.name),
     }
 }
 
