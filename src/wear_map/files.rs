@@ -40,7 +40,7 @@ const ARRAYS: &str = "map.h5";
 /// Makes the directory if it is missing, and checks that all files can be written there; creates no file.
 ///
 /// # Errors
-/// [`Error::File`] names the file or the directory and the cure.
+/// [`Error::File`](crate::Error::File) names the file or the directory and the cure.
 pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
     let names: Vec<&str> = TABLES.iter().map(|(name, _)| *name).chain([ARRAYS]).collect();
     snapshot::check_folder(folder, &names, overwrite)
@@ -50,7 +50,7 @@ pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
 /// exists, each as a whole or not at all; returns their paths.
 ///
 /// # Errors
-/// [`Error::File`] names the file and the cure.
+/// [`Error::File`](crate::Error::File) names the file and the cure.
 pub fn write(scene: &MapScene, study: &MapStudy, folder: &Path, overwrite: bool) -> Result<Vec<PathBuf>> {
     let arrays = folder.join(ARRAYS);
     array_file(scene, study).write(&arrays, overwrite)?;
