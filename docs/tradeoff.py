@@ -1,6 +1,6 @@
 """Draws docs/tradeoff.svg and writes its tables: python3 docs/tradeoff.py NEGATIVE HOMOGENEOUS POSITIVE FIGURE, with numpy, h5py and matplotlib.
 
-The first three are the files tradeoff.h5 of `fretwear tradeoff data/tradeoff/NAME.toml -o DIR`. Tables of the fronts go to stdout in
+The first three are the files tradeoff.h5 of `fretwear tradeoff data/tradeoff/NAME.toml -o DIR`. Tables of the fronts against wall time go to stdout in
 Markdown, as they stand in docs/tradeoff.md.
 """
 
@@ -38,7 +38,7 @@ def draw(axes, data, error, cost):
     for stepper, colour in COLOURS.items():
         for cycle, marker in [("closed-form", "o"), ("resolved", "x")]:
             chosen = by_hand & (data["stepper"] == stepper) & (data["cycle"] == cycle) & np.isfinite(y)
-            axes.loglog(x[chosen], y[chosen], marker, color=colour, markersize=3, alpha=0.5)
+            axes.loglog(x[chosen], y[chosen], marker, color=colour, markersize=3, alpha=0.5, rasterized=True)
     front = np.flatnonzero(data[f"front_{error}_{kind}"] == 1)
     front = front[np.argsort(x[front])]
     axes.step(x[front], y[front], where="post", color="k", linewidth=1)
@@ -54,12 +54,14 @@ def draw(axes, data, error, cost):
 
 def table(data):
     print(f"\n### {data['title']}\n")
-    springs, tolerance, uncertainty = data["reference"]
-    print(f"Reference: {springs} springs, tolerances {tolerance}, uncertain by {uncertainty} (volume, profile).\n")
+    springs, *pairs = data["reference"]
+    tolerance, uncertainty = [[float(word) for word in pair.split(",")] for pair in pairs]
+    print(f"References: {springs} springs, tolerances {tolerance[0]:.1e}, {tolerance[1]:.1e}; uncertain by {uncertainty[0]:.1e} "
+          f"(volume), {uncertainty[1]:.1e} (profile).\n")
     print("| stepper, cycle | springs | tolerance | wall time | with file | evaluations | volume error | profile error | front |")
     print("|---|---|---|---|---|---|---|---|---|")
     fronts = {kind: data["front_" + "_".join(kind)] == 1 for kind in KINDS}
-    shown = np.flatnonzero(np.any(list(fronts.values()), axis=0))
+    shown = np.flatnonzero(fronts["volume", "time"] | fronts["profile", "time"])
     knob = np.flatnonzero(~np.isnan(data["accuracy"]) & (data["status"] == "done"))
     for at in [*shown[np.argsort(data["wall_seconds"][shown])], *knob]:
         error = lambda name: ("<" if data[f"{name}_error_max_bounded"][at] else "") + f"{data[f'{name}_error_max'][at]:.1e}"
@@ -93,4 +95,4 @@ handles += [plt.Line2D([], [], marker="x", linestyle="", color="0.4", label="res
             plt.Line2D([], [], marker="D", linestyle="", color="tab:red", label="accuracy = ..."),
             plt.Line2D([], [], color="0.7", linestyle=":", label="uncertainty of the reference")]
 plot.legend(handles=handles, loc="outside upper center", ncols=len(handles), frameon=False, fontsize=8)
-plot.savefig(figure, metadata={"Date": None} if figure.endswith(".svg") else None)
+plot.savefig(figure, metadata={"Date": None} if figure.endswith(".svg") else None, dpi=100)
