@@ -38,6 +38,9 @@ const MOST_SNAPSHOTS: usize = 1000;
 /// Accuracy at which a scene must be ready to run.
 const PREFLIGHT: f64 = 1e-4;
 
+/// Passes in which short runs are measured once more.
+const AGAIN: usize = 2;
+
 /// Time for the knob over the time for other candidates: what it chooses is of interest even where it is dear.
 const KNOB_PATIENCE: f64 = 5.0;
 
@@ -48,7 +51,7 @@ pub struct Options {
     pub ladders: Ladders,
     /// Wall time up to which a candidate by hand is run, s; the knob may take five times, a reference twenty times as long.
     pub most_seconds: f64,
-    /// Most runs of a candidate for its wall time.
+    /// Most runs of a candidate for its wall time, one after the other; short ones are run twice more after all others, unless this is 1.
     pub repeats: usize,
     /// Whether the runs stay in `DIR/runs`.
     pub keep_runs: bool,
@@ -193,7 +196,8 @@ impl<'a> Tradeoff<'a> {
             .into_iter()
             .map(with_scene)
             .collect::<Result<_>>()?;
-        let shared = Shared::with_signals()?;
+        const NEVER: f64 = 1e9;
+        let shared = Shared { checkpoint_interval: Some(NEVER), ..Shared::with_signals()? };
         // What no candidate could run is refused before anything is written.
         let knob = Candidate {
             choice: Choice::Knob(PREFLIGHT),
@@ -238,6 +242,13 @@ impl<'a> Tradeoff<'a> {
                 progress.done(matches!(measurement, Measurement::Failed(_)));
             }
             measured.push((*candidate, measurement));
+        }
+        for _ in 0..AGAIN {
+            for (number, (_, measurement)) in measured.iter_mut().enumerate() {
+                if !runs.measure_again(&name(number), &self.candidates[number].1, measurement)? {
+                    return Ok(None);
+                }
+            }
         }
         let most_seconds = self.options.most_seconds;
         let Some((judge, reference)) = reference::judge(self.scene, &runs, &measured, most_seconds)? else {
