@@ -88,6 +88,13 @@ pub struct Row {
     pub over_front: [Option<f64>; 4],
 }
 
+impl Row {
+    fn new(candidate: Candidate, measurement: Measurement, errors: Vec<Errors>) -> Self {
+        let worst = Worst::of(&errors);
+        Self { candidate, measurement, errors, worst, on_front: [false; 4], over_front: [None; 4] }
+    }
+}
+
 /// A front: which error, against which cost.
 #[derive(Debug, Clone, Copy)]
 pub struct Front {
@@ -229,6 +236,42 @@ impl<'a> Tradeoff<'a> {
         if let Some(progress) = progress {
             progress.begin(self.candidates.len() as u64);
         }
+        let Some(measured) = self.measure(&runs, progress)? else { return Ok(None) };
+        let most_seconds = self.options.most_seconds;
+        let Some((judge, reference)) = reference::judge(self.scene, &runs, &measured, most_seconds)? else {
+            return Ok(None);
+        };
+        let mut rows = vec![];
+        for (number, (candidate, measurement)) in measured.into_iter().enumerate() {
+            let errors = match measurement.cost() {
+                Some(_) => judge.errors(&runs.read(&name(number))?),
+                None => vec![],
+            };
+            rows.push(Row::new(candidate, measurement, errors));
+        }
+        place_on_fronts(&mut rows);
+        let mut outcome = Outcome {
+            title: self.scene.title().map(str::to_owned),
+            rows,
+            reference,
+            volume_scale: judge.scales[0],
+            depth_scale: judge.scales[1],
+            files: vec![],
+            wall_seconds: self.started.elapsed().as_secs_f64(),
+        };
+        outcome.files = files::write(self.scene, &outcome, &self.folder, self.options.overwrite)?;
+        if !self.options.keep_runs {
+            runs.remove();
+        }
+        Ok(Some(outcome))
+    }
+
+    /// What became of all candidates; none if a signal came.
+    fn measure(
+        &self,
+        runs: &Runs,
+        progress: Option<&SceneProgress>,
+    ) -> Result<Option<Vec<(Candidate, Measurement)>>> {
         let mut measured: Vec<(Candidate, Measurement)> = vec![];
         for (number, (candidate, scene)) in self.candidates.iter().enumerate() {
             let measurement = match too_dear(candidate, &measured, self.options.most_seconds) {
@@ -250,41 +293,7 @@ impl<'a> Tradeoff<'a> {
                 }
             }
         }
-        let most_seconds = self.options.most_seconds;
-        let Some((judge, reference)) = reference::judge(self.scene, &runs, &measured, most_seconds)? else {
-            return Ok(None);
-        };
-        let mut rows = vec![];
-        for (number, (candidate, measurement)) in measured.into_iter().enumerate() {
-            let errors = match measurement.cost() {
-                Some(_) => judge.errors(&runs.read(&name(number))?),
-                None => vec![],
-            };
-            let worst = Worst::of(&errors);
-            rows.push(Row {
-                candidate,
-                measurement,
-                errors,
-                worst,
-                on_front: [false; 4],
-                over_front: [None; 4],
-            });
-        }
-        place_on_fronts(&mut rows);
-        let mut outcome = Outcome {
-            title: self.scene.title().map(str::to_owned),
-            rows,
-            reference,
-            volume_scale: judge.scales[0],
-            depth_scale: judge.scales[1],
-            files: vec![],
-            wall_seconds: self.started.elapsed().as_secs_f64(),
-        };
-        outcome.files = files::write(self.scene, &outcome, &self.folder, self.options.overwrite)?;
-        if !self.options.keep_runs {
-            runs.remove();
-        }
-        Ok(Some(outcome))
+        Ok(Some(measured))
     }
 }
 
