@@ -27,6 +27,7 @@
 //!
 //! Equations (19)–(22) for any profile are in [`transforms`](crate::transforms).
 
+mod gibson;
 mod hypergeometric;
 mod limiting_shape;
 mod paraboloid;
@@ -34,6 +35,7 @@ mod power_law;
 mod wear_integral;
 mod wear_volume;
 
+pub use gibson::GibsonTransient;
 pub use hypergeometric::{Claimed, HypergeometricLimit, gauss_hypergeometric};
 pub use limiting_shape::LimitingShape;
 pub use paraboloid::{

@@ -88,7 +88,7 @@
 //! | storey | modules |
 //! |---|---|
 //! | entry | the binary; this page |
-//! | jobs | [`submit`], [`sweep`], [`report`], [`universality`], [`progress`], [`run`], [`wear_map`] |
+//! | jobs | [`submit`], [`sweep`], [`report`], [`universality`], [`tradeoff`], [`progress`], [`run`], [`wear_map`] |
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
 //! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`conditions`], [`wear`], [`spring`], [`path`], [`friction`], [`loading`], [`history`], [`indenter`], [`half_space`] |
@@ -125,6 +125,7 @@ pub mod stepper;
 pub mod stick_slip;
 pub mod submit;
 pub mod sweep;
+pub mod tradeoff;
 pub mod transforms;
 pub mod universality;
 pub mod wear;

@@ -17,6 +17,9 @@ use fretwear::submit::{self, Engine, SubmitReport, Wishes};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result, universality};
 
+#[path = "main/tradeoff.rs"]
+mod tradeoff;
+
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
 75 stopped by a signal with a checkpoint written.\nResults go to stdout, everything else to stderr.";
 
@@ -45,6 +48,8 @@ enum Command {
     Map(Map),
     /// Run laws, modes and media against one limit, with cases that are not to reach it
     Universality(Universality),
+    /// Measure error against wall time of every stepper, tolerance and number of springs on one scene
+    Tradeoff(tradeoff::Tradeoff),
     /// Validate a scene and show what follows from it, without running anything
     Check(Check),
     /// Prepare a study for a cluster: measure, propose shards, write job scripts and hand them to the engine
@@ -194,7 +199,7 @@ struct Check {
 
 #[derive(Args)]
 struct Info {
-    /// A result file that `fretwear run`, `sweep`, `merge`, `map` or `universality` wrote
+    /// A result file that `fretwear run`, `sweep`, `merge`, `map`, `universality` or `tradeoff` wrote
     #[arg(value_name = "FILE.h5")]
     file: PathBuf,
     /// Print one JSON object in SI units
@@ -263,6 +268,7 @@ fn main() -> ExitCode {
         Command::Merge(arguments) => merge(&arguments),
         Command::Map(arguments) => map(&arguments).map(done),
         Command::Universality(arguments) => universality(&arguments),
+        Command::Tradeoff(arguments) => tradeoff::tradeoff(&arguments),
         Command::Check(arguments) => check(&arguments).map(done),
         Command::Submit(arguments) => submit(&arguments),
         Command::Info(arguments) => info(&arguments).map(done),

@@ -9,6 +9,7 @@ mod limit;
 mod map;
 mod run;
 mod text;
+mod tradeoff;
 mod universality;
 
 pub use check::CheckReport;
@@ -17,6 +18,7 @@ pub use limit::{LimitReport, ProfileTable, parse_radii};
 pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;
 pub(crate) use text::{Rows, number};
+pub use tradeoff::{CandidateReport, Fronts, OverFront, ReferenceReport, SnapshotReport, TradeoffReport};
 pub use universality::{UniversalityReport, UniversalityRow};
 
 use std::path::Path;

@@ -35,7 +35,7 @@ const LOOP_STEPS: usize = 64;
 const SPRINGS_TO_SLIDE: usize = 60;
 
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
-const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
+pub(crate) const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
 /// What a finished or interrupted run comes to; SI.
 #[derive(Debug, Clone)]

@@ -47,6 +47,7 @@ mod document;
 mod laws;
 mod map;
 mod motion;
+mod patch;
 mod path_file;
 mod profile_file;
 pub mod quantity;
@@ -85,6 +86,9 @@ pub enum Stepper {
 }
 
 impl Stepper {
+    /// All methods, in the order of their cost.
+    pub const ALL: [Self; 3] = [Self::EveryCycle, Self::CycleJump, Self::Implicit];
+
     /// The word of the scene: `every-cycle`, `cycle-jump` or `implicit`.
     pub fn name(self) -> &'static str {
         match self {

@@ -221,6 +221,11 @@ impl Simulation {
         &self.progress
     }
 
+    /// Largest error of one step in the wear depth, relative to the largest depth of the limit.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// Worn volume per cycle, m³.
     pub fn wear_rate(&self) -> f64 {
         self.cycle.volume

@@ -9,14 +9,16 @@
 mod arrays;
 mod atomic;
 mod encode;
+mod folder;
 mod labelled;
 pub mod layout;
 mod reader;
 mod shard;
 mod writer;
 
-pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray};
+pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray, TextColumn};
 pub(crate) use atomic::{AtomicFile, remove_abandoned};
+pub(crate) use folder::{cell, check_folder, make_folder, quoted, table};
 pub use reader::RunFile;
 pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
 pub use writer::RunWriter;

@@ -2,6 +2,7 @@
 
 mod support;
 
+use fretwear::closed_form::{GibsonTransient, gibson_wear_volume};
 use fretwear::grid::Clustering;
 use fretwear::model::State;
 use fretwear::stepper::{CycleJump, Implicit, Stepper};
@@ -141,4 +142,24 @@ fn a_gibson_medium_follows_the_logistic_curve() {
             "τ = {tau}: distances {distances:?}, ratios {ratios:?}"
         );
     }
+}
+
+#[test]
+fn the_gibson_transient_obeys_its_equation_and_tends_to_the_limit() {
+    let case = Case::new(2.0, 1.0 - 1e-9, 0.7, 3);
+    let contact = case.contact();
+    let transient = GibsonTransient::from_contact(&contact).unwrap().expect("it slips");
+    let d = contact.indentation();
+    let (r, tau, step) = (0.85_f64, 2.0, 1e-4);
+    let f = |tau: f64| r * r + transient.wear_depth(r, tau) / d;
+    let rate = (f(tau + step) - f(tau - step)) / (2.0 * step);
+    let expected = (1.0 - f(tau)) * (f(tau) - 0.49) / std::f64::consts::PI;
+    // Measured: 2e-10, the difference quotient's own error.
+    assert!((rate / expected - 1.0).abs() < 2e-9, "{rate} {expected}");
+    assert_eq!([0.6, contact.stick_radius().unwrap(), 1.1].map(|r| transient.wear_depth(r, 1e3)), [0.0; 3]);
+    assert_eq!(transient.wear_depth(0.85, 0.0), 0.0);
+    let limit = std::f64::consts::PI * d * gibson_wear_volume(2.0, contact.slip_compression() / d);
+    let gaps = [50.0, 100.0, 150.0].map(|tau| (transient.wear_volume(tau) / limit - 1.0).abs());
+    // Measured: 4.3e-3, 2.7e-6, 2.2e-10.
+    assert!(gaps[0] < 6e-3 && gaps[1] < 4e-6 && gaps[2] < 1e-9, "{gaps:?}");
 }

@@ -299,8 +299,7 @@ fn numerics(section: &Section, conditions: &Conditions, warnings: &mut Vec<Strin
         numerics.springs = Some(entry.whole(3..=usize::MAX)?);
     }
     if let Some(entry) = section.optional("stepper") {
-        let steppers = [Stepper::EveryCycle, Stepper::CycleJump, Stepper::Implicit];
-        numerics.stepper = steppers[entry.word(&steppers.map(Stepper::name))?];
+        numerics.stepper = Stepper::ALL[entry.word(&Stepper::ALL.map(Stepper::name))?];
     }
     if let Some(entry) = section.optional("tolerance") {
         numerics.tolerance = Some(fraction(&entry, "(0, 0.1]", 0.0)?);

@@ -34,7 +34,6 @@
 //! which excludes it; a law, a mode and a shape of the indenter are replaced as a whole.
 
 mod cover;
-mod patch;
 mod reading;
 
 pub use cover::covering_design;

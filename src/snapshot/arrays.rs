@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::atomic::AtomicFile;
 use super::labelled::{Dimension, bytes_of, file_in_memory, put_array, put_integer, put_text};
-use super::layout::Label;
+use super::layout::{Label, label};
 use super::reader;
 use super::shard::{SweepFile, unicode};
 use crate::error::{Error, Result};
@@ -43,6 +43,21 @@ pub struct TextArray {
     pub values: Vec<String>,
 }
 
+/// A column of words of a table: name, meaning, and the word of a row.
+pub type TextColumn<R> = (&'static str, &'static str, fn(&R) -> &str);
+
+impl TextArray {
+    /// The columns of words of a table.
+    pub fn columns<R>(words: &[TextColumn<R>], rows: &[R], axis: &'static str) -> Vec<Self> {
+        let column = |&(name, long_name, word): &TextColumn<R>| Self {
+            label: label(name, "1", long_name),
+            axis,
+            values: rows.iter().map(|row| word(row).to_owned()).collect(),
+        };
+        words.iter().map(column).collect()
+    }
+}
+
 /// Everything that a file of arrays holds; valid netCDF-4 in which every array names its coordinates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ArrayFile {
@@ -60,7 +75,8 @@ pub struct ArrayFile {
 
 impl ArrayFile {
     /// The formats there are.
-    pub const FORMATS: [&str; 3] = ["fretwear-map", "fretwear-universality", SweepFile::FORMAT];
+    pub const FORMATS: [&str; 4] =
+        ["fretwear-map", "fretwear-universality", "fretwear-tradeoff", SweepFile::FORMAT];
 
     /// Version of the layout, the root attribute `format_version`.
     pub const FORMAT_VERSION: i32 = 1;

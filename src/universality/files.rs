@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::{CURVE_POINTS, Judgement, Row};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::UniversalityStudy;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{Array, ArrayFile, AtomicFile, Coordinate, TextArray};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, TextArray, TextColumn};
 
 const ARRAYS: &str = "universality.h5";
 const TABLE: &str = "universality.csv";
@@ -15,10 +15,7 @@ const CASE: Label<'static> = label("case", "1", "number of the case in the study
 const POSITION: Label<'static> =
     label("position", "1", "distance from the stick radius over the width of the limit's worn annulus");
 
-/// A column of words.
-type Words = (&'static str, &'static str, fn(&Row) -> &str);
-
-const WORDS: [Words; 9] = [
+const WORDS: [TextColumn<Row>; 9] = [
     ("name", "name of the case", |row| &row.case.name),
     ("medium", "medium and indenter; empty where the study names none", |row| &row.case.levels[0]),
     ("wear", "law of wear; empty where the study names none", |row| &row.case.levels[1]),
@@ -98,14 +95,7 @@ fn of(row: &Row, number: impl Fn(&Judgement) -> f64) -> f64 {
 
 /// Makes the directory if it is missing, and checks that both files can be written there; creates no file.
 pub(super) fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| Error::File {
-        path: folder.to_owned(),
-        why: format!("the directory cannot be made: {error}"),
-    })?;
-    [ARRAYS, TABLE]
-        .map(|name| AtomicFile::new(&folder.join(name), overwrite))
-        .into_iter()
-        .try_for_each(|it| it.map(drop))
+    snapshot::check_folder(folder, &[ARRAYS, TABLE], overwrite)
 }
 
 /// Writes both files, each as a whole or not at all; returns their paths.
@@ -159,35 +149,15 @@ fn array_file(study: &UniversalityStudy, rows: &[Row]) -> ArrayFile {
             Coordinate { label: POSITION, values: index(CURVE_POINTS).map(|i| i / last).collect() },
         ],
         arrays: numbers.chain(curves).collect(),
-        texts: WORDS
-            .iter()
-            .map(|(name, long_name, word)| TextArray {
-                label: label(name, "1", long_name),
-                axis: CASE.name,
-                values: rows.iter().map(|row| word(row).to_owned()).collect(),
-            })
-            .collect(),
+        texts: TextArray::columns(&WORDS, rows, CASE.name),
     }
 }
 
 fn csv(rows: &[Row]) -> String {
     let names = WORDS.iter().map(|it| it.0).chain(NUMBERS.iter().map(|it| it.0.name));
-    let mut table = names.collect::<Vec<_>>().join(",") + "\n";
-    for row in rows {
-        let words = WORDS.iter().map(|(_, _, word)| quoted(word(row)));
-        let numbers = NUMBERS.iter().map(|(_, number)| match number(row) {
-            value if value.is_nan() => String::new(),
-            value => format!("{value:e}"),
-        });
-        table += &(words.chain(numbers).collect::<Vec<_>>().join(",") + "\n");
-    }
-    table
-}
-
-/// A cell of words; quotes where it needs them.
-fn quoted(word: &str) -> String {
-    match word.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", word.replace('"', "\"\"")),
-        false => word.to_owned(),
-    }
+    let cells = rows.iter().map(|row| {
+        let words = WORDS.iter().map(|(_, _, word)| snapshot::quoted(word(row)));
+        words.chain(NUMBERS.iter().map(|(_, number)| snapshot::cell(number(row)))).collect()
+    });
+    snapshot::table(names, cells)
 }

@@ -8,7 +8,7 @@ use super::Judgement;
 use crate::error::{Error, Result};
 use crate::run::{Resumed, Run, Shared};
 use crate::scene::Scene;
-use crate::snapshot::{RunFile, StopReason};
+use crate::snapshot::{RunFile, StopReason, make_folder};
 
 /// One run.
 pub(super) struct Job {
@@ -28,10 +28,7 @@ pub(super) struct Runs<'a> {
 impl<'a> Runs<'a> {
     pub(super) fn new(folder: &Path, shared: &'a Shared) -> Result<Self> {
         let folder = folder.join("runs");
-        std::fs::create_dir_all(&folder).map_err(|error| Error::File {
-            path: folder.clone(),
-            why: format!("the directory cannot be made: {error}"),
-        })?;
+        make_folder(&folder)?;
         Ok(Self { folder, shared })
     }
 

@@ -4,10 +4,10 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use super::{Control, Isoline, MapStudy, OptimumCurve};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::MapScene;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{Array, ArrayFile, AtomicFile, Coordinate};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, cell};
 
 const GRADING: Label<'static> = label("grading", "1", "grading k of E = E0 (z/z0)^k");
 const AMPLITUDE: Label<'static> =
@@ -40,21 +40,17 @@ const ARRAYS: &str = "map.h5";
 /// Makes the directory if it is missing, and checks that all files can be written there; creates no file.
 ///
 /// # Errors
-/// [`Error::File`] names the file or the directory and the cure.
+/// [`Error::File`](crate::Error::File) names the file or the directory and the cure.
 pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| Error::File {
-        path: folder.to_owned(),
-        why: format!("the directory cannot be made: {error}"),
-    })?;
-    let names = TABLES.iter().map(|(name, _)| *name).chain([ARRAYS]);
-    names.map(|name| AtomicFile::new(&folder.join(name), overwrite)).try_for_each(|file| file.map(|_| ()))
+    let names: Vec<&str> = TABLES.iter().map(|(name, _)| *name).chain([ARRAYS]).collect();
+    snapshot::check_folder(folder, &names, overwrite)
 }
 
 /// Writes `map.h5` and the tables `map.csv`, `full_sliding.csv`, `isolines.csv`, `optimum.csv` and `profiles.csv` into a directory that
 /// exists, each as a whole or not at all; returns their paths.
 ///
 /// # Errors
-/// [`Error::File`] names the file and the cure.
+/// [`Error::File`](crate::Error::File) names the file and the cure.
 pub fn write(scene: &MapScene, study: &MapStudy, folder: &Path, overwrite: bool) -> Result<Vec<PathBuf>> {
     let arrays = folder.join(ARRAYS);
     array_file(scene, study).write(&arrays, overwrite)?;
@@ -229,11 +225,6 @@ fn add_isolines(
         let values = points().map(|point| point[column]).collect();
         file.arrays.push(Array { label: label(name, "1", meaning), axes: vec![vertex], values });
     }
-}
-
-/// A number with all its digits; nothing where it is not a number.
-fn cell(value: f64) -> String {
-    if value.is_nan() { String::new() } else { format!("{value:e}") }
 }
 
 fn line(table: &mut String, cells: &[f64]) {

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use toml::{Table, Value};
 
 use super::cover::{combinations, covering_design};
-use super::patch::{self, Patch};
 use super::{Case, FACTORS, MOST_COMBINATIONS, Prediction, Tolerances};
 use crate::error::{Error, Result};
 use crate::scene::document::{Entry, Section};
+use crate::scene::patch::{self, Patch};
 use crate::scene::quantity::Dimension;
 use crate::scene::sections;
 

@@ -2,6 +2,9 @@
 
 use toml::{Table, Value};
 
+use super::Scene;
+use crate::error::Error;
+
 /// Sets of keys of a table of the scene of which a scene has one at most: a patch that sets a key of one set removes the others.
 const ALTERNATIVES: [(&str, &[&[&str]]); 11] = [
     ("indenter", &[&["paraboloid"], &["sphere"], &["cone"], &["power-law"], &["table"]]),
@@ -132,6 +135,26 @@ pub(super) fn refine(scene: &mut Table) -> Result<(), String> {
         numerics.insert("tolerance".into(), Value::Float(tolerance / 8.0));
     }
     Ok(())
+}
+
+impl Scene {
+    /// The same scene with another table `[numerics]`, and the keys of a patch laid over the others.
+    ///
+    /// # Arguments
+    /// * `numerics` -- the whole table, TOML without its header
+    /// * `patch` -- tables of a scene, TOML; a key replaces that of its name and those that exclude it
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if the result is no scene, [`Error::Inconsistent`] if one of the two is no TOML.
+    pub fn varied(&self, numerics: &str, patch: &str) -> Result<Self, Error> {
+        let wrong = |why: String| Error::Inconsistent { what: "variant of a scene", why };
+        let read = |text: &str| text.parse::<Table>().map_err(|error| wrong(error.to_string()));
+        let mut scene = read(self.text())?;
+        Patch::new(&read(patch)?).apply(&mut scene).map_err(wrong)?;
+        scene.insert("numerics".into(), Value::Table(read(numerics)?));
+        let name = "variant of the scene";
+        Self::from_stored(&scene.to_string(), name, self.table().cloned(), self.path().cloned())
+    }
 }
 
 fn table_of<'a>(scene: &'a mut Table, name: &str) -> Result<&'a mut Table, String> {

@@ -1,0 +1,108 @@
+//! `fretwear tradeoff`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use fretwear::progress::SceneProgress;
+use fretwear::report::{self, TradeoffReport};
+use fretwear::scene::Stepper;
+use fretwear::tradeoff::{self, Ladders};
+use fretwear::{Error, Result};
+
+use super::{INTERRUPTED, complain, done, read};
+
+/// Candidates of the trade-off and where its results go.
+#[derive(Args)]
+pub struct Tradeoff {
+    /// The scene, a TOML file; springs, tolerance, stepper and cycle of its [numerics] are replaced
+    #[arg(value_name = "SCENE.toml")]
+    scene: PathBuf,
+    /// Directory for tradeoff.h5, tradeoff.csv and tradeoff.json, made if it is missing
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Numbers of springs; by default 15 to 480, doubled
+    #[arg(long, value_name = "N1,N2,...", value_delimiter = ',')]
+    springs: Option<Vec<usize>>,
+    /// Tolerances of the time stepping; by default 1e-2 to 1e-8, by tens
+    #[arg(long, value_name = "T1,T2,...", value_delimiter = ',')]
+    tolerances: Option<Vec<f64>>,
+    /// Accuracies asked of the knob; by default 1e-2 to 1e-6, by tens
+    #[arg(long, value_name = "A1,A2,...", value_delimiter = ',')]
+    accuracies: Option<Vec<f64>>,
+    /// Steppers; by default all
+    #[arg(long, value_name = "S1,S2,...", value_delimiter = ',', value_parser = stepper)]
+    steppers: Option<Vec<Stepper>>,
+    /// Wall time up to which a candidate is run, s; the knob may take five times, a reference twenty times as long
+    #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = super::seconds)]
+    most_seconds: f64,
+    /// Runs of which the least wall time is taken, fewer where a run takes long
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// Leave the run of every candidate in DIR/runs
+    #[arg(long)]
+    keep_runs: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Show no progress and no summary
+    #[arg(long)]
+    quiet: bool,
+    /// Overwrite files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+/// The stepper of a word.
+fn stepper(word: &str) -> std::result::Result<Stepper, String> {
+    let known = Stepper::ALL.into_iter().find(|stepper| stepper.name() == word);
+    known.ok_or_else(|| format!("give some of {}", Stepper::ALL.map(Stepper::name).join(", ")))
+}
+
+pub fn tradeoff(arguments: &Tradeoff) -> Result<(String, ExitCode)> {
+    let scene = read(&arguments.scene)?;
+    let usual = Ladders::default();
+    let ladders = Ladders {
+        springs: arguments.springs.clone().unwrap_or(usual.springs),
+        tolerances: arguments.tolerances.clone().unwrap_or(usual.tolerances),
+        accuracies: arguments.accuracies.clone().unwrap_or(usual.accuracies),
+        steppers: arguments.steppers.clone().unwrap_or(usual.steppers),
+    };
+    let options = tradeoff::Options {
+        ladders,
+        most_seconds: arguments.most_seconds,
+        repeats: usize::from(arguments.repeats),
+        keep_runs: arguments.keep_runs,
+        overwrite: arguments.force,
+    };
+    let ready = tradeoff::Tradeoff::new(&scene, &arguments.output, &options)?;
+    let shown = !arguments.quiet && !arguments.json;
+    if shown {
+        complain("note", &format!("{} candidates, one after the other", ready.candidates()));
+    }
+    let progress = shown.then(SceneProgress::default);
+    let outcome = ready.execute(progress.as_ref());
+    drop(progress);
+    let failed = |error: Error| {
+        complain("error", &error.to_string());
+        Ok((String::new(), ExitCode::FAILURE))
+    };
+    let outcome = match outcome {
+        Ok(Some(outcome)) => outcome,
+        Ok(None) => {
+            complain("note", "stopped; the same command goes on from here");
+            return Ok((String::new(), ExitCode::from(INTERRUPTED)));
+        }
+        // The input was in order: what stops a measurement that has begun is a failure of it.
+        Err(error) => return failed(error),
+    };
+    let mut report = TradeoffReport::new(&outcome);
+    if let Err(error) = report.write(&arguments.output, arguments.force) {
+        return failed(error);
+    }
+    Ok(done(match (arguments.json, arguments.quiet) {
+        (true, _) => report::json(&report),
+        (false, true) => String::new(),
+        (false, false) => report.text(&outcome),
+    }))
+}
