@@ -35,7 +35,7 @@ pub fn bracketed(mut function: impl FnMut(f64) -> f64, low: f64, high: f64, tole
     let same_side = best_value != 0.0 && previous_value.signum() == best_value.signum();
     if same_side || previous_value.is_nan() || best_value.is_nan() {
         return Err(not_converged(format!(
-            "no change of sign: f({low}) = {previous_value}, f({high}) = {best_value}"
+            "no change of sign: f({low:e}) = {previous_value:e}, f({high:e}) = {best_value:e}"
         )));
     }
     // `far` is the end of the bracket on the other side of the root from `best`.
