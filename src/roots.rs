@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn a_bracket_without_change_of_sign_is_refused_with_its_numbers() {
         let message = bracketed(|x| x * x + 1.0, 0.0, 2.0, 0.0).unwrap_err().to_string();
-        assert!(message.contains("f(2) = 5"), "{message}");
+        assert!(message.contains("f(2e0) = 5e0"), "{message}");
         assert!(bracketed(|_| f64::NAN, 0.0, 2.0, 0.0).is_err());
     }
 }

@@ -28,8 +28,8 @@ const ROUND_OFF: f64 = 1e-2;
 /// By how much the number of springs is raised that do not do.
 const RAISE: f64 = 1.3;
 
-/// Most springs that the program asks for by itself where a scene needs more than others: some minutes of run.
-const MOST_RAISED: usize = 1200;
+/// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
+const MOST_RAISED: usize = 600;
 
 /// How well a mesh carries what is known beforehand.
 struct Quality {
@@ -57,7 +57,7 @@ pub(super) fn model(
     check_memory(key, springs)?;
     let grading = contact.half_space().grading();
     let clusterings: &[Clustering] = match numerics.stepper {
-        Stepper::Implicit if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
+        _ if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
         Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
         Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
     };
@@ -93,7 +93,9 @@ impl Quality {
         let contact = model.contact();
         let unusable = Self { compression: f64::INFINITY, volume: f64::INFINITY, round_off: f64::INFINITY };
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
-        let (Ok(state), Some(stick_radius)) = (model.initial_state(), stick_radius) else { return Ok(unusable) };
+        let (Ok(state), Some(stick_radius)) = (model.initial_state(), stick_radius) else {
+            return Ok(unusable);
+        };
         let most = contact.slip_compression();
         let nodes = &model.operators().nodes()[1..];
         let exact = |x: f64| most - contact.equivalent_profile().rise(stick_radius, state.edge * x);
@@ -135,7 +137,7 @@ fn too_coarse(contact: &InitialContact, springs: usize, by_hand: bool, quality: 
     let cure = if by_hand {
         format!("ask for {more} springs (numerics.accuracy chooses), or for a smaller amplitude")
     } else {
-        "ask for a smaller amplitude".into()
+        "ask for a smaller amplitude, or for more springs by hand (numerics.springs)".into()
     };
     let why = format!(
         "{springs} springs do not carry this contact, whose stick radius is {ratio:.3e} of the contact radius: with them the unworn contact is \
