@@ -283,7 +283,9 @@ impl Simulation {
                 (tau >= SHOWN_UNENDING).then_some(Outcome::Unending)
             }
             End::Rate(fraction) => {
-                let spent = self.wear_rate() <= fraction * self.progress.first_rate
+                // A step that went beyond the limit wears back: that is none of the rates asked for.
+                let spent = self.cycle.volume >= 0.0
+                    && self.wear_rate() <= fraction * self.progress.first_rate
                     && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
                 let limit = WORN_OUT * self.model.contact().slip_compression();
                 let worn_out = self.state.compression.iter().all(|q| q.abs() <= limit);
