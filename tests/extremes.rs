@@ -291,8 +291,8 @@ fn one_cycle_after_the_other_never_wears_beyond_the_limit() {
                 let off = (worn - known).abs();
                 println!("{share:e} of the limit a cycle: {worn:e} after 100, {off:.1e} from small steps");
                 assert!(share <= 2e-2 && worn > 0.0 && worn < 1.0, "{share:e}: {worn:e}");
-                // Round-off of a depth that is the difference of slips, and the first order in the wear of one cycle.
-                assert!(off < 1e-14 + (1e-5 + share) * worn, "{share:e}: {worn:e} and {known:e}");
+                // Round-off of a depth that is a difference of slips; 24 springs on two meshes; the first order in the wear of one cycle.
+                assert!(off < 1e-14 + (2e-2 + share) * worn, "{share:e}: {worn:e} and {known:e}");
             }
             Err(error) => {
                 println!("{share:e} of the limit a cycle: {error}");
