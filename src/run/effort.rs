@@ -33,7 +33,7 @@ pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<Optio
         Choice::CycleJump => "is explicit, and its steps are limited by the stiffest springs",
         Choice::Implicit => return Ok(None),
     };
-    if !(steps <= MOST_STEPS) {
+    if steps > MOST_STEPS || steps.is_nan() {
         let why = format!(
             "{:?} {kind}: at least {steps:.1e} steps, of which {MOST_STEPS:e} are allowed; take the stepper \"implicit\", or ask for fewer cycles \
              or less time",
@@ -41,10 +41,7 @@ pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<Optio
         );
         return Err(Error::Inconsistent { what: "numerics.stepper", why });
     }
-    // Not worth a measurement.
-    if steps < 1e4 {
-        return Ok(None);
-    }
+    // A first cycle that is too coarse a step is refused here as well.
     let begun = Instant::now();
     simulation.measure_step()?;
     let seconds = steps * begun.elapsed().as_secs_f64();
