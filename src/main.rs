@@ -306,6 +306,7 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
         }
         (None, None) => unreachable!("clap requires one of the two"),
     };
+    run.warning().into_iter().for_each(|warning| complain("warning", warning));
     let mut progress = (!arguments.quiet && !arguments.json).then(Progress::default);
     let result = run.execute(progress.as_mut().map(|it| it as &mut dyn Observer));
     drop(progress);

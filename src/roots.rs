@@ -35,7 +35,7 @@ pub fn bracketed(mut function: impl FnMut(f64) -> f64, low: f64, high: f64, tole
     let same_side = best_value != 0.0 && previous_value.signum() == best_value.signum();
     if same_side || previous_value.is_nan() || best_value.is_nan() {
         return Err(not_converged(format!(
-            "no change of sign: f({low}) = {previous_value}, f({high}) = {best_value}"
+            "no change of sign: f({low:e}) = {previous_value:e}, f({high:e}) = {best_value:e}"
         )));
     }
     // `far` is the end of the bracket on the other side of the root from `best`.
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn a_bracket_without_change_of_sign_is_refused_with_its_numbers() {
         let message = bracketed(|x| x * x + 1.0, 0.0, 2.0, 0.0).unwrap_err().to_string();
-        assert!(message.contains("f(2) = 5"), "{message}");
+        assert!(message.contains("f(2e0) = 5e0"), "{message}");
         assert!(bracketed(|_| f64::NAN, 0.0, 2.0, 0.0).is_err());
     }
 }

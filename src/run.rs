@@ -10,7 +10,6 @@ use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::grid::Clustering;
 use crate::indenter::Indenter;
 use crate::loading;
 use crate::model::{FrettingLoop, Model, OperatorStore, Resolution, Schedule};
@@ -21,6 +20,9 @@ use crate::snapshot::{
 };
 use crate::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Stepper};
 use crate::stick_slip::Regime;
+
+mod effort;
+mod mesh;
 
 /// Part of the run at which the first of geometrically spread snapshots is taken.
 const FIRST_SNAPSHOT: f64 = 1e-4;
@@ -61,6 +63,7 @@ pub struct Run {
     simulation: Simulation,
     recorder: Recorder,
     limit: Option<LimitingShape>,
+    warning: Option<String>,
 }
 
 /// What runs of many scenes in one process share.
@@ -125,7 +128,8 @@ impl Run {
         writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
     ) -> Result<Self> {
         let parts = Parts::new(scene, shared)?;
-        let simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
+        let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
+        let warning = effort::check(scene.numerics().stepper, &mut simulation)?;
         let header = RunHeader {
             title: scene.title().map(str::to_owned),
             scene: scene.text().to_owned(),
@@ -135,7 +139,7 @@ impl Run {
             path: scene.path().cloned(),
         };
         let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
-        Ok(Self { simulation, recorder, limit: parts.limit })
+        Ok(Self { simulation, recorder, limit: parts.limit, warning })
     }
 
     /// Prepares a run that goes on from the last checkpoint in its file.
@@ -212,7 +216,12 @@ impl Run {
         let simulation =
             Simulation::resume(parts.model, parts.stepper, parts.tolerance, parts.plan, state, progress);
         let recorder = Recorder::new(&scene, writer(file)?, wall_seconds, shared);
-        Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit: parts.limit })))
+        Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit: parts.limit, warning: None })))
+    }
+
+    /// A word about a run that will take hours, where that is known beforehand.
+    pub fn warning(&self) -> Option<&str> {
+        self.warning.as_deref()
     }
 
     /// The simulation, at its start or where it goes on.
@@ -233,7 +242,7 @@ impl Run {
     /// # Errors
     /// As [`Run::execute`].
     pub fn execute_keeping(self, progress: Option<&mut dyn Observer>) -> Result<(RunResult, RunFile)> {
-        let Self { mut simulation, mut recorder, limit } = self;
+        let Self { mut simulation, mut recorder, limit, .. } = self;
         let outcome = match progress {
             Some(progress) => simulation.run(&mut [&mut recorder, progress]),
             None => simulation.run(&mut [&mut recorder]),
@@ -275,16 +284,9 @@ impl Parts {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
         let numerics = scene.numerics();
-        let springs = numerics.springs.unwrap_or_else(|| springs_for(numerics.accuracy));
-        check_memory(springs)?;
         check_start(numerics)?;
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
-        let clustering = match numerics.stepper {
-            StepperChoice::Implicit if schedule.wears_smoothly() => Clustering::Smooth,
-            StepperChoice::Implicit => Clustering::Cubic,
-            StepperChoice::EveryCycle | StepperChoice::CycleJump => Clustering::Quadratic,
-        };
-        let model = Model::under(&contact, schedule, springs, clustering, &shared.operators)?;
+        let model = mesh::model(&contact, &schedule, numerics, &shared.operators)?;
         check_sliding(&model)?;
         let unlimited = model.slides() || scene.conditions().holds_normal_force;
         let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
@@ -367,29 +369,6 @@ fn springs_for(accuracy: f64) -> usize {
 /// Tolerance of one step that keeps the accumulated error of the time stepping below `accuracy`.
 fn tolerance_for(accuracy: f64) -> f64 {
     0.3 * accuracy
-}
-
-/// Refuses springs for which the dense operators do not fit into the memory that is free.
-fn check_memory(springs: usize) -> Result<()> {
-    let needed = BYTES_PER_PAIR * (springs as f64).powi(2);
-    let Some(free) = free_memory() else { return Ok(()) };
-    if needed < free {
-        return Ok(());
-    }
-    Err(Error::Inconsistent {
-        what: "numerics.springs",
-        why: format!(
-            "{springs} springs need {:.1} GB for their operators and {:.1} GB are free; ask for at most {}",
-            needed * 1e-9,
-            free * 1e-9,
-            (free / BYTES_PER_PAIR).sqrt().floor()
-        ),
-    })
-}
-
-/// Free memory, bytes, where the system tells.
-fn free_memory() -> Option<f64> {
-    memory_figure("/proc/meminfo", "MemAvailable:")
 }
 
 /// A figure of memory, bytes, from a table of the system in kilobytes.

@@ -1,5 +1,7 @@
 //! The loop over time: which step to try, where to land, when to stop.
 
+use std::f64::consts::PI;
+
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::model::{CycleFields, Fields, Model, MovingStick, RadialFields, State};
@@ -29,6 +31,13 @@ const KINKED_INTERPOLATION: f64 = 1e-2;
 
 /// How far the rate may fall below the one asked for in the last step.
 const OVERSHOT: f64 = 0.5;
+
+/// Part of the rate of worn volume by trapezoids that is wear for certain: the quadrature of the volume, which is more accurate, has weights
+/// that are not all positive, and where the ground next to the edge of stick wears long after the rest it may come to nothing.
+const CERTAIN_WEAR: f64 = 0.5;
+
+/// How far a compression, over `q_c`, may leave the range from 0 to 1 in which that of the slip annulus lies.
+const BEYOND_CONTACT: f64 = 0.1;
 
 /// Dimensionless time for which wear without end is followed when a run is to last until its rate has fallen.
 const SHOWN_UNENDING: f64 = 1.0;
@@ -134,6 +143,7 @@ pub struct Simulation {
     fields: Fields,
     cycle: CycleFields,
     radial: RadialFields,
+    rate: f64,
     progress: Progress,
 }
 
@@ -152,10 +162,10 @@ impl Simulation {
         let mut growth = 0.0_f64;
         for drive in model.schedule().first_cycles() {
             let cycle = model.cycle(&model.drive_in(&state, drive), &state.compression, &fields);
-            first_rate = first_rate.max(cycle.volume);
+            first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
             growth = growth.max(largest(&cycle.growth));
         }
-        if !(growth > 0.0 && growth.is_finite()) {
+        if !(growth > 0.0 && growth.is_finite() && first_rate > 0.0 && first_rate.is_finite()) {
             return Err(Error::Inconsistent {
                 what: "wear",
                 why: "nothing wears in the first cycles".into(),
@@ -178,7 +188,8 @@ impl Simulation {
         let fields = model.fields(&state);
         let cycle = cycle_of(&model, &state, &fields, state.cycles);
         let radial = model.radial_fields(&state, &fields, &cycle);
-        Self { model, stepper, tolerance, plan, state, fields, cycle, radial, progress }
+        let rate = rate_of_wear(&model, &fields, &cycle);
+        Self { model, stepper, tolerance, plan, state, fields, cycle, radial, rate, progress }
     }
 
     /// The model.
@@ -226,9 +237,17 @@ impl Simulation {
         self.tolerance
     }
 
-    /// Worn volume per cycle, m³.
+    /// Worn volume per cycle, m³: by the quadrature of the worn volume, where that is less than half of what trapezoids find by the latter.
     pub fn wear_rate(&self) -> f64 {
-        self.cycle.volume
+        self.rate
+    }
+
+    /// Tries a step of one cycle and forgets it, for its cost.
+    ///
+    /// # Errors
+    /// Those of the stepper.
+    pub fn measure_step(&mut self) -> Result<()> {
+        self.stepper.step(&self.model, &self.state, 1.0).map(|_| ())
     }
 
     /// Steps to the end of the plan or until an observer stops it. The start is an output too, unless steps were made before.
@@ -272,7 +291,9 @@ impl Simulation {
                 (tau >= SHOWN_UNENDING).then_some(Outcome::Unending)
             }
             End::Rate(fraction) => {
-                let spent = self.wear_rate() <= fraction * self.progress.first_rate
+                // A step that went beyond the limit wears back: that is none of the rates asked for.
+                let spent = self.cycle.volume >= 0.0
+                    && self.wear_rate() <= fraction * self.progress.first_rate
                     && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
                 let limit = WORN_OUT * self.model.contact().slip_compression();
                 let worn_out = self.state.compression.iter().all(|q| q.abs() <= limit);
@@ -293,7 +314,8 @@ impl Simulation {
                 Some(state) if error <= 1.0 => {
                     let fields = self.model.fields(&state);
                     let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
-                    if let Some(shorter) = self.overshoot(&cycle, step) {
+                    let rate = rate_of_wear(&self.model, &fields, &cycle);
+                    if let Some(shorter) = self.overshoot(rate, step) {
                         self.progress.next_step = shorter;
                         continue;
                     }
@@ -329,7 +351,7 @@ impl Simulation {
         }
         let step = self.progress.next_step;
         let growth = step * largest(&self.cycle.growth);
-        if !(growth > SMALLEST_GROWTH || step > 1e-6 * now) {
+        if !(growth > SMALLEST_GROWTH || (now > 0.0 && step > 1e-6 * now)) {
             return Err(self.stuck("the step had to become too small", step));
         }
         let Some(target) = target else { return Ok(landing(step, None)) };
@@ -342,13 +364,13 @@ impl Simulation {
     }
 
     /// The step that ends where the rate is what was asked for, if this one leaves it far behind; the rate falls exponentially.
-    fn overshoot(&self, cycle: &CycleFields, step: f64) -> Option<f64> {
+    fn overshoot(&self, rate: f64, step: f64) -> Option<f64> {
         let End::Rate(fraction) = self.plan.end else { return None };
         if self.stepper.prescribed_step().is_some() {
             return None;
         }
         let wanted = fraction * self.progress.first_rate;
-        let reached = cycle.volume.max(f64::MIN_POSITIVE);
+        let reached = rate.max(f64::MIN_POSITIVE);
         let now = self.wear_rate();
         let part = (now / wanted).ln() / (now / reached).ln();
         (now > wanted && reached < OVERSHOT * wanted && part < 1.0)
@@ -373,27 +395,37 @@ impl Simulation {
         let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
         let mut pairs = radial.wear_depth.iter().zip(&self.radial.wear_depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);
-        if !(grew && fields.are_physical()) {
+        if !(grew && fields.are_physical() && self.presses(&state)) {
             return Ok(false);
         }
+        let rate = rate_of_wear(&self.model, &fields, &cycle);
         if let Some(target) = target {
             state.cycles = target;
         }
         if let End::Rate(fraction) = self.plan.end
-            && cycle.volume > fraction * self.progress.first_rate
+            && rate > fraction * self.progress.first_rate
         {
             self.progress.busy_until = state.cycles;
         }
         // Steppers look at their ends; the first cycle of a block is where springs come to slip.
         state.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
-        let (mut fields, mut cycle) = (fields, cycle);
+        let (mut fields, mut cycle, mut rate) = (fields, cycle, rate);
         if target.is_some() {
             state = self.model.begin_block(state)?;
             fields = self.model.fields(&state);
             cycle = cycle_of(&self.model, &state, &fields, state.cycles);
+            rate = rate_of_wear(&self.model, &fields, &cycle);
         }
-        (self.state, self.fields, self.cycle, self.radial) = (state, fields, cycle, radial);
+        (self.state, self.fields, self.cycle, self.radial, self.rate) = (state, fields, cycle, radial, rate);
         Ok(true)
+    }
+
+    /// Whether the springs press no less than not at all and no more than where they stick, under the plain laws: beside others single
+    /// springs next to the edge of stick swing further and come back.
+    fn presses(&self, state: &State) -> bool {
+        let most = self.model.contact().slip_compression();
+        let within = |q: &f64| (-BEYOND_CONTACT..=1.0 + BEYOND_CONTACT).contains(&(q / most));
+        !self.model.schedule().conditions().is_plain() || state.compression.iter().all(within)
     }
 
     /// Chooses the next step from the error of this one over the tolerance.
@@ -412,11 +444,23 @@ impl Simulation {
         Error::NotConverged {
             what: "time stepping",
             why: format!(
-                "{why} ({step:e} cycles at cycle {}, {} steps)",
+                "{why} ({step:e} cycles at cycle {}, {} steps); try another number of springs (numerics.springs)",
                 self.state.cycles, self.progress.steps
             ),
         }
     }
+}
+
+/// Worn volume per cycle, m³, at least the part of it that is certain.
+fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
+    let nodes = model.operators().nodes();
+    let wear = |i: usize| (cycle.growth[i] * fields.slip_depth[i]).max(0.0);
+    let last = cycle.growth.len().min(fields.slip_depth.len());
+    // No wear at the edge of stick.
+    let first = 0.5 * wear(0) * nodes[1];
+    let cells = (1..last).map(|i| 0.5 * (wear(i - 1) + wear(i)) * (nodes[i + 1] - nodes[i]));
+    let trapezoids = PI * fields.edge * (first + cells.sum::<f64>());
+    cycle.volume.max(CERTAIN_WEAR * trapezoids)
 }
 
 /// Largest of some rates of growth, at least zero.

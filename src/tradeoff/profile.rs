@@ -1,7 +1,7 @@
 //! Worn profiles on other radii than their own.
 
 use crate::contact::InitialContact;
-use crate::grid::{Clustering, lagrange, slip_annulus, stencil_start};
+use crate::grid::{Clustering, Mesh, lagrange};
 use crate::snapshot::{RunFile, Snapshot};
 
 /// Cells of the mesh that gives the common radii.
@@ -31,8 +31,8 @@ impl Shape {
         let inner = edge.map_or(first, |(c, _)| c * c);
         let outer = run.header.radius.last().map_or(0.0, |r| r * r);
         let stretch = if edge.is_some() { (outer / inner).ln() } else { 0.0 };
-        let mesh = slip_annulus(COMMON, stretch, Clustering::Cubic);
-        let radii = mesh[1..COMMON].iter().map(|x| (inner + x * (outer - inner)).sqrt()).collect();
+        let mesh = Mesh::new(COMMON, stretch, Clustering::Cubic);
+        let radii = mesh.nodes()[1..COMMON].iter().map(|x| (inner + x * (outer - inner)).sqrt()).collect();
         Self { edge, radii }
     }
 
@@ -77,7 +77,7 @@ impl Shape {
 fn cubic(nodes: &[f64], values: &[f64], x: f64) -> f64 {
     let points = POINTS.min(nodes.len());
     let cell = nodes.partition_point(|node| *node < x).clamp(1, nodes.len().max(2) - 1);
-    let start = stencil_start(cell, points, nodes.len()) - 1;
+    let start = Mesh::stencil(cell, points, nodes.len()).start - 1;
     let start = start.min(nodes.len() - points);
     let mut weights = [0.0; POINTS];
     lagrange(&nodes[start..start + points], x, &mut weights[..points]);

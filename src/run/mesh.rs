@@ -1,0 +1,171 @@
+//! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
+
+use super::{BYTES_PER_PAIR, memory_figure, springs_for};
+use crate::closed_form::LimitingShape;
+use crate::contact::InitialContact;
+use crate::error::{Error, Result};
+use crate::grid::Clustering;
+use crate::model::{Model, OperatorStore, Schedule};
+use crate::scene::{Numerics, Stepper};
+
+/// Grading below which nodes cluster as `N^-2` at the edge of stick. There the depth of the limit is nearly linear, so that finer ones resolve
+/// nothing, and where the pressure at the edge blows up they are unstable (docs/extremes.md).
+const STEEP_SOFTENING: f64 = -0.5;
+
+/// Largest error of the unworn compressions, over `q_c`, with springs asked for by number.
+const COARSEST: f64 = 0.05;
+
+/// The same with springs chosen by the program.
+const COARSE: f64 = 0.01;
+
+/// Largest error of the limit's worn volume, relative, with springs asked for by number.
+const COARSEST_VOLUME: f64 = 0.1;
+
+/// Largest round-off in the logarithm of the unworn slip, which is zero: next to the edge of stick slip is the difference of nearly equal
+/// numbers.
+const ROUND_OFF: f64 = 1e-2;
+
+/// By how much the number of springs is raised that do not do.
+const RAISE: f64 = 1.3;
+
+/// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
+const MOST_RAISED: usize = 600;
+
+/// How well a mesh carries what is known beforehand.
+struct Quality {
+    /// Largest error of the unworn compressions over `q_c`.
+    compression: f64,
+    /// Relative error of the limit's worn volume.
+    volume: f64,
+    /// Largest logarithm of the unworn slip over itself.
+    round_off: f64,
+}
+
+/// The model of a scene on a mesh that carries it.
+///
+/// # Errors
+/// [`Error::Inconsistent`] if the springs asked for do not carry the scene or do not fit into memory; those of [`Model::under`].
+pub(super) fn model(
+    contact: &InitialContact,
+    schedule: &Schedule,
+    numerics: &Numerics,
+    store: &OperatorStore,
+) -> Result<Model> {
+    let given = numerics.springs;
+    let mut springs = given.unwrap_or_else(|| springs_for(numerics.accuracy));
+    let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
+    check_memory(key, springs)?;
+    let grading = contact.half_space().grading();
+    let clusterings: &[Clustering] = match numerics.stepper {
+        Stepper::Implicit if schedule.wears_smoothly() => &[Clustering::Smooth, Clustering::CreepingStick],
+        _ if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
+        Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
+        Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
+    };
+    let allowed = match given {
+        Some(_) => Quality { compression: COARSEST, volume: COARSEST_VOLUME, round_off: ROUND_OFF },
+        None => Quality { compression: COARSE, volume: numerics.accuracy, round_off: ROUND_OFF },
+    };
+    loop {
+        let mut found = None;
+        for clustering in clusterings {
+            let model = Model::under(contact, schedule.clone(), springs, *clustering, store)?;
+            // Where the edge of stick moves or the contact slides as a whole, what is known beforehand belongs to another mesh.
+            if model.moving().is_some() || model.slides() {
+                return Ok(model);
+            }
+            let quality = Quality::of(&model)?;
+            if quality.within(&allowed) {
+                return Ok(model);
+            }
+            found = Some(quality);
+        }
+        let raised = (RAISE * springs as f64).ceil() as usize;
+        if given.is_some() || raised > MOST_RAISED {
+            let quality = found.expect("there is a clustering");
+            return Err(too_coarse(contact, springs, given.is_some(), &quality));
+        }
+        springs = raised;
+    }
+}
+
+impl Quality {
+    fn of(model: &Model) -> Result<Self> {
+        let contact = model.contact();
+        let unusable = Self { compression: f64::INFINITY, volume: f64::INFINITY, round_off: f64::INFINITY };
+        let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
+        let (Ok(state), Some(stick_radius)) = (model.initial_state(), stick_radius) else {
+            return Ok(unusable);
+        };
+        let most = contact.slip_compression();
+        let nodes = &model.operators().nodes()[1..];
+        let exact = |x: f64| most - contact.equivalent_profile().rise(stick_radius, state.edge * x);
+        let errors = state.compression.iter().zip(nodes).map(|(q, x)| (q - exact(*x)).abs() / most);
+        let fields = model.fields(&state);
+        let known = LimitingShape::from_contact(contact)?.map(|limit| limit.wear_volume());
+        let volume = known.map_or(0.0, |known| (model.limit_volume() / known - 1.0).abs());
+        Ok(Self {
+            compression: largest(errors),
+            volume: largest(std::iter::once(volume)),
+            round_off: largest(fields.log_slip.iter().map(|log| log.abs())),
+        })
+    }
+
+    fn within(&self, allowed: &Self) -> bool {
+        self.compression <= allowed.compression
+            && self.volume <= allowed.volume
+            && self.round_off <= allowed.round_off
+    }
+}
+
+/// The largest of some magnitudes; infinite where one is not a number.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |most: f64, value| if value.is_nan() { f64::INFINITY } else { most.max(value) })
+}
+
+fn too_coarse(contact: &InitialContact, springs: usize, by_hand: bool, quality: &Quality) -> Error {
+    let ratio = contact.stick_logarithm().map_or(0.0, |logarithm| (-logarithm).exp());
+    let off = if quality.compression.is_finite() {
+        format!(
+            "off by {:.1e} of the largest compression, the limit's volume by {:.1e} of itself, slip by {:.1e} of itself",
+            quality.compression, quality.volume, quality.round_off
+        )
+    } else {
+        "not found at all".into()
+    };
+    let what = if by_hand { "numerics.springs" } else { "numerics.accuracy" };
+    let more = if quality.round_off > ROUND_OFF && quality.compression < COARSE { "fewer" } else { "more" };
+    let cure = if by_hand {
+        format!("ask for {more} springs (numerics.accuracy chooses), or for a smaller amplitude")
+    } else {
+        "ask for a smaller amplitude, or for more springs by hand (numerics.springs)".into()
+    };
+    let why = format!(
+        "{springs} springs do not carry this contact, whose stick radius is {ratio:.3e} of the contact radius: with them the unworn contact is \
+         {off}; {cure}"
+    );
+    Error::Inconsistent { what, why }
+}
+
+/// Refuses springs for which the dense operators do not fit into the memory that is free.
+fn check_memory(key: &'static str, springs: usize) -> Result<()> {
+    let needed = BYTES_PER_PAIR * (springs as f64).powi(2);
+    let Some(free) = free_memory() else { return Ok(()) };
+    if needed < free {
+        return Ok(());
+    }
+    Err(Error::Inconsistent {
+        what: key,
+        why: format!(
+            "{springs} springs need {:.1} GB for their operators and {:.1} GB are free; ask for at most {} (numerics.springs)",
+            needed * 1e-9,
+            free * 1e-9,
+            (free / BYTES_PER_PAIR).sqrt().floor()
+        ),
+    })
+}
+
+/// Free memory, bytes, where the system tells.
+fn free_memory() -> Option<f64> {
+    memory_figure("/proc/meminfo", "MemAvailable:")
+}
