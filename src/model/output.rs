@@ -7,6 +7,9 @@ use crate::linear::dot;
 use crate::slip_depth::UnwornValues;
 use crate::stick_slip::Regime;
 
+/// Distance from the contact edge, over the annulus, that is round-off.
+const AT_EDGE: f64 = 1e-13;
+
 /// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
 /// innermost of them may be as strong as the core.
 const MIDDLE: f64 = 2.0;
@@ -137,7 +140,7 @@ impl Model {
         };
         let z = offset - passed;
         let x = z / fields.edge;
-        if x <= 0.0 || x >= 1.0 {
+        if x <= 0.0 || x >= 1.0 - AT_EDGE {
             return 0.0;
         }
         let mesh = self.operators.abel.mesh();
@@ -171,7 +174,7 @@ impl Model {
             if let Some(worn) = state.stick.as_ref().and_then(|stick| stick.wear_depth.get(i)) {
                 radial.wear_depth[i] = *worn;
             }
-            if x >= 1.0 {
+            if x >= 1.0 - AT_EDGE {
                 break;
             }
             if x <= 0.0 {

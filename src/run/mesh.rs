@@ -12,6 +12,9 @@ use crate::scene::{Numerics, Stepper};
 /// nothing, and where the pressure at the edge blows up they are unstable (docs/extremes.md).
 const STEEP_SOFTENING: f64 = -0.5;
 
+/// `ln(a0/c)` from which on, there, polynomials of high degree do not survive that either.
+const SMALL_STICK: f64 = 1.5;
+
 /// Largest error of the unworn compressions, over `q_c`, with springs asked for by number.
 const COARSEST: f64 = 0.05;
 
@@ -56,8 +59,12 @@ pub(super) fn model(
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
     check_memory(key, springs)?;
     let grading = contact.half_space().grading();
+    let concentrated = grading < STEEP_SOFTENING
+        && contact.stick_logarithm().is_some_and(|logarithm| logarithm > SMALL_STICK);
     let clusterings: &[Clustering] = match numerics.stepper {
-        Stepper::Implicit if schedule.wears_smoothly() => &[Clustering::Smooth, Clustering::CreepingStick],
+        Stepper::Implicit if schedule.wears_smoothly() && !concentrated => {
+            &[Clustering::Smooth, Clustering::CreepingStick]
+        }
         _ if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
         Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
         Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
