@@ -5,6 +5,9 @@ use std::ops::Range;
 /// Most nodes of a local polynomial on a [`Mesh`].
 pub const MOST_POINTS: usize = 6;
 
+/// Least stretch of a smooth mesh.
+const SMOOTH_STRETCH: f64 = 10.0;
+
 /// How nodes cluster at the two ends of the slip annulus, and the degree of the polynomials between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clustering {
@@ -39,10 +42,16 @@ impl Clustering {
         if self == Self::Smooth { 5 } else { 3 }
     }
 
-    /// Stretch `Λ` of the mesh where the limit's area is `e^natural` times that of the stick zone.
-    fn stretch(self, natural: f64) -> f64 {
-        // By e^-10 of the annulus the front next to the edge of stick has passed from what the output shows.
-        if self == Self::Smooth { (natural + 3.0).max(10.0) } else { natural }
+    /// Stretch `Λ` of the mesh at a grading where the limit's area is `e^natural` times that of the stick zone.
+    ///
+    /// On a smooth mesh the front next to the edge of stick is followed to far within what the output shows; as `k → 1` it is as high there as
+    /// anywhere.
+    pub fn stretch(self, natural: f64, grading: f64) -> f64 {
+        if self == Self::Smooth {
+            (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0))
+        } else {
+            natural
+        }
     }
 }
 
@@ -90,12 +99,12 @@ impl Mesh {
     ///
     /// # Arguments
     /// * `cells` -- number of cells `n`, more than the degree of the clustering
-    /// * `natural_stretch` -- `ln(a²/c²) >= 0`, which spreads the nodes evenly in `ln s` where the stick zone is small
+    /// * `stretch` -- `Λ >= 0`; [`Clustering::stretch`] proposes it
     /// * `clustering` -- at the ends
     ///
     /// # Panics
     /// If there are too few cells.
-    pub fn new(cells: usize, natural_stretch: f64, clustering: Clustering) -> Self {
+    pub fn new(cells: usize, stretch: f64, clustering: Clustering) -> Self {
         assert!(
             cells > clustering.degree(),
             "{cells} cells for polynomials of degree {}",
@@ -104,7 +113,7 @@ impl Mesh {
         let (low, high) = clustering.exponents();
         let mut mesh = Self {
             clustering,
-            stretch: clustering.stretch(natural_stretch),
+            stretch,
             rising: incomplete_beta(low, high),
             falling: incomplete_beta(high, low),
             ends: Vec::new(),

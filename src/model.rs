@@ -193,8 +193,9 @@ impl Model {
         let stick_radius_squared = stick_radius * stick_radius;
         let first = contact.contact_radius().powi(2);
         let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_edge()));
-        let stretch = (unworn.limit_edge() / stick_radius_squared).ln_1p();
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
+        let natural = (unworn.limit_edge() / stick_radius_squared).ln_1p();
+        let stretch = clustering.stretch(natural, grading);
         let operators = store.get(grading, stretch, springs, clustering)?;
         let radial_unworn: Vec<_> =
             operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();

@@ -13,7 +13,7 @@ const CELLS: usize = 40;
 const MESHES: [Clustering; 3] = [Clustering::Smooth, Clustering::Cubic, Clustering::MovingStick];
 
 fn operators(grading: f64, cells: usize, clustering: Clustering) -> AbelOperators {
-    AbelOperators::new(grading, Mesh::new(cells, 1.5, clustering)).unwrap()
+    AbelOperators::new(grading, Mesh::new(cells, clustering.stretch(1.5, 0.0), clustering)).unwrap()
 }
 
 /// `F` of the density `(ξ - b)₊^m`: `m! / (Γ(ν) Γ(m+2-ν)) (ξ - b)₊^(m+1-ν)`.

@@ -55,7 +55,7 @@ fn error_of_interpolated_limit(exponent: f64, grading: f64, cells: usize, cluste
     let shape = LimitingShape::from_contact(&contact).unwrap().unwrap();
     let squared = shape.stick_radius().powi(2);
     let limit_edge = shape.contact_radius_limit().powi(2) - squared;
-    let mesh = Mesh::new(cells, (limit_edge / squared).ln_1p(), clustering);
+    let mesh = Mesh::new(cells, clustering.stretch((limit_edge / squared).ln_1p(), grading), clustering);
     let operators = AbelOperators::new(grading, mesh).unwrap();
     let depths = |edge: f64| {
         let density = |x: &f64| {
