@@ -22,7 +22,10 @@ use crate::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Stepp
 use crate::stick_slip::Regime;
 
 mod effort;
+mod knob;
 mod mesh;
+
+use knob::Pilot;
 
 /// Part of the run at which the first of geometrically spread snapshots is taken.
 const FIRST_SNAPSHOT: f64 = 1e-4;
@@ -64,6 +67,8 @@ pub struct Run {
     recorder: Recorder,
     limit: Option<LimitingShape>,
     warning: Option<String>,
+    scene: Scene,
+    store: OperatorStore,
 }
 
 /// What runs of many scenes in one process share.
@@ -127,19 +132,13 @@ impl Run {
         shared: &Shared,
         writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
     ) -> Result<Self> {
-        let parts = Parts::new(scene, shared)?;
+        let parts = Parts::new(scene, scene.numerics(), None, &shared.operators)?;
         let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
         let warning = effort::check(scene.numerics().stepper, &mut simulation)?;
-        let header = RunHeader {
-            title: scene.title().map(str::to_owned),
-            scene: scene.text().to_owned(),
-            radius: simulation.model().radii(),
-            limit: parts.limit.as_ref().map(|limit| limit_curves(simulation.model(), limit)),
-            table: scene.table().cloned(),
-            path: scene.path().cloned(),
-        };
+        let header = header(scene, simulation.model(), parts.limit.as_ref());
         let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
-        Ok(Self { simulation, recorder, limit: parts.limit, warning })
+        let store = shared.operators.clone();
+        Ok(Self { simulation, recorder, limit: parts.limit, warning, scene: scene.clone(), store })
     }
 
     /// Prepares a run that goes on from the last checkpoint in its file.
@@ -181,7 +180,9 @@ impl Run {
             file.header.table.clone(),
             file.header.path.clone(),
         )?;
-        let parts = Parts::new(&scene, shared)?;
+        // As many springs as it came to, however often it was made anew.
+        let springs = Some(checkpoint.state.compression.len() + 1);
+        let parts = Parts::new(&scene, scene.numerics(), springs, &shared.operators)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
             || checkpoint.state.stick.is_some() != parts.model.moving().is_some()
@@ -216,7 +217,9 @@ impl Run {
         let simulation =
             Simulation::resume(parts.model, parts.stepper, parts.tolerance, parts.plan, state, progress);
         let recorder = Recorder::new(&scene, writer(file)?, wall_seconds, shared);
-        Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit: parts.limit, warning: None })))
+        let store = shared.operators.clone();
+        let limit = parts.limit;
+        Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit, warning: None, scene, store })))
     }
 
     /// A word about a run that will take hours, where that is known beforehand.
@@ -242,20 +245,30 @@ impl Run {
     /// # Errors
     /// As [`Run::execute`].
     pub fn execute_keeping(self, progress: Option<&mut dyn Observer>) -> Result<(RunResult, RunFile)> {
-        let Self { mut simulation, mut recorder, limit, .. } = self;
-        let outcome = match progress {
-            Some(progress) => simulation.run(&mut [&mut recorder, progress]),
-            None => simulation.run(&mut [&mut recorder]),
+        let Self { mut simulation, mut recorder, mut limit, scene, store, .. } = self;
+        let mut progress = progress;
+        let mut refinements = 0;
+        let (stop_reason, outcome, checkpoint) = loop {
+            recorder.follow_pilot(&scene, &store, &simulation);
+            let outcome = match progress.as_mut() {
+                Some(progress) => simulation.run(&mut [&mut recorder, &mut **progress]),
+                None => simulation.run(&mut [&mut recorder]),
+            };
+            let checkpoint = recorder.checkpoint(&simulation);
+            if refinements < knob::REFINEMENTS
+                && let Some(springs) = wanting(&scene, &simulation, &outcome, &checkpoint)
+                && let Ok(parts) = Parts::new(&scene, scene.numerics(), Some(springs), &store)
+                && let Ok(finer) = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)
+            {
+                (simulation, limit) = (finer, parts.limit);
+                recorder.writer.restart(header(&scene, simulation.model(), limit.as_ref()));
+                refinements += 1;
+                continue;
+            }
+            break (outcome.as_ref().map(|outcome| StopReason::from(*outcome)).ok(), outcome, checkpoint);
         };
-        let stop_reason = match outcome {
-            Ok(Outcome::End) => StopReason::End,
-            Ok(Outcome::Rate) => StopReason::Rate,
-            Ok(Outcome::WornOut) => StopReason::WornOut,
-            Ok(Outcome::Unending) => StopReason::Unending,
-            Ok(Outcome::Interrupted) | Err(_) => StopReason::Interrupted,
-        };
+        let stop_reason = stop_reason.unwrap_or(StopReason::Interrupted);
         let complete = stop_reason != StopReason::Interrupted;
-        let checkpoint = recorder.checkpoint(&simulation);
         if recorder.saves(complete, outcome.is_err()) {
             recorder.writer.save(&checkpoint, stop_reason, complete)?;
         }
@@ -270,6 +283,51 @@ impl Run {
     }
 }
 
+/// Springs with which a run is to be made anew: where the program chose them, and the run found no end or is off by more than was asked for.
+fn wanting(
+    scene: &Scene,
+    simulation: &Simulation,
+    outcome: &Result<Outcome>,
+    checkpoint: &Checkpoint,
+) -> Option<usize> {
+    let numerics = scene.numerics();
+    let (model, accuracy) = (simulation.model(), numerics.accuracy);
+    if numerics.springs.is_some() || numerics.stepper != StepperChoice::Implicit || !knob::serves(model) {
+        return None;
+    }
+    let error = match outcome {
+        Ok(Outcome::Interrupted) => return None,
+        Ok(_) => Some(checkpoint.error_estimate.filter(|error| *error > accuracy)?),
+        Err(Error::NotConverged { .. }) => None,
+        Err(_) => return None,
+    };
+    Some(knob::refined(model.springs(), error, accuracy))
+}
+
+/// What of a run does not change.
+fn header(scene: &Scene, model: &Model, limit: Option<&LimitingShape>) -> RunHeader {
+    RunHeader {
+        title: scene.title().map(str::to_owned),
+        scene: scene.text().to_owned(),
+        radius: model.radii(),
+        limit: limit.map(|limit| limit_curves(model, limit)),
+        table: scene.table().cloned(),
+        path: scene.path().cloned(),
+    }
+}
+
+impl From<Outcome> for StopReason {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::End => Self::End,
+            Outcome::Rate => Self::Rate,
+            Outcome::WornOut => Self::WornOut,
+            Outcome::Unending => Self::Unending,
+            Outcome::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
 /// Everything that follows from a scene alone.
 struct Parts {
     model: Model,
@@ -280,18 +338,20 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(scene: &Scene, shared: &Shared) -> Result<Self> {
+    /// # Arguments
+    /// * `numerics` -- those of the scene, or coarser ones
+    /// * `wanted` -- springs where none are given by hand, instead of those for the accuracy
+    fn new(scene: &Scene, numerics: &Numerics, wanted: Option<usize>, store: &OperatorStore) -> Result<Self> {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
-        let numerics = scene.numerics();
         check_start(numerics)?;
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
-        let model = mesh::model(&contact, &schedule, numerics, &shared.operators)?;
+        let model = mesh::model(&contact, &schedule, numerics, wanted, store)?;
         check_sliding(&model)?;
         let unlimited = model.slides() || scene.conditions().holds_normal_force;
         let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
         check_stepper(numerics.stepper, &model)?;
-        let tolerance = numerics.tolerance.unwrap_or_else(|| tolerance_for(numerics.accuracy));
+        let tolerance = numerics.tolerance.unwrap_or_else(|| knob::tolerance_for(numerics.accuracy));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
@@ -359,16 +419,6 @@ fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
 /// How periods are passed through.
 fn resolution(numerics: &Numerics) -> Resolution {
     Resolution { resolved: numerics.cycle == Some(Cycle::Resolved), substeps: numerics.substeps }
-}
-
-/// Springs that keep the error of the worn volume, of third order, below `accuracy` in the scenes measured (docs/numerics.md).
-fn springs_for(accuracy: f64) -> usize {
-    (120.0 * (1e-4 / accuracy).cbrt()).ceil() as usize
-}
-
-/// Tolerance of one step that keeps the accumulated error of the time stepping below `accuracy`.
-fn tolerance_for(accuracy: f64) -> f64 {
-    0.3 * accuracy
 }
 
 /// A figure of memory, bytes, from a table of the system in kilobytes.
@@ -496,6 +546,7 @@ struct Recorder {
     stop: Arc<AtomicBool>,
     /// Whether a file is to hold the result; else only checkpoints are written.
     saves_result: bool,
+    pilot: Option<Pilot>,
 }
 
 impl Recorder {
@@ -506,7 +557,16 @@ impl Recorder {
         let interval = shared.checkpoint_interval.unwrap_or(scene.numerics().checkpoint_interval);
         let interval = Duration::from_secs_f64(interval);
         let (now, stop) = (Instant::now(), Arc::clone(&shared.stop));
-        Self { writer, interval, started: now, saved: now, wall_seconds_before, stop, saves_result: true }
+        Self {
+            writer,
+            interval,
+            started: now,
+            saved: now,
+            wall_seconds_before,
+            stop,
+            saves_result: true,
+            pilot: None,
+        }
     }
 
     /// Whether the file is written where the run ends.
@@ -515,12 +575,30 @@ impl Recorder {
         self.saves_result || (!complete && !failed && long)
     }
 
+    /// Lets a pilot run go before one whose springs the program chose.
+    fn follow_pilot(&mut self, scene: &Scene, store: &OperatorStore, simulation: &Simulation) {
+        let model = simulation.model();
+        let chosen = scene.numerics().springs.is_none()
+            && scene.numerics().stepper == StepperChoice::Implicit
+            && knob::serves(model);
+        self.pilot = chosen
+            .then(|| Pilot::run(scene, store, model.springs(), simulation.tolerance(), &self.stop))
+            .flatten();
+    }
+
+    /// By the pilot where there is one that saw a snapshot, else by the balance of the worn volume.
+    fn error_estimate(&self, simulation: &Simulation) -> Option<f64> {
+        let by_pilot = self.pilot.as_ref();
+        let error = by_pilot.and_then(|it| it.error_of(simulation.model(), self.writer.snapshots()));
+        error.or_else(|| balance_error(simulation))
+    }
+
     fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
         Checkpoint {
             state: simulation.state().clone(),
             progress: *simulation.progress(),
             wall_seconds: self.wall_seconds_before + self.started.elapsed().as_secs_f64(),
-            error_estimate: error_estimate(simulation),
+            error_estimate: self.error_estimate(simulation),
         }
     }
 }
@@ -548,7 +626,7 @@ impl Observer for Recorder {
 /// Where worn volume and dissipated energy are in proportion, as under Archard's law and Coulomb's friction (`μ_f/k_w`), that volume is the
 /// energy's, a balance that holds for the continuous contact between springs and surface. Else it is the integral of what the surface
 /// loses in each cycle, and tells of the time stepping alone.
-fn error_estimate(simulation: &Simulation) -> Option<f64> {
+fn balance_error(simulation: &Simulation) -> Option<f64> {
     let (model, state) = (simulation.model(), simulation.state());
     if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
         return None;

@@ -197,6 +197,11 @@ impl Simulation {
         &self.model
     }
 
+    /// The model alone, when nothing more is to be simulated.
+    pub fn into_model(self) -> Model {
+        self.model
+    }
+
     /// The state reached.
     pub fn state(&self) -> &State {
         &self.state

@@ -22,13 +22,17 @@ pub(super) struct Operators {
 /// What tells operators apart: the bits of the grading and of the stretch of the mesh, number of springs and clustering.
 type Key = (u64, u64, usize, Clustering);
 
+type Kept = Vec<(Key, Arc<Operators>)>;
+
 /// Operators used last, for all the models of a process.
 ///
 /// Models share them when grading, number of springs and the ratio `a∞/c` agree to the last bit: scenes that differ in load, friction,
 /// wear or stiffness at one stick ratio. A model is the same bit for bit whether its operators were shared or not.
-#[derive(Debug, Default)]
+///
+/// A clone is the same store.
+#[derive(Debug, Clone, Default)]
 pub struct OperatorStore {
-    kept: Mutex<Vec<(Key, Arc<Operators>)>>,
+    kept: Arc<Mutex<Kept>>,
 }
 
 impl OperatorStore {

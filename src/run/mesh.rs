@@ -1,6 +1,7 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
-use super::{BYTES_PER_PAIR, memory_figure, springs_for};
+use super::knob::springs_for;
+use super::{BYTES_PER_PAIR, memory_figure};
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -12,8 +13,8 @@ use crate::scene::{Numerics, Stepper};
 /// nothing, and where the pressure at the edge blows up they are unstable (docs/extremes.md).
 const STEEP_SOFTENING: f64 = -0.5;
 
-/// `ln(a0/c)` from which on, there, polynomials of high degree do not survive that either.
-const SMALL_STICK: f64 = 1.5;
+/// `ln(g(a0)/g(c))` from which on, there, polynomials of high degree do not survive that either.
+const SMALL_STICK: f64 = 3.0;
 
 /// Largest error of the unworn compressions, over `q_c`, with springs asked for by number.
 const COARSEST: f64 = 0.05;
@@ -46,18 +47,19 @@ struct Quality {
 
 /// The model of a scene on a mesh that carries it.
 ///
+/// # Arguments
+/// * `wanted` -- springs to begin with where none are given by hand, instead of those for the accuracy
+///
 /// # Errors
 /// [`Error::Inconsistent`] if the springs asked for do not carry the scene or do not fit into memory; those of [`Model::under`].
 pub(super) fn model(
     contact: &InitialContact,
     schedule: &Schedule,
     numerics: &Numerics,
+    wanted: Option<usize>,
     store: &OperatorStore,
 ) -> Result<Model> {
     let given = numerics.springs;
-    let mut springs = given.unwrap_or_else(|| springs_for(numerics.accuracy));
-    let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
-    check_memory(key, springs)?;
     let grading = contact.half_space().grading();
     let concentrated = grading < STEEP_SOFTENING
         && contact.stick_logarithm().is_some_and(|logarithm| logarithm > SMALL_STICK);
@@ -69,6 +71,10 @@ pub(super) fn model(
         Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
         Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
     };
+    let chosen = || springs_for(clusterings[0], contact, numerics.accuracy);
+    let mut springs = given.or(wanted).unwrap_or_else(chosen);
+    let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
+    check_memory(key, springs)?;
     let allowed = match given {
         Some(_) => Quality { compression: COARSEST, volume: COARSEST_VOLUME, round_off: ROUND_OFF },
         None => Quality { compression: COARSE, volume: numerics.accuracy, round_off: ROUND_OFF },

@@ -39,6 +39,15 @@ enum Target {
     Later(PathBuf),
 }
 
+impl RunHeader {
+    fn check(&self) {
+        assert!(!self.radius.is_empty(), "a run has at least one node");
+        for curve in self.limit.iter().flat_map(|limit| [&limit.profile, &limit.wear_depth]) {
+            assert_eq!(curve.len(), self.radius.len(), "values of the limit, nodes");
+        }
+    }
+}
+
 impl RunWriter {
     /// A writer of a new file. Checks that the file can be written; creates nothing before the first save.
     ///
@@ -63,16 +72,23 @@ impl RunWriter {
         snapshots: Vec<Snapshot>,
         overwrite: bool,
     ) -> Result<Self> {
-        assert!(!header.radius.is_empty(), "a run has at least one node");
-        for curve in header.limit.iter().flat_map(|limit| [&limit.profile, &limit.wear_depth]) {
-            assert_eq!(curve.len(), header.radius.len(), "values of the limit, nodes");
-        }
+        header.check();
         Ok(Self { file: Target::Ready(AtomicFile::new(path, overwrite)?), header, snapshots })
     }
 
     /// A writer that does not look at its file before the first save, which replaces what is there.
     pub fn deferred(path: &Path, header: RunHeader) -> Self {
         Self { file: Target::Later(path.to_owned()), header, snapshots: Vec::new() }
+    }
+
+    /// Forgets the snapshots so far, for a run that is made anew; what was saved stays until the next save.
+    ///
+    /// # Panics
+    /// As [`RunWriter::create`].
+    pub fn restart(&mut self, header: RunHeader) {
+        header.check();
+        self.header = header;
+        self.snapshots.clear();
     }
 
     /// Header and snapshots, when nothing more is to be written.

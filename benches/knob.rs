@@ -1,0 +1,233 @@
+//! Whether `numerics.accuracy` gives what is asked for: random scenes against a converged reference.
+//!
+//! `cargo bench --bench knob -- 200` prints the tables of docs/accuracy.md for so many scenes (default 200) of a fixed seed: how often the
+//! actual error is within the asked one, how often the estimate is within a factor of five of it, and the misses. Errors are the largest
+//! over all snapshots, of the worn volume relative to the limit's or of the profile at any radius of the run relative to the limit's
+//! largest depth. A second number is the seed.
+
+use std::time::Instant;
+
+use fretwear::error::Result;
+use fretwear::grid::Clustering;
+use fretwear::model::{Model, State};
+use fretwear::run::{Run, Shared};
+use fretwear::scene::Scene;
+use fretwear::simulation::{End, Observer, Plan, Simulation};
+use fretwear::snapshot::RunFile;
+use fretwear::stepper::Implicit;
+
+const ACCURACIES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
+const REFERENCE: (usize, f64) = (160, 2e-8);
+/// The same with which the reference is itself judged.
+const SECOND: (usize, f64) = (112, 6e-8);
+
+/// Uniform numbers in [0, 1): xorshift64 (Marsaglia 2003).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A scene: grading, exponent of the indenter, stick ratio, dimensionless time at the end.
+#[derive(Debug, Clone, Copy)]
+struct Case {
+    grading: f64,
+    exponent: f64,
+    stick_ratio: f64,
+    tau: f64,
+}
+
+impl Case {
+    fn random(random: &mut Random) -> Self {
+        Self {
+            grading: -0.9 + 1.85 * random.next(),
+            exponent: 0.5 * 16f64.powf(random.next()),
+            stick_ratio: 0.05 + 0.92 * random.next(),
+            tau: 0.3 * 300f64.powf(random.next()),
+        }
+    }
+
+    fn text(&self, numerics: &str) -> String {
+        format!(
+            "[indenter.power-law]\ncoefficient = 1.0\nexponent = {}\n[half_space]\ngrading = {}\nnormal_stiffness = 1e9\nstiffness_ratio = 1.0\n\
+             [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1e-14\n[loading]\nindentation = 1e-6\nstick_ratio = {}\n\
+             tau = {}\n[numerics]\n{numerics}\n",
+            self.exponent, self.grading, self.stick_ratio, self.tau
+        )
+    }
+
+    fn scene(&self, numerics: &str) -> Result<Scene> {
+        Scene::from_toml(&self.text(numerics), "case.toml")
+    }
+}
+
+/// A run of which every depth at the outputs can be asked for.
+struct Reference {
+    model: Model,
+    states: Vec<State>,
+}
+
+#[derive(Default)]
+struct Seen(Vec<State>);
+
+impl Observer for Seen {
+    fn output(&mut self, simulation: &Simulation) -> Result<()> {
+        self.0.push(simulation.state().clone());
+        Ok(())
+    }
+}
+
+impl Reference {
+    fn new(case: &Case, (springs, tolerance): (usize, f64), cycles: &[f64]) -> Result<Self> {
+        let contact = case.scene("")?.contact()?;
+        let model = Model::new(&contact, springs, Clustering::Smooth)?;
+        let plan = Plan { outputs: cycles.to_vec(), end: End::Cycles(cycles[cycles.len() - 1]) };
+        let mut seen = Seen::default();
+        let mut simulation = Simulation::new(model, Box::new(Implicit::new(tolerance)), tolerance, plan)?;
+        simulation.run(&mut [&mut seen])?;
+        Ok(Self { model: simulation.into_model(), states: seen.0 })
+    }
+
+    /// Largest errors of volume and depth.
+    fn errors(&self, radii: &[f64], volumes_and_depths: &[(f64, Vec<f64>)]) -> (f64, f64) {
+        let stick_area = self.model.contact().stick_radius().expect("partial slip").powi(2);
+        let (mut volume, mut depth) = (0.0_f64, 0.0_f64);
+        for (state, (worn, depths)) in self.states[1..].iter().zip(volumes_and_depths) {
+            let fields = self.model.fields(state);
+            volume = volume.max((self.model.wear_volume(&fields) - worn).abs() / self.model.limit_volume());
+            for (r, w) in radii.iter().zip(depths) {
+                let exact = self.model.wear_depth_at(state, &fields, r * r - stick_area);
+                depth = depth.max((w - exact).abs() / self.model.depth_scale());
+            }
+        }
+        (volume, depth)
+    }
+
+    /// What another reference shows at its own radii.
+    fn shown(&self) -> Vec<(f64, Vec<f64>)> {
+        let shown = |state: &State| {
+            let fields = self.model.fields(state);
+            let depth = |offset: &f64| self.model.wear_depth_at(state, &fields, *offset);
+            (self.model.wear_volume(&fields), self.model.offsets().iter().map(depth).collect())
+        };
+        self.states[1..].iter().map(shown).collect()
+    }
+}
+
+fn shown(file: &RunFile) -> Vec<(f64, Vec<f64>)> {
+    file.snapshots[1..].iter().map(|it| (it.wear_volume, it.wear_depth.clone())).collect()
+}
+
+struct Row {
+    case: Case,
+    accuracy: f64,
+    springs: usize,
+    steps: u64,
+    milliseconds: f64,
+    volume: f64,
+    depth: f64,
+    estimate: f64,
+    uncertainty: f64,
+}
+
+fn judge(case: &Case) -> Result<Vec<Row>> {
+    let folder = std::env::temp_dir();
+    let mut rows = vec![];
+    let mut references: Option<(Reference, f64)> = None;
+    for accuracy in ACCURACIES {
+        let scene = case.scene(&format!("accuracy = {accuracy:e}"))?;
+        let begun = Instant::now();
+        let run = Run::one_of_many(&scene, &folder.join("never-written.h5"), &Shared::default())?;
+        let (result, file) = run.execute_keeping(None)?;
+        let milliseconds = 1e3 * begun.elapsed().as_secs_f64();
+        if references.is_none() {
+            let cycles: Vec<f64> = file.snapshots[1..].iter().map(|it| it.cycles).collect();
+            let reference = Reference::new(case, REFERENCE, &cycles)?;
+            let second = Reference::new(case, SECOND, &cycles)?;
+            let off = reference.errors(&second.model.radii(), &second.shown());
+            references = Some((reference, off.0.max(off.1)));
+        }
+        let (reference, uncertainty) = references.as_ref().expect("made above");
+        let (volume, depth) = reference.errors(&file.header.radius, &shown(&file));
+        rows.push(Row {
+            case: *case,
+            accuracy,
+            springs: result.checkpoint.state.compression.len() + 1,
+            steps: result.checkpoint.progress.steps,
+            milliseconds,
+            volume,
+            depth,
+            estimate: result.checkpoint.error_estimate.unwrap_or(f64::NAN),
+            uncertainty: *uncertainty,
+        });
+    }
+    Ok(rows)
+}
+
+fn main() {
+    let numbers: Vec<u64> = std::env::args().filter_map(|it| it.parse().ok()).collect();
+    let (count, seed) = (numbers.first().copied().unwrap_or(200), numbers.get(1).copied().unwrap_or(2019));
+    let mut random = Random(seed);
+    for _ in 0..20 {
+        random.next();
+    }
+    let mut rows = vec![];
+    for _ in 0..count {
+        let case = Case::random(&mut random);
+        match judge(&case) {
+            Ok(found) => rows.extend(found),
+            Err(error) => println!("{case:?}: {error}"),
+        }
+    }
+    println!(
+        "| asked | runs | within | estimate within 5 | error/asked: median, 90 %, 98 % | error/estimate: 5 %, median, 95 % | springs | steps | ms |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for accuracy in ACCURACIES {
+        let of: Vec<&Row> = rows.iter().filter(|row| row.accuracy == accuracy).collect();
+        let error = |row: &Row| row.volume.max(row.depth);
+        let share =
+            |is: &dyn Fn(&Row) -> bool| of.iter().filter(|row| is(row)).count() as f64 / of.len() as f64;
+        let quantile = |value: &dyn Fn(&Row) -> f64, part: f64| {
+            let mut all: Vec<f64> = of.iter().map(|row| value(row)).collect();
+            all.sort_by(f64::total_cmp);
+            all[((all.len() - 1) as f64 * part).round() as usize]
+        };
+        let used = |row: &Row| error(row) / accuracy;
+        let told = |row: &Row| error(row) / row.estimate;
+        println!(
+            "| {accuracy:e} | {} | {:.1} % | {:.1} % | {:.2}, {:.2}, {:.2} | {:.2}, {:.2}, {:.2} | {} | {} | {:.1} |",
+            of.len(),
+            100.0 * share(&|row| error(row) <= accuracy),
+            100.0 * share(&|row| (0.2..=5.0).contains(&told(row))),
+            quantile(&used, 0.5),
+            quantile(&used, 0.9),
+            quantile(&used, 0.98),
+            quantile(&told, 0.05),
+            quantile(&told, 0.5),
+            quantile(&told, 0.95),
+            quantile(&|row| row.springs as f64, 0.5),
+            quantile(&|row| row.steps as f64, 0.5),
+            quantile(&|row| row.milliseconds, 0.5),
+        );
+    }
+    println!("\nMisses, and estimates off by more than a factor of five:\n");
+    println!(
+        "| k | n | c/a0 | τ | asked | volume | depth | estimate | springs | reference ± |\n|---|---|---|---|---|---|---|---|---|---|"
+    );
+    for row in &rows {
+        let error = row.volume.max(row.depth);
+        if error > row.accuracy || !(0.2..=5.0).contains(&(error / row.estimate)) {
+            let Case { grading, exponent, stick_ratio, tau } = row.case;
+            println!(
+                "| {grading:.3} | {exponent:.2} | {stick_ratio:.3} | {tau:.2} | {:e} | {:.1e} | {:.1e} | {:.1e} | {} | {:.0e} |",
+                row.accuracy, row.volume, row.depth, row.estimate, row.springs, row.uncertainty
+            );
+        }
+    }
+}

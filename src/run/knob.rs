@@ -1,0 +1,155 @@
+//! What `numerics.accuracy` chooses, and how the error of what comes of it is known.
+//!
+//! Springs and tolerance follow from the measured errors of random scenes (docs/accuracy.md). A pilot run on fewer springs, with larger steps,
+//! then sees the same snapshots: what the two differ by tells the error of the finer one, since that of the pilot is known to be so many times
+//! as large. Where it is more than was asked for, the run is made anew on more springs.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::Parts;
+use crate::contact::InitialContact;
+use crate::error::Result;
+use crate::grid::Clustering;
+use crate::model::{Model, OperatorStore, State};
+use crate::scene::{Numerics, Scene};
+use crate::simulation::{Flow, Observer, Outcome, Simulation};
+use crate::snapshot::Snapshot;
+
+/// Error of the profile on 24 springs of a smooth mesh, and the power with which it falls, fitted to 118 random scenes on 16 to 54 springs:
+/// `ln e = A + B k + C ln n + D ln(a0/c) + E ln n ln(a0/c)` with `k > 0` or zero. Nine of ten lie within a factor of 2.8, 98 of 100 below 7.7.
+const ERROR: [f64; 5] = [-10.0, 2.9, 0.30, 0.36, 0.30];
+const ORDER: [f64; 2] = [4.5, 1.3];
+const FITTED_SPRINGS: f64 = 24.0;
+
+/// Part of the accuracy asked for that the fitted error may take up, so that scenes off the fit keep to it too.
+const MARGIN: f64 = 0.25;
+
+/// Fewest and most springs that the fit gives; on fewer than 18 the errors of half of the scenes are off the fit.
+const FEWEST: f64 = 14.0;
+const FEWEST_BELOW_A_HUNDREDTH: f64 = 18.0;
+const MOST: f64 = 600.0;
+
+/// Springs of the pilot over those of the run, at least [`FEWEST_OF_PILOT`], and its tolerance over that of the run.
+const PILOT_SPRINGS: f64 = 0.67;
+const PILOT_TOLERANCE: f64 = 5.0;
+const FEWEST_OF_PILOT: usize = 10;
+
+/// Error of a run over its difference from its pilot, in the middle of the random scenes: on smooth meshes, and on those of cubics.
+const ERROR_PER_DIFFERENCE: [f64; 2] = [0.25, 0.6];
+
+/// How often a run is made anew, and by which factors its springs are raised.
+pub(super) const REFINEMENTS: usize = 3;
+const RAISES: [f64; 2] = [1.15, 2.0];
+
+/// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
+const CAUTIOUS_ORDER: f64 = 4.0;
+const AIM: f64 = 0.6;
+
+/// Cycles of two runs are the same up to this part of them.
+const SAME_CYCLES: f64 = 1e-9;
+
+/// Whether a pilot tells the error of runs on a model.
+pub(super) fn serves(model: &Model) -> bool {
+    model.schedule().wears_smoothly() && model.moving().is_none() && !model.slides()
+}
+
+/// Springs that keep the error of volume and profile below `accuracy`.
+pub(super) fn springs_for(clustering: Clustering, contact: &InitialContact, accuracy: f64) -> usize {
+    if clustering != Clustering::Smooth {
+        // The worn volume is of third order there (docs/numerics.md).
+        return (120.0 * (1e-4 / accuracy).cbrt()).ceil() as usize;
+    }
+    let grading = contact.half_space().grading().max(0.0);
+    let exponent = contact.equivalent_profile().exponent().unwrap_or(2.0).ln();
+    let smallness = contact.stick_logarithm().map_or(0.0, |logarithm| -logarithm);
+    let [a, b, c, d, e] = ERROR;
+    let error = (a + b * grading + c * exponent + d * smallness + e * exponent * smallness).exp();
+    let order = ORDER[0] + ORDER[1] * grading;
+    let fewest = if accuracy < 1e-2 { FEWEST_BELOW_A_HUNDREDTH } else { FEWEST };
+    (FITTED_SPRINGS * (error / (MARGIN * accuracy)).powf(order.recip())).clamp(fewest, MOST).ceil() as usize
+}
+
+/// Tolerance of one step that keeps the accumulated error of the time stepping below half of `accuracy`: errors come to 0.2 of the tolerance
+/// where steps are few and to 0.8 where they are many.
+pub(super) fn tolerance_for(accuracy: f64) -> f64 {
+    (0.6 * (accuracy / 1e-4).powf(0.3)).clamp(0.4, 2.0) * accuracy
+}
+
+/// Springs with which a run is made anew that was off by `error`, or found no end.
+pub(super) fn refined(springs: usize, error: Option<f64>, accuracy: f64) -> usize {
+    let factor =
+        error.map_or(RAISES[1].sqrt(), |error| (error / (AIM * accuracy)).powf(CAUTIOUS_ORDER.recip()));
+    (springs as f64 * factor.clamp(RAISES[0], RAISES[1])).ceil() as usize
+}
+
+/// A coarser run of the same scene, for what it differs by.
+#[derive(Debug)]
+pub(super) struct Pilot {
+    model: Model,
+    seen: Vec<State>,
+}
+
+impl Pilot {
+    /// Runs the pilot of a run on so many springs with such a tolerance; none if it comes to no end.
+    pub(super) fn run(
+        scene: &Scene,
+        store: &OperatorStore,
+        springs: usize,
+        tolerance: f64,
+        stop: &Arc<AtomicBool>,
+    ) -> Option<Self> {
+        let springs = ((PILOT_SPRINGS * springs as f64).ceil() as usize).max(FEWEST_OF_PILOT);
+        let numerics = Numerics {
+            accuracy: (PILOT_TOLERANCE * scene.numerics().accuracy).min(0.1),
+            tolerance: Some((PILOT_TOLERANCE * tolerance).min(0.1)),
+            ..*scene.numerics()
+        };
+        let parts = Parts::new(scene, &numerics, Some(springs), store).ok()?;
+        let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan).ok()?;
+        let mut seen = Seen { states: vec![], stop: Arc::clone(stop) };
+        let outcome = simulation.run(&mut [&mut seen]).ok()?;
+        (outcome != Outcome::Interrupted).then(|| Self { model: simulation.into_model(), seen: seen.states })
+    }
+
+    /// Estimated error of a run at its snapshots: of the worn volume, relative to the limit's, or of the profile at any of its radii, relative
+    /// to the limit's largest depth, whichever is larger. None where no snapshot is of a time that the pilot has seen.
+    pub(super) fn error_of(&self, model: &Model, snapshots: &[Snapshot]) -> Option<f64> {
+        let offsets = model.offsets();
+        let difference = |snapshot: &Snapshot| {
+            let same =
+                |state: &&State| (state.cycles - snapshot.cycles).abs() <= SAME_CYCLES * snapshot.cycles;
+            let state = self.seen.iter().find(same)?;
+            let fields = self.model.fields(state);
+            let volume =
+                (self.model.wear_volume(&fields) - snapshot.wear_volume).abs() / model.limit_volume();
+            let depths = offsets.iter().zip(&snapshot.wear_depth);
+            let off = depths.map(|(offset, depth)| {
+                (self.model.wear_depth_at(state, &fields, *offset) - depth).abs() / model.depth_scale()
+            });
+            Some(off.fold(volume, f64::max))
+        };
+        let worn = snapshots.iter().filter(|snapshot| snapshot.cycles > 0.0);
+        let largest = worn.filter_map(difference).reduce(f64::max);
+        let [smooth, cubic] = ERROR_PER_DIFFERENCE;
+        let is_smooth = model.operators().mesh().clustering() == Clustering::Smooth;
+        largest.map(|largest| if is_smooth { smooth } else { cubic } * largest)
+    }
+}
+
+/// The states at the outputs.
+struct Seen {
+    states: Vec<State>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Observer for Seen {
+    fn output(&mut self, simulation: &Simulation) -> Result<()> {
+        self.states.push(simulation.state().clone());
+        Ok(())
+    }
+
+    fn step(&mut self, _: &Simulation) -> Result<Flow> {
+        Ok(if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue })
+    }
+}
