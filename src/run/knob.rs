@@ -23,7 +23,12 @@ const ORDER: [f64; 2] = [4.5, 1.3];
 const FITTED_SPRINGS: f64 = 24.0;
 
 /// Part of the accuracy asked for that the fitted error may take up, so that scenes off the fit keep to it too.
-const MARGIN: f64 = 0.25;
+const MARGIN: f64 = 0.35;
+
+/// Springs added, as a part, for every unit of `n ln(a0/c)` beyond the first number, up to the second: with a small stick zone the fit's order sets
+/// in late.
+const ADDED: f64 = 0.1;
+const SMALLNESS: [f64; 2] = [2.0, 5.0];
 
 /// Fewest and most springs that the fit gives; on fewer than 18 the errors of half of the scenes are off the fit.
 const FEWEST: f64 = 14.0;
@@ -31,12 +36,12 @@ const FEWEST_BELOW_A_HUNDREDTH: f64 = 18.0;
 const MOST: f64 = 600.0;
 
 /// Springs of the pilot over those of the run, at least [`FEWEST_OF_PILOT`], and its tolerance over that of the run.
-const PILOT_SPRINGS: f64 = 0.67;
+const PILOT_SPRINGS: f64 = 0.6;
 const PILOT_TOLERANCE: f64 = 5.0;
 const FEWEST_OF_PILOT: usize = 10;
 
 /// Error of a run over its difference from its pilot, in the middle of the random scenes: on smooth meshes, and on those of cubics.
-const ERROR_PER_DIFFERENCE: [f64; 2] = [0.25, 0.6];
+const ERROR_PER_DIFFERENCE: [f64; 2] = [0.2, 0.5];
 
 /// How often a run is made anew, and by which factors its springs are raised.
 pub(super) const REFINEMENTS: usize = 3;
@@ -62,12 +67,14 @@ pub(super) fn springs_for(clustering: Clustering, contact: &InitialContact, accu
     }
     let grading = contact.half_space().grading().max(0.0);
     let exponent = contact.equivalent_profile().exponent().unwrap_or(2.0).ln();
-    let smallness = contact.stick_logarithm().map_or(0.0, |logarithm| -logarithm);
+    let smallness = contact.stick_logarithm().unwrap_or(0.0);
     let [a, b, c, d, e] = ERROR;
     let error = (a + b * grading + c * exponent + d * smallness + e * exponent * smallness).exp();
     let order = ORDER[0] + ORDER[1] * grading;
     let fewest = if accuracy < 1e-2 { FEWEST_BELOW_A_HUNDREDTH } else { FEWEST };
-    (FITTED_SPRINGS * (error / (MARGIN * accuracy)).powf(order.recip())).clamp(fewest, MOST).ceil() as usize
+    let added = 1.0 + ADDED * ((exponent.exp() * smallness).clamp(SMALLNESS[0], SMALLNESS[1]) - SMALLNESS[0]);
+    let fitted = FITTED_SPRINGS * (error / (MARGIN * accuracy)).powf(order.recip());
+    (added * fitted).clamp(fewest, MOST).ceil() as usize
 }
 
 /// Tolerance of one step that keeps the accumulated error of the time stepping below half of `accuracy`: errors come to 0.2 of the tolerance
@@ -133,7 +140,8 @@ impl Pilot {
         let largest = worn.filter_map(difference).reduce(f64::max);
         let [smooth, cubic] = ERROR_PER_DIFFERENCE;
         let is_smooth = model.operators().mesh().clustering() == Clustering::Smooth;
-        largest.map(|largest| if is_smooth { smooth } else { cubic } * largest)
+        let per_difference = if is_smooth { smooth } else { cubic };
+        largest.map(|largest| per_difference * largest)
     }
 }
 

@@ -61,8 +61,9 @@ pub(super) fn model(
 ) -> Result<Model> {
     let given = numerics.springs;
     let grading = contact.half_space().grading();
-    let concentrated = grading < STEEP_SOFTENING
-        && contact.stick_logarithm().is_some_and(|logarithm| logarithm > SMALL_STICK);
+    let exponent = contact.equivalent_profile().exponent().unwrap_or(2.0);
+    let smallness = exponent * contact.stick_logarithm().unwrap_or(0.0);
+    let concentrated = grading < STEEP_SOFTENING && smallness > SMALL_STICK;
     let clusterings: &[Clustering] = match numerics.stepper {
         Stepper::Implicit if schedule.wears_smoothly() && !concentrated => {
             &[Clustering::Smooth, Clustering::CreepingStick]
