@@ -39,6 +39,7 @@ impl Cost {
 }
 
 /// One process; time, accepted and rejected steps, peak memory.
+#[expect(clippy::zombie_processes, reason = "wait4 waits for it, and tells what it used")]
 fn measure(folder: &Path, springs: usize) -> Cost {
     let scene = folder.join("scene.toml");
     let text = SCENE.replace("cycles = 1e6", &format!("tau = {TAU}"));
