@@ -1,6 +1,6 @@
 """Times the published route to fretting wear against this program: python3 benches/published_route.py [--quick], with numpy, scipy, h5py.
 
-Needs the binary: cargo build --release. Prints the tables of docs/published_route.md in some seven minutes, with --quick the coarser half in one.
+Needs the binary: cargo build --release. Prints the tables of docs/published_route.md in a quarter of an hour, with --quick the coarser half in a minute.
 
 The published route (Dimaki, Dmitriev, Chai, Popov 2014; Benad 2018; Li, Forsbach, Benad 2019; Willert 2021) keeps the worn profile f on
 radial nodes. Every cycle goes from f to the equivalent profile g by Eq. (19), to the contact radius by g(a) = d, to the pressure by
