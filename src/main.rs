@@ -318,6 +318,7 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
             return Ok((String::new(), ExitCode::FAILURE));
         }
     };
+    result.warning().into_iter().for_each(|warning| complain("warning", &warning));
     let interrupted = result.stop_reason == StopReason::Interrupted;
     Ok((report(&result), if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS }))
 }

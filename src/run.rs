@@ -39,6 +39,9 @@ const LOOP_STEPS: usize = 64;
 /// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
 const SPRINGS_TO_SLIDE: usize = 60;
 
+/// Springs below which a run that finds no end may do so for being coarse.
+const FEW_SPRINGS: usize = 60;
+
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 pub(crate) const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
@@ -59,6 +62,21 @@ pub struct RunResult {
     pub distance: Option<LimitDistance>,
     /// The unworn indenter.
     pub indenter: Indenter,
+    /// The accuracy that was asked for, where the program chose the springs.
+    pub accuracy: Option<f64>,
+}
+
+impl RunResult {
+    /// A word about an end that is less accurate than was asked for.
+    pub fn warning(&self) -> Option<String> {
+        let accuracy = self.accuracy?;
+        let error = self.checkpoint.error_estimate.filter(|error| *error > accuracy)?;
+        Some(format!(
+            "numerics.accuracy = {accuracy:e} was asked for, and the estimated error is {error:.1e}; ask for more springs by hand \
+             (numerics.springs; there were {})",
+            self.checkpoint.state.compression.len() + 1
+        ))
+    }
 }
 
 /// A run that is ready to go.
@@ -211,6 +229,7 @@ impl Run {
                 last,
                 checkpoint,
                 limit: parts.limit,
+                accuracy: asked(&scene),
             })));
         }
         let Checkpoint { state, progress, wall_seconds, .. } = checkpoint;
@@ -256,7 +275,7 @@ impl Run {
             };
             let checkpoint = recorder.checkpoint(&simulation);
             if refinements < knob::REFINEMENTS
-                && let Some(springs) = wanting(&scene, &simulation, &outcome, &checkpoint)
+                && let Some(springs) = wanting(&scene, &simulation, &outcome, &checkpoint, refinements)
                 && let Ok(parts) = Parts::new(&scene, scene.numerics(), Some(springs), &store)
                 && let Ok(finer) = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)
             {
@@ -279,8 +298,15 @@ impl Run {
         let output = recorder.writer.path().to_owned();
         let (header, snapshots) = recorder.writer.into_parts();
         let file = RunFile::finished(header, snapshots, checkpoint.clone(), stop_reason);
-        Ok((RunResult { output, stop_reason, last, checkpoint, limit, distance, indenter }, file))
+        let accuracy = asked(&scene);
+        Ok((RunResult { output, stop_reason, last, checkpoint, limit, distance, indenter, accuracy }, file))
     }
+}
+
+/// The accuracy asked for, where the program chooses the springs.
+fn asked(scene: &Scene) -> Option<f64> {
+    let numerics = scene.numerics();
+    numerics.springs.is_none().then_some(numerics.accuracy)
 }
 
 /// Springs with which a run is to be made anew: where the program chose them, and the run found no end or is off by more than was asked for.
@@ -289,6 +315,7 @@ fn wanting(
     simulation: &Simulation,
     outcome: &Result<Outcome>,
     checkpoint: &Checkpoint,
+    refinements: usize,
 ) -> Option<usize> {
     let numerics = scene.numerics();
     let (model, accuracy) = (simulation.model(), numerics.accuracy);
@@ -298,10 +325,11 @@ fn wanting(
     let error = match outcome {
         Ok(Outcome::Interrupted) => return None,
         Ok(_) => Some(checkpoint.error_estimate.filter(|error| *error > accuracy)?),
-        Err(Error::NotConverged { .. }) => None,
+        // More springs may find an end where few do not.
+        Err(Error::NotConverged { .. }) if refinements == 0 && model.springs() < FEW_SPRINGS => None,
         Err(_) => return None,
     };
-    Some(knob::refined(model.springs(), error, accuracy))
+    knob::refined(model.springs(), error, accuracy)
 }
 
 /// What of a run does not change.

@@ -181,7 +181,7 @@ impl InfoReport {
                 ("rejected steps", self.rejected_steps.map(|it| it.to_string())),
                 ("evaluations of the wear rate", self.rate_evaluations.map(|it| it.to_string())),
                 ("wall time", self.wall_seconds.map(|it| Scale::TIME.show(it))),
-                ("estimated error of the volume", self.error_estimate.map(number)),
+                ("estimated error", self.error_estimate.map(number)),
             ],
         );
         rows.finish()

@@ -122,7 +122,7 @@ impl RunReport {
             self.limit_distance_relative.map(|it| format!("{} of its largest depth", number(it))),
         );
         rows.optional(
-            "estimated error of the volume",
+            "estimated error",
             self.error_estimate.map(|it| format!("{} of the limit's", number(it))),
         );
         rows.row(

@@ -47,6 +47,9 @@ const ERROR_PER_DIFFERENCE: [f64; 2] = [0.2, 0.5];
 pub(super) const REFINEMENTS: usize = 3;
 const RAISES: [f64; 2] = [1.15, 2.0];
 
+/// Most springs of a run that is made anew: beyond, that takes longer than who asked may wait for without having been asked.
+const MOST_REFINED: usize = 400;
+
 /// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
 const CAUTIOUS_ORDER: f64 = 4.0;
 const AIM: f64 = 0.6;
@@ -83,11 +86,12 @@ pub(super) fn tolerance_for(accuracy: f64) -> f64 {
     (0.6 * (accuracy / 1e-4).powf(0.3)).clamp(0.4, 2.0) * accuracy
 }
 
-/// Springs with which a run is made anew that was off by `error`, or found no end.
-pub(super) fn refined(springs: usize, error: Option<f64>, accuracy: f64) -> usize {
+/// Springs with which a run is made anew that was off by `error`, or found no end; none beyond [`MOST_REFINED`].
+pub(super) fn refined(springs: usize, error: Option<f64>, accuracy: f64) -> Option<usize> {
     let factor =
         error.map_or(RAISES[1].sqrt(), |error| (error / (AIM * accuracy)).powf(CAUTIOUS_ORDER.recip()));
-    (springs as f64 * factor.clamp(RAISES[0], RAISES[1])).ceil() as usize
+    let refined = (springs as f64 * factor.clamp(RAISES[0], RAISES[1])).ceil() as usize;
+    (refined <= MOST_REFINED).then_some(refined)
 }
 
 /// A coarser run of the same scene, for what it differs by.

@@ -82,7 +82,7 @@ pub const WORN_NODE: Label = label("worn_node", "1", "index of the node");
 pub const STICK_WEAR_DEPTH: Label = label("wear_depth", "m", "wear depth at the nodes, to go on from");
 /// Error estimate, scalar, in the group of the checkpoint; absent where there is none.
 pub const ERROR_ESTIMATE: Label =
-    label("error_estimate", "1", "estimated error of the worn volume relative to that of the limit");
+    label("error_estimate", "1", "estimated error of worn volume and profile relative to those of the limit");
 
 /// A dataset, and the place of its values in the record it stores.
 pub(super) struct Field<Record, Value> {

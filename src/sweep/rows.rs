@@ -33,7 +33,7 @@ pub(super) const WALL_SECONDS: &str = "wall_seconds";
 const RUN_TEXTS: [Label; 1] = [("stop_reason", "1", "why the run stopped")];
 
 const RUN_NUMBERS: [Label; 16] = [
-    ("error_estimate", "1", "estimated error of the worn volume, relative to that of the limit"),
+    ("error_estimate", "1", "estimated error of worn volume and profile, relative to those of the limit"),
     ("cycles", "1", "number of fretting cycles"),
     ("tau", "1", "dimensionless time"),
     ("steps", "1", "steps accepted"),
