@@ -40,8 +40,9 @@ const PILOT_SPRINGS: f64 = 0.6;
 const PILOT_TOLERANCE: f64 = 5.0;
 const FEWEST_OF_PILOT: usize = 10;
 
-/// Error of a run over its difference from its pilot, in the middle of the random scenes: on smooth meshes, and on those of cubics.
-const ERROR_PER_DIFFERENCE: [f64; 2] = [0.2, 0.5];
+/// Error of a run over its difference `δ` from its pilot, `e = C δ/(ρ^p - 1)` with `ρ` the ratio of the springs: `C` and `p` in the middle of the
+/// random scenes, on smooth meshes and on those of cubics.
+const ERROR_PER_DIFFERENCE: [[f64; 2]; 2] = [[1.3, 4.0], [0.4, 3.0]];
 
 /// How often a run is made anew, and by which factors its springs are raised.
 pub(super) const REFINEMENTS: usize = 3;
@@ -53,6 +54,9 @@ const MOST_REFINED: usize = 400;
 /// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
 const CAUTIOUS_ORDER: f64 = 4.0;
 const AIM: f64 = 0.6;
+
+/// Steps after which a pilot is lost: at the round-off of a coarse mesh a rate of nearly nothing may never be reached.
+const MOST_STEPS: u64 = 2000;
 
 /// Cycles of two runs are the same up to this part of them.
 const SAME_CYCLES: f64 = 1e-9;
@@ -144,8 +148,9 @@ impl Pilot {
         let largest = worn.filter_map(difference).reduce(f64::max);
         let [smooth, cubic] = ERROR_PER_DIFFERENCE;
         let is_smooth = model.operators().mesh().clustering() == Clustering::Smooth;
-        let per_difference = if is_smooth { smooth } else { cubic };
-        largest.map(|largest| per_difference * largest)
+        let [factor, order] = if is_smooth { smooth } else { cubic };
+        let ratio = model.springs() as f64 / self.model.springs() as f64;
+        largest.map(|largest| factor * largest / (ratio.powf(order) - 1.0))
     }
 }
 
@@ -161,7 +166,8 @@ impl Observer for Seen {
         Ok(())
     }
 
-    fn step(&mut self, _: &Simulation) -> Result<Flow> {
-        Ok(if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue })
+    fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
+        let lost = simulation.progress().steps > MOST_STEPS;
+        Ok(if lost || self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue })
     }
 }
