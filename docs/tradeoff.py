@@ -16,6 +16,8 @@ import matplotlib.pyplot as plt
 plt.rcParams["svg.hashsalt"] = "fretwear"  # the same file from the same measurement
 
 *paths, figure = sys.argv[1:]
+# The profile is judged at the radii of each run's own file.
+OWN = {"volume": "volume", "profile": "node"}
 COLOURS = {"implicit": "tab:blue", "cycle-jump": "tab:orange", "every-cycle": "tab:green"}
 ERRORS = [("volume", "error of the worn volume"), ("profile", "error of the profile")]
 KINDS = {("volume", "time"): "volume, time", ("profile", "time"): "profile, time",
@@ -33,7 +35,7 @@ def read(path):
 
 def draw(axes, data, error, cost):
     by_hand = np.isnan(data["accuracy"])
-    x, y = data[cost], data[f"{error}_error_max"]
+    x, y = data[cost], data[f"{OWN[error]}_error_max"]
     kind = "time" if cost == "wall_seconds" else "evaluations"
     for stepper, colour in COLOURS.items():
         for cycle, marker in [("closed-form", "o"), ("resolved", "x")]:
@@ -64,7 +66,7 @@ def table(data):
     shown = np.flatnonzero(fronts["volume", "time"] | fronts["profile", "time"])
     knob = np.flatnonzero(~np.isnan(data["accuracy"]) & (data["status"] == "done"))
     for at in [*shown[np.argsort(data["wall_seconds"][shown])], *knob]:
-        error = lambda name: ("<" if data[f"{name}_error_max_bounded"][at] else "") + f"{data[f'{name}_error_max'][at]:.1e}"
+        error = lambda name: ("<" if data[f"{OWN[name]}_error_max_bounded"][at] else "") + f"{data[f'{OWN[name]}_error_max'][at]:.1e}"
         if at in knob:
             over = [data[f"knob_{name}_time"][at] for name in ["volume", "profile"]]
             words = [f"{ratio:.2f}" if np.isfinite(ratio) else "beyond" for ratio in over]

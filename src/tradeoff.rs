@@ -118,7 +118,7 @@ pub const FRONTS: [Front; 4] = [
         name: "profile_time",
         words: "error of the profile against wall time",
         cost: |it| it.wall_seconds,
-        error: |it| it.profile,
+        error: |it| it.nodes,
     },
     Front {
         name: "volume_evaluations",
@@ -130,7 +130,7 @@ pub const FRONTS: [Front; 4] = [
         name: "profile_evaluations",
         words: "error of the profile against rate evaluations",
         cost: |it| it.rate_evaluations as f64,
-        error: |it| it.profile,
+        error: |it| it.nodes,
     },
 ];
 

@@ -304,6 +304,6 @@ fn line(row: &Row, more: &str, text: &mut String) {
         time(cost.wall_seconds_file),
         cost.rate_evaluations,
         error(row.worst.map(|it| it.volume)),
-        error(row.worst.map(|it| it.profile)),
+        error(row.worst.map(|it| it.nodes)),
     );
 }

@@ -44,6 +44,9 @@ const FEWEST_OF_PILOT: usize = 10;
 /// random scenes, on smooth meshes and on those of cubics.
 const ERROR_PER_DIFFERENCE: [[f64; 2]; 2] = [[1.3, 4.0], [0.4, 3.0]];
 
+/// Least ratio of the springs that tells anything: a mesh may have to be raised to carry the pilot.
+const LEAST_RATIO: f64 = 1.2;
+
 /// How often a run is made anew, and by which factors its springs are raised.
 pub(super) const REFINEMENTS: usize = 3;
 const RAISES: [f64; 2] = [1.15, 2.0];
@@ -130,6 +133,10 @@ impl Pilot {
     /// Estimated error of a run at its snapshots: of the worn volume, relative to the limit's, or of the profile at any of its radii, relative
     /// to the limit's largest depth, whichever is larger. None where no snapshot is of a time that the pilot has seen.
     pub(super) fn error_of(&self, model: &Model, snapshots: &[Snapshot]) -> Option<f64> {
+        let ratio = model.springs() as f64 / self.model.springs() as f64;
+        if ratio < LEAST_RATIO {
+            return None;
+        }
         let offsets = model.offsets();
         let difference = |snapshot: &Snapshot| {
             let same =
@@ -149,7 +156,6 @@ impl Pilot {
         let [smooth, cubic] = ERROR_PER_DIFFERENCE;
         let is_smooth = model.operators().mesh().clustering() == Clustering::Smooth;
         let [factor, order] = if is_smooth { smooth } else { cubic };
-        let ratio = model.springs() as f64 / self.model.springs() as f64;
         largest.map(|largest| factor * largest / (ratio.powf(order) - 1.0))
     }
 }
