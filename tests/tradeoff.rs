@@ -105,9 +105,9 @@ fn errors_fall_with_finer_numerics_and_follow_from_the_runs() {
     let rows = found["candidates"].as_array().unwrap();
     for (name, cost, error) in [
         ("volume_time", "wall_seconds", "volume_error"),
-        ("profile_time", "wall_seconds", "profile_error"),
+        ("profile_time", "wall_seconds", "node_error"),
         ("volume_evaluations", "rate_evaluations", "volume_error"),
-        ("profile_evaluations", "rate_evaluations", "profile_error"),
+        ("profile_evaluations", "rate_evaluations", "node_error"),
     ] {
         let front: Vec<usize> = found["fronts"][name]
             .as_array()
