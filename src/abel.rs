@@ -9,9 +9,10 @@
 //! ```
 //!
 //! `F` integrates the local polynomial through the densities `s^(ν-1) q`, `P` the one through the compressions `q`, both against the exact
-//! kernel, with Gauss-Jacobi rules where that is singular. Polynomials are those of the [`Mesh`]. Where the clustering is [`Clustering::Smooth`], the compression is linear in the last cell: the contact edge meets unworn ground
-//! there, and a polynomial of degree 5 through it makes the pressure next to it negative on coarse meshes. In the first cell, which the mesh
-//! makes tiny, the compression is constant: it may jump at the stick edge, as it does in the limit.
+//! kernel, with Gauss-Jacobi rules where that is singular. Polynomials are those of the [`Mesh`]. Where the clustering is
+//! [`Clustering::Smooth`], the compression is linear in the last cell: the contact edge meets unworn ground there, and a polynomial of degree 5
+//! through it makes the pressure next to it negative on coarse meshes. In the first cell, which the mesh makes tiny, the compression is
+//! constant: it may jump at the stick edge, as it does in the limit.
 
 use std::ops::Range;
 
@@ -232,12 +233,12 @@ impl Cell<'_> {
         let (assembly, cell) = (self.assembly, self.index);
         let (mesh, rule) = (assembly.mesh, &assembly.upper_end);
         if cell + 1 == mesh.cells() {
-            // The map is flat at the contact edge: here the rule is one in ξ.
+            // The map is flat at the contact edge: here the rule is one in ξ, as the polynomials of this cell are.
             let width = mesh.node(cell).complement;
             let on_line = |at: usize| {
                 let complement = width * rule.complements[at];
                 let point = MeshPoint { value: 1.0 - complement, complement, slope: width };
-                mesh.lagrange(stencil, mesh.place_before_end(complement), &point)
+                mesh.lagrange(stencil, mesh.cells() as f64, &point)
             };
             let values: Vec<Weights> = (0..rule.len()).map(on_line).collect();
             let scale = width.powf(assembly.mu);

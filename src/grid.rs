@@ -120,10 +120,7 @@ impl Mesh {
             nodes: vec![0.0; cells + 1],
         };
         mesh.ends = (0..=cells).map(|i| mesh.at(i as f64)).collect();
-        for (node, end) in mesh.nodes.iter_mut().zip(&mesh.ends) {
-            *node = end.value;
-        }
-        mesh.nodes[cells] = 1.0;
+        mesh.nodes = mesh.ends.iter().map(|end| end.value).collect();
         mesh
     }
 
@@ -197,21 +194,6 @@ impl Mesh {
             y = next;
         }
         y
-    }
-
-    /// `y` of `1 - ξ` in the last cell.
-    pub fn place_before_end(&self, complement: f64) -> f64 {
-        let cells = self.cells() as f64;
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.at(cells - middle).complement > complement {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        cells - 0.5 * (low + high)
     }
 
     /// The `points` nodes of the local polynomial of cell `cell`, from 1 to `last` on: centred, shifted inwards at the ends.

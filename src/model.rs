@@ -422,11 +422,16 @@ impl Model {
 
     /// The unworn slip on every spring, with the contact edge at `edge`.
     fn unworn_on_springs(&self, place: &Place, edge: f64) -> impl Iterator<Item = UnwornValues> {
-        let (place, moves) = (*place, self.moving.is_some());
-        self.operators.abel.nodes()[1..].iter().map(move |x| match moves {
-            false => self.unworn.at(edge * x),
-            true => self.unworn.at_stick(place.stick_area, place.slip_compression, edge * x),
-        })
+        let place = *place;
+        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn_at(&place, edge * x))
+    }
+
+    /// The unworn slip at `z = r² - c²`, m², of the edge of stick at `place`.
+    fn unworn_at(&self, place: &Place, z: f64) -> UnwornValues {
+        match &self.moving {
+            None => self.unworn.at(z),
+            Some(_) => self.unworn.at_stick(place.stick_area, place.slip_compression, z),
+        }
     }
 
     /// `μ = (1-k)/2`, the exponent with which the transforms scale with the edge.

@@ -324,7 +324,7 @@ impl Simulation {
                         self.progress.next_step = shorter;
                         continue;
                     }
-                    self.accept(state, fields, cycle, landing.at)?
+                    self.accept(state, fields, cycle, rate, landing.at)?
                 }
                 _ => false,
             };
@@ -388,6 +388,7 @@ impl Simulation {
         mut state: State,
         fields: Fields,
         cycle: CycleFields,
+        rate: f64,
         target: Option<f64>,
     ) -> Result<bool> {
         let radial = self.model.radial_fields(&state, &fields, &cycle);
@@ -403,7 +404,6 @@ impl Simulation {
         if !(grew && fields.are_physical() && self.presses(&state)) {
             return Ok(false);
         }
-        let rate = rate_of_wear(&self.model, &fields, &cycle);
         if let Some(target) = target {
             state.cycles = target;
         }

@@ -88,6 +88,14 @@ impl LimitDistance {
     }
 }
 
+/// Cycles of two runs are the same up to this part of them.
+pub(crate) const SAME_CYCLES: f64 = 1e-9;
+
+/// Whether a number of cycles of one run is that of another.
+pub(crate) fn same_cycles(one: f64, other: f64) -> bool {
+    (one - other).abs() <= SAME_CYCLES * other
+}
+
 /// Largest of some depths, at least zero.
 pub(crate) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest: f64, &value| largest.max(value))

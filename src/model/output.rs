@@ -134,21 +134,14 @@ impl Model {
 
     /// Wear depth, m, at `offset = r² - c²`, m², any place of the annulus, where the edge of stick left no worn ground behind.
     pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
-        let (stick_area, passed) = match &state.stick {
-            None => (self.place.stick_area, 0.0),
-            Some(stick) => (stick.area, stick.area - self.place.stick_area),
-        };
-        let z = offset - passed;
+        let z = state.stick.as_ref().map_or(offset, |stick| offset - (stick.area - self.place.stick_area));
         let x = z / fields.edge;
         if x <= 0.0 || x >= 1.0 - AT_EDGE {
             return 0.0;
         }
         let mesh = self.operators.abel.mesh();
         let growth = mesh.interpolate(&fields.log_slip, mesh.place(x)).exp_m1();
-        match self.moving {
-            None => self.unworn.at(z).slip * growth,
-            Some(_) => self.unworn.at_stick(stick_area, fields.place.slip_compression, z).slip * growth,
-        }
+        self.unworn_at(&fields.place, z).slip * growth
     }
 
     /// The fields at [`Model::radii`], by local interpolation between the springs.
@@ -186,7 +179,7 @@ impl Model {
                 None => self.radial_unworn[spring].slip,
                 Some(stick) => {
                     let z = self.place.stick_area + offset - stick.area;
-                    self.unworn.at_stick(stick.area, fields.place.slip_compression, z).slip
+                    self.unworn_at(&fields.place, z).slip
                 }
             };
             if state.stick.as_ref().is_none_or(|stick| stick.wear_depth.is_empty()) {

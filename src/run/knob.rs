@@ -8,13 +8,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Parts;
+use super::mesh::MOST_RAISED;
 use crate::contact::InitialContact;
 use crate::error::Result;
 use crate::grid::Clustering;
 use crate::model::{Model, OperatorStore, State};
-use crate::scene::{Numerics, Scene};
+use crate::scene::{Numerics, Scene, Stepper};
 use crate::simulation::{Flow, Observer, Outcome, Simulation};
-use crate::snapshot::Snapshot;
+use crate::snapshot::{Snapshot, same_cycles};
 
 /// Error of the profile on 24 springs of a smooth mesh, and the power with which it falls, fitted to 118 random scenes on 16 to 54 springs:
 /// `ln e = A + B k + C ln n + D ln(a0/c) + E ln n ln(a0/c)` with `k > 0` or zero. Nine of ten lie within a factor of 2.8, 98 of 100 below 7.7.
@@ -30,10 +31,9 @@ const MARGIN: f64 = 0.35;
 const ADDED: f64 = 0.1;
 const SMALLNESS: [f64; 2] = [2.0, 5.0];
 
-/// Fewest and most springs that the fit gives; on fewer than 18 the errors of half of the scenes are off the fit.
+/// Fewest springs that the fit gives; on fewer than 18 the errors of half of the scenes are off the fit.
 const FEWEST: f64 = 14.0;
 const FEWEST_BELOW_A_HUNDREDTH: f64 = 18.0;
-const MOST: f64 = 600.0;
 
 /// Springs of the pilot over those of the run, at least [`FEWEST_OF_PILOT`], and its tolerance over that of the run.
 const PILOT_SPRINGS: f64 = 0.6;
@@ -61,12 +61,23 @@ const AIM: f64 = 0.6;
 /// Steps after which a pilot is lost: at the round-off of a coarse mesh a rate of nearly nothing may never be reached.
 const MOST_STEPS: u64 = 2000;
 
-/// Cycles of two runs are the same up to this part of them.
-const SAME_CYCLES: f64 = 1e-9;
+/// Whether the program chose the springs of a run on a model, and a pilot tells its error.
+pub(super) fn serves(numerics: &Numerics, model: &Model) -> bool {
+    numerics.springs.is_none()
+        && numerics.stepper == Stepper::Implicit
+        && model.schedule().wears_smoothly()
+        && model.moving().is_none()
+        && !model.slides()
+}
 
-/// Whether a pilot tells the error of runs on a model.
-pub(super) fn serves(model: &Model) -> bool {
-    model.schedule().wears_smoothly() && model.moving().is_none() && !model.slides()
+/// `n ln(a0/c)`: the logarithm of the profile's height at the first contact edge over that at the edge of stick.
+pub(super) fn smallness(contact: &InitialContact) -> f64 {
+    exponent(contact) * contact.stick_logarithm().unwrap_or(0.0)
+}
+
+/// `n` of a power law; other profiles begin as a paraboloid.
+fn exponent(contact: &InitialContact) -> f64 {
+    contact.equivalent_profile().exponent().unwrap_or(2.0)
 }
 
 /// Springs that keep the error of volume and profile below `accuracy`.
@@ -76,15 +87,14 @@ pub(super) fn springs_for(clustering: Clustering, contact: &InitialContact, accu
         return (120.0 * (1e-4 / accuracy).cbrt()).ceil() as usize;
     }
     let grading = contact.half_space().grading().max(0.0);
-    let exponent = contact.equivalent_profile().exponent().unwrap_or(2.0).ln();
-    let smallness = contact.stick_logarithm().unwrap_or(0.0);
+    let (exponent, stick) = (exponent(contact).ln(), contact.stick_logarithm().unwrap_or(0.0));
     let [a, b, c, d, e] = ERROR;
-    let error = (a + b * grading + c * exponent + d * smallness + e * exponent * smallness).exp();
+    let error = (a + b * grading + c * exponent + d * stick + e * exponent * stick).exp();
     let order = ORDER[0] + ORDER[1] * grading;
     let fewest = if accuracy < 1e-2 { FEWEST_BELOW_A_HUNDREDTH } else { FEWEST };
-    let added = 1.0 + ADDED * ((exponent.exp() * smallness).clamp(SMALLNESS[0], SMALLNESS[1]) - SMALLNESS[0]);
+    let added = 1.0 + ADDED * (smallness(contact).clamp(SMALLNESS[0], SMALLNESS[1]) - SMALLNESS[0]);
     let fitted = FITTED_SPRINGS * (error / (MARGIN * accuracy)).powf(order.recip());
-    (added * fitted).clamp(fewest, MOST).ceil() as usize
+    (added * fitted).clamp(fewest, MOST_RAISED as f64).ceil() as usize
 }
 
 /// Tolerance of one step that keeps the accumulated error of the time stepping below half of `accuracy`: errors come to 0.2 of the tolerance
@@ -139,9 +149,7 @@ impl Pilot {
         }
         let offsets = model.offsets();
         let difference = |snapshot: &Snapshot| {
-            let same =
-                |state: &&State| (state.cycles - snapshot.cycles).abs() <= SAME_CYCLES * snapshot.cycles;
-            let state = self.seen.iter().find(same)?;
+            let state = self.seen.iter().find(|state| same_cycles(state.cycles, snapshot.cycles))?;
             let fields = self.model.fields(state);
             let volume =
                 (self.model.wear_volume(&fields) - snapshot.wear_volume).abs() / model.limit_volume();

@@ -1,6 +1,6 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
-use super::knob::springs_for;
+use super::knob::{smallness, springs_for};
 use super::{BYTES_PER_PAIR, memory_figure};
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
@@ -33,7 +33,7 @@ const ROUND_OFF: f64 = 1e-2;
 const RAISE: f64 = 1.3;
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
-const MOST_RAISED: usize = 600;
+pub(super) const MOST_RAISED: usize = 600;
 
 /// How well a mesh carries what is known beforehand.
 struct Quality {
@@ -61,9 +61,7 @@ pub(super) fn model(
 ) -> Result<Model> {
     let given = numerics.springs;
     let grading = contact.half_space().grading();
-    let exponent = contact.equivalent_profile().exponent().unwrap_or(2.0);
-    let smallness = exponent * contact.stick_logarithm().unwrap_or(0.0);
-    let concentrated = grading < STEEP_SOFTENING && smallness > SMALL_STICK;
+    let concentrated = grading < STEEP_SOFTENING && smallness(contact) > SMALL_STICK;
     let clusterings: &[Clustering] = match numerics.stepper {
         Stepper::Implicit if schedule.wears_smoothly() && !concentrated => {
             &[Clustering::Smooth, Clustering::CreepingStick]
@@ -116,11 +114,11 @@ impl Quality {
         let exact = |x: f64| most - contact.equivalent_profile().rise(stick_radius, state.edge * x);
         let errors = state.compression.iter().zip(nodes).map(|(q, x)| (q - exact(*x)).abs() / most);
         let fields = model.fields(&state);
-        let known = LimitingShape::from_contact(contact)?.map(|limit| limit.wear_volume());
-        let volume = known.map_or(0.0, |known| (model.limit_volume() / known - 1.0).abs());
+        let limit = LimitingShape::from_contact(contact)?;
+        let volume = limit.map(|limit| (model.limit_volume() / limit.wear_volume() - 1.0).abs());
         Ok(Self {
             compression: largest(errors),
-            volume: largest(std::iter::once(volume)),
+            volume: largest(volume.into_iter()),
             round_off: largest(fields.log_slip.iter().map(|log| log.abs())),
         })
     }

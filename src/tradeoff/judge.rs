@@ -4,10 +4,7 @@ use super::profile::Shape;
 use crate::closed_form::{GibsonTransient, LimitingShape};
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::snapshot::{RunFile, Snapshot, largest};
-
-/// Cycles of two runs are the same up to this part of them.
-pub(super) const SAME_CYCLES: f64 = 1e-9;
+use crate::snapshot::{RunFile, SAME_CYCLES, Snapshot, largest, same_cycles};
 
 /// An error is a number of its own from so many times the uncertainty of the judge on; below it is bounded.
 const CLEAR: f64 = 3.0;
@@ -217,7 +214,7 @@ impl Judge {
 
     fn reference_at(&self, cycles: f64) -> Option<(&Snapshot, [f64; 2])> {
         let mut all = self.reference.snapshots.iter().zip(&self.uncertainty);
-        all.find(|(it, _)| is_same(it.cycles, cycles)).map(|(it, uncertainty)| (it, *uncertainty))
+        all.find(|(it, _)| same_cycles(it.cycles, cycles)).map(|(it, uncertainty)| (it, *uncertainty))
     }
 
     /// Distance of the limit from the run after some cycles: it falls, so that an earlier one is a bound.
@@ -308,11 +305,7 @@ impl Judge {
 }
 
 fn snapshot(run: &RunFile, cycles: f64) -> Option<&Snapshot> {
-    run.snapshots.iter().find(|it| is_same(it.cycles, cycles))
-}
-
-fn is_same(one: f64, two: f64) -> bool {
-    (one - two).abs() <= SAME_CYCLES * two
+    run.snapshots.iter().find(|it| same_cycles(it.cycles, cycles))
 }
 
 fn larger(one: [f64; 2], two: [f64; 2]) -> [f64; 2] {

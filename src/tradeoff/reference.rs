@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 
 use super::candidates::{Candidate, Choice, cycles};
-use super::judge::{Judge, SAME_CYCLES};
+use super::judge::Judge;
 use super::measure::{Cost, Measurement, Runs};
 use super::name;
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Stepper};
+use crate::snapshot::SAME_CYCLES;
 
 /// Time for a reference over that for a candidate, and what of it may be planned with.
 const PATIENCE: f64 = 20.0;

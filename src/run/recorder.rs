@@ -1,0 +1,165 @@
+//! What a run leaves behind: snapshots, checkpoints, and how far off it is.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use super::knob::{self, Pilot};
+use super::{Shared, worn_profile};
+use crate::error::Result;
+use crate::model::{FrettingLoop, OperatorStore};
+use crate::scene::Scene;
+use crate::simulation::{Flow, Observer, Simulation};
+use crate::snapshot::{Checkpoint, RunWriter, Snapshot, StopReason};
+
+/// Steps along one fretting loop to and fro at constant indentation in the result file, even.
+const LOOP_STEPS: usize = 64;
+
+/// The contact as it is now.
+pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
+    let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
+    let (contact, cycle) = (model.contact(), simulation.cycle());
+    let radial = simulation.radial_fields().clone();
+    let unworn = state.cycles == 0.0;
+    let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
+    let fretting_loop = fretting_loop(simulation);
+    let tangential_force = fretting_loop.largest_force();
+    let along_y = |values: Vec<f64>| if model.schedule().leaves_axis() { values } else { vec![] };
+    let [loop_displacement, displacement_y] = fretting_loop.displacement;
+    let [loop_force, force_y] = fretting_loop.force;
+    let [loop_displacement_y, loop_force_y] = [displacement_y, force_y].map(along_y);
+    Snapshot {
+        cycles: state.cycles,
+        tau: state.cycles * contact.tau_per_cycle(),
+        regime: model.regime(state, cycle),
+        wear_volume: if unworn { 0.0 } else { model.worn_volume(state, fields) },
+        contact_radius: model.contact_radius(state),
+        stick_radius: model.without_core(cycle.stick_radius),
+        permanent_stick_radius: model.without_core(state.least_stick_radius.min(cycle.stick_radius)),
+        indentation: model.indentation(state),
+        normal_force: model.normal_force(fields),
+        dissipated_energy: state.dissipated_energy,
+        cycle_energy: cycle.dissipation,
+        tangential_force,
+        loop_displacement,
+        loop_force,
+        loop_displacement_y,
+        loop_force_y,
+        profile: worn_profile(model, &wear_depth),
+        wear_depth,
+        pressure: radial.pressure,
+        slip: radial.slip,
+    }
+}
+
+/// The loop of the cycle that is under way, with as many points as every other of the run.
+fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
+    let (model, state) = (simulation.model(), simulation.state());
+    let schedule = model.schedule();
+    let drive = model.drive_in(state, schedule.drive(state.cycles, state.cycles));
+    let mut found =
+        model.cycle_loop(&drive, simulation.cycle(), &state.compression, simulation.fields(), LOOP_STEPS);
+    let points = 1 + schedule.loop_steps(LOOP_STEPS);
+    for values in found.displacement.iter_mut().chain(&mut found.force) {
+        let end = values[0];
+        values.resize(points, end);
+    }
+    found
+}
+
+/// Takes snapshots and checkpoints, and listens to signals.
+pub(super) struct Recorder {
+    pub(super) writer: RunWriter,
+    interval: Duration,
+    started: Instant,
+    saved: Instant,
+    wall_seconds_before: f64,
+    stop: Arc<AtomicBool>,
+    /// Whether a file is to hold the result; else only checkpoints are written.
+    pub(super) saves_result: bool,
+    pilot: Option<Pilot>,
+}
+
+impl Recorder {
+    /// A run stopped before it took so long, s, is begun anew rather than kept.
+    const WORTH_KEEPING: f64 = 0.2;
+
+    pub(super) fn new(scene: &Scene, writer: RunWriter, wall_seconds_before: f64, shared: &Shared) -> Self {
+        let interval = shared.checkpoint_interval.unwrap_or(scene.numerics().checkpoint_interval);
+        let interval = Duration::from_secs_f64(interval);
+        let (now, stop) = (Instant::now(), Arc::clone(&shared.stop));
+        Self {
+            writer,
+            interval,
+            started: now,
+            saved: now,
+            wall_seconds_before,
+            stop,
+            saves_result: true,
+            pilot: None,
+        }
+    }
+
+    /// Whether the file is written where the run ends.
+    pub(super) fn saves(&self, complete: bool, failed: bool) -> bool {
+        let long = self.wall_seconds_before + self.started.elapsed().as_secs_f64() > Self::WORTH_KEEPING;
+        self.saves_result || (!complete && !failed && long)
+    }
+
+    /// Lets a pilot run go before one whose springs the program chose.
+    pub(super) fn follow_pilot(&mut self, scene: &Scene, store: &OperatorStore, simulation: &Simulation) {
+        let model = simulation.model();
+        self.pilot = knob::serves(scene.numerics(), model)
+            .then(|| Pilot::run(scene, store, model.springs(), simulation.tolerance(), &self.stop))
+            .flatten();
+    }
+
+    /// By the pilot where there is one that saw a snapshot, else by the balance of the worn volume.
+    fn error_estimate(&self, simulation: &Simulation) -> Option<f64> {
+        let by_pilot = self.pilot.as_ref();
+        let error = by_pilot.and_then(|it| it.error_of(simulation.model(), self.writer.snapshots()));
+        error.or_else(|| balance_error(simulation))
+    }
+
+    pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
+        Checkpoint {
+            state: simulation.state().clone(),
+            progress: *simulation.progress(),
+            wall_seconds: self.wall_seconds_before + self.started.elapsed().as_secs_f64(),
+            error_estimate: self.error_estimate(simulation),
+        }
+    }
+}
+
+impl Observer for Recorder {
+    fn output(&mut self, simulation: &Simulation) -> Result<()> {
+        self.writer.push(snapshot(simulation));
+        Ok(())
+    }
+
+    fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Ok(Flow::Stop);
+        }
+        if self.saved.elapsed() >= self.interval {
+            self.writer.save(&self.checkpoint(simulation), StopReason::Interrupted, false)?;
+            self.saved = Instant::now();
+        }
+        Ok(Flow::Continue)
+    }
+}
+
+/// Estimate of the error in the worn volume, relative to the limit's: its distance from the volume by the rates of the cycles.
+///
+/// Where worn volume and dissipated energy are in proportion, as under Archard's law and Coulomb's friction (`μ_f/k_w`), that volume is the
+/// energy's, a balance that holds for the continuous contact between springs and surface. Else it is the integral of what the surface
+/// loses in each cycle, and tells of the time stepping alone.
+fn balance_error(simulation: &Simulation) -> Option<f64> {
+    let (model, state) = (simulation.model(), simulation.state());
+    if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
+        return None;
+    }
+    let by_depth = model.wear_volume(simulation.fields());
+    let by_rate = (state.volume_by_rate - by_depth).abs() / model.limit_volume();
+    Some(by_rate.max(model.core_uncertainty()))
+}
