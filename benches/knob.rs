@@ -15,7 +15,7 @@ use fretwear::run::{Run, Shared};
 use fretwear::scene::Scene;
 use fretwear::simulation::{End, Observer, Plan, Simulation};
 use fretwear::snapshot::RunFile;
-use fretwear::stepper::Implicit;
+use fretwear::stepper::Multistep;
 
 /// What is asked for, springs and tolerance of the reference, and those with which the reference is itself judged.
 const COARSE: Plans = Plans { accuracies: &[1e-2, 1e-3, 1e-4], reference: (160, 2e-8), second: (112, 6e-8) };
@@ -94,7 +94,7 @@ impl Reference {
         let model = Model::new(&contact, springs, Clustering::Smooth)?;
         let plan = Plan { outputs: cycles.to_vec(), end: End::Cycles(cycles[cycles.len() - 1]) };
         let mut seen = Seen::default();
-        let mut simulation = Simulation::new(model, Box::new(Implicit::new(tolerance)), tolerance, plan)?;
+        let mut simulation = Simulation::new(model, Box::new(Multistep::new(tolerance)), tolerance, plan)?;
         simulation.run(&mut [&mut seen])?;
         Ok(Self { model: simulation.into_model(), states: seen.0 })
     }

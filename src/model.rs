@@ -17,6 +17,7 @@ mod motion;
 mod moving;
 mod operators;
 mod output;
+mod past;
 mod reach;
 mod schedule;
 
@@ -40,6 +41,7 @@ pub use moving::{MovingStick, StickEdge, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;
 pub use output::RadialFields;
+pub use past::{Past, PastPoint};
 use reach::Reach;
 pub use schedule::{Demand, Drive, Resolution, Schedule};
 
@@ -71,6 +73,8 @@ pub struct State {
     pub compression_rate: Vec<f64>,
     /// The edge of stick, where that moves.
     pub stick: Option<StickEdge>,
+    /// What a method of several steps remembers.
+    pub past: Past,
 }
 
 /// What follows from a state, on the springs `ξ_1 ... ξ_n` of which the last is the contact edge.
@@ -240,6 +244,11 @@ impl Model {
         self.slides
     }
 
+    /// Whether wear has no kinks, neither along the slip annulus nor in time.
+    pub fn wears_smoothly(&self) -> bool {
+        self.schedule.wears_smoothly() && self.moving.is_none() && !self.slides
+    }
+
     /// What the core that stays unworn under full sliding makes the worn volume uncertain by, relative; zero where a stick zone is left.
     pub fn core_uncertainty(&self) -> f64 {
         if self.slides { reach::core_share(self.contact.half_space().grading()) } else { 0.0 }
@@ -248,6 +257,11 @@ impl Model {
     /// What acts when.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
+    }
+
+    /// Cycles in which wear at the first pressures comes to the compression at the edge of stick.
+    pub fn cycles_of_wear(&self) -> f64 {
+        self.contact.indentation() / (self.contact.slip_compression() * self.contact.tau_per_cycle())
     }
 
     /// The transforms.
@@ -312,6 +326,7 @@ impl Model {
             least_stick_radius: f64::INFINITY,
             edge_rate: 0.0,
             stick,
+            past: Past::default(),
         }))
     }
 

@@ -17,7 +17,7 @@ use crate::simulation::{End, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
     Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
 };
-use crate::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Stepper};
+use crate::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
 use crate::stick_slip::Regime;
 
 mod effort;
@@ -201,6 +201,7 @@ impl Run {
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
             || checkpoint.state.stick.is_some() != parts.model.moving().is_some()
+            || !checkpoint.state.past.fits(&checkpoint.state, Multistep::HIGHEST_ORDER)
             || !checkpoint
                 .state
                 .compression
@@ -382,6 +383,7 @@ impl Parts {
             StepperChoice::Implicit if model.moving().is_some() => {
                 Box::new(MovingStickImplicit::new(tolerance))
             }
+            StepperChoice::Implicit if model.wears_smoothly() => Box::new(Multistep::new(tolerance)),
             StepperChoice::Implicit => Box::new(Implicit::new(tolerance)),
         };
         let whole = numerics.stepper == StepperChoice::EveryCycle;

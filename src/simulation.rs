@@ -267,7 +267,7 @@ impl Simulation {
             if let Some(outcome) = self.finished() {
                 return Ok(outcome);
             }
-            let landed = self.advance()?;
+            let landed = self.advance(observers)?;
             let ended = self.finished().is_some();
             if landed || ended {
                 self.tell(observers)?;
@@ -282,6 +282,44 @@ impl Simulation {
                 return Ok(Outcome::Interrupted);
             }
         }
+    }
+
+    /// States at the outputs that lie within a step; none if one of them is that of no contact.
+    fn passed(&self, state: &State) -> Option<Vec<(State, Fields)>> {
+        let outputs = &self.plan.outputs[self.progress.next_output as usize..];
+        let within = outputs.iter().take_while(|output| **output < state.cycles);
+        let states = within.map(|output| {
+            let between = self.stepper.between(&self.model, state, *output)?;
+            let fields = self.model.fields(&between);
+            fields.are_physical().then_some((between, fields))
+        });
+        states.collect()
+    }
+
+    /// Shows the states within the last step.
+    fn tell_passed(
+        &mut self,
+        passed: Vec<(State, Fields)>,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<()> {
+        for (state, fields) in passed {
+            let cycle = cycle_of(&self.model, &state, &fields, state.cycles);
+            let radial = self.model.radial_fields(&state, &fields, &cycle);
+            let mut shown = (state, fields, cycle, radial);
+            self.progress.next_output += 1;
+            self.exchange(&mut shown);
+            let told = self.tell(observers);
+            self.exchange(&mut shown);
+            told?;
+        }
+        Ok(())
+    }
+
+    fn exchange(&mut self, other: &mut (State, Fields, CycleFields, RadialFields)) {
+        std::mem::swap(&mut self.state, &mut other.0);
+        std::mem::swap(&mut self.fields, &mut other.1);
+        std::mem::swap(&mut self.cycle, &mut other.2);
+        std::mem::swap(&mut self.radial, &mut other.3);
     }
 
     fn tell(&self, observers: &mut [&mut dyn Observer]) -> Result<()> {
@@ -308,7 +346,7 @@ impl Simulation {
     }
 
     /// Makes one step, of which the length may have to be found; whether it landed on an output.
-    fn advance(&mut self) -> Result<bool> {
+    fn advance(&mut self, observers: &mut [&mut dyn Observer]) -> Result<bool> {
         loop {
             let landing = self.choose_step()?;
             let step = landing.step;
@@ -324,7 +362,17 @@ impl Simulation {
                         self.progress.next_step = shorter;
                         continue;
                     }
-                    self.accept(state, fields, cycle, rate, landing.at)?
+                    let passed = self.passed(&state);
+                    match passed {
+                        Some(passed) => {
+                            let accepted = self.accept(state, fields, cycle, rate, landing.at)?;
+                            if accepted {
+                                self.tell_passed(passed, observers)?;
+                            }
+                            accepted
+                        }
+                        None => false,
+                    }
                 }
                 _ => false,
             };
@@ -334,7 +382,7 @@ impl Simulation {
                         .stuck("the prescribed step makes wear depth decrease or leaves no contact", step));
                 }
             } else {
-                self.adapt(step, error, accepted);
+                self.adapt(step, error, accepted, trial.next_step);
             }
             if accepted {
                 self.progress.steps += 1;
@@ -348,7 +396,11 @@ impl Simulation {
     /// The step to try, and where it lands if it does.
     fn choose_step(&self) -> Result<Landing> {
         let now = self.state.cycles;
-        let output = self.plan.outputs.get(self.progress.next_output as usize).copied();
+        let output = match self.plan.end {
+            End::Cycles(end) if self.stepper.interpolates() => Some(end),
+            End::Rate(_) if self.stepper.interpolates() => None,
+            _ => self.plan.outputs.get(self.progress.next_output as usize).copied(),
+        };
         let target = self.model.schedule().next_break(now).into_iter().chain(output).min_by(f64::total_cmp);
         let landing = |step: f64, at: Option<f64>| Landing { step, at, output: at.is_some() && at == output };
         if let Some(step) = self.stepper.prescribed_step() {
@@ -434,10 +486,10 @@ impl Simulation {
     }
 
     /// Chooses the next step from the error of this one over the tolerance.
-    fn adapt(&mut self, step: f64, error: f64, accepted: bool) {
+    fn adapt(&mut self, step: f64, error: f64, accepted: bool, wanted: Option<f64>) {
         let order = self.stepper.estimate_order();
-        let best =
-            if error.is_finite() { step * SAFETY * error.max(1e-12).powf(-1.0 / order) } else { 0.25 * step };
+        let by_error = || step * SAFETY * error.max(1e-12).powf(-1.0 / order);
+        let best = if error.is_finite() { wanted.unwrap_or_else(by_error) } else { 0.25 * step };
         self.progress.next_step = if accepted {
             best.clamp(SMALLEST_FACTOR * step, LARGEST_FACTOR * step.max(self.progress.next_step))
         } else {

@@ -4,11 +4,14 @@ mod cycle_jump;
 mod every_cycle;
 mod implicit;
 mod moving_stick;
+mod multistep;
+mod newton;
 
 pub use cycle_jump::CycleJump;
 pub use every_cycle::EveryCycle;
 pub use implicit::Implicit;
 pub use moving_stick::MovingStickImplicit;
+pub use multistep::Multistep;
 
 use crate::error::Result;
 use crate::model::{Model, State};
@@ -22,12 +25,14 @@ pub struct Trial {
     pub error: f64,
     /// Evaluations of pressure, slip and wear that the trial took.
     pub rate_evaluations: u64,
+    /// The step that the method wants next, cycles, where it does not leave that to the error.
+    pub next_step: Option<f64>,
 }
 
 impl Trial {
     /// A trial that found no state.
     pub fn failed(rate_evaluations: u64) -> Self {
-        Self { state: None, error: f64::INFINITY, rate_evaluations }
+        Self { state: None, error: f64::INFINITY, rate_evaluations, next_step: None }
     }
 }
 
@@ -41,6 +46,17 @@ pub trait Stepper {
 
     /// Order of the error estimate in the step, for the choice of the next one.
     fn estimate_order(&self) -> f64;
+
+    /// Whether states within a step are known as well as that at its end, see [`Stepper::between`]; else steps have to land where they are wanted.
+    fn interpolates(&self) -> bool {
+        false
+    }
+
+    /// The state at a time within the last step.
+    fn between(&self, model: &Model, state: &State, cycles: f64) -> Option<State> {
+        let _ = (model, state, cycles);
+        None
+    }
 
     /// The step that is prescribed, if the method does not choose it by its error.
     fn prescribed_step(&self) -> Option<f64> {

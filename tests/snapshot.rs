@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fretwear::loading::RecordedPath;
-use fretwear::model::{State, StickEdge};
+use fretwear::model::{Past, PastPoint, State, StickEdge};
 use fretwear::simulation::Progress;
 use fretwear::snapshot::{Checkpoint, LimitCurves, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
 use fretwear::stick_slip::Regime;
@@ -81,6 +81,17 @@ fn snapshot(nodes: usize, seed: usize) -> Snapshot {
     }
 }
 
+fn past_point(seed: usize) -> Arc<PastPoint> {
+    Arc::new(PastPoint {
+        cycles: awkward(seed),
+        edge: awkward(seed + 1),
+        dissipated_energy: awkward(seed + 2),
+        volume_by_rate: awkward(seed + 3),
+        compression: curve(57, seed),
+        log_slip: curve(58, seed + 1),
+    })
+}
+
 fn checkpoint() -> Checkpoint {
     Checkpoint {
         state: State {
@@ -100,6 +111,7 @@ fn checkpoint() -> Checkpoint {
                 wear_depth: curve(31, 7),
                 rates: [1e-300, -1e-17 / 3.0],
             }),
+            past: Past { order: 3, points: (0..4).map(past_point).collect() },
         },
         progress: Progress {
             next_step: 5e-324,
@@ -217,6 +229,15 @@ fn every_value_comes_back_bit_for_bit() {
     assert_eq!(scalars(stick), scalars(wanted));
     assert_eq!(to_bits(&stick.left_behind), to_bits(&wanted.left_behind));
     assert_eq!(to_bits(&stick.wear_depth), to_bits(&wanted.wear_depth));
+    assert_eq!(found.state.past.order, expected.state.past.order);
+    assert_eq!(found.state.past.points.len(), expected.state.past.points.len());
+    for (point, wanted) in found.state.past.points.iter().zip(&expected.state.past.points) {
+        let scalars =
+            |it: &PastPoint| to_bits(&[it.cycles, it.edge, it.dissipated_energy, it.volume_by_rate]);
+        assert_eq!(scalars(point), scalars(wanted));
+        assert_eq!(to_bits(&point.compression), to_bits(&wanted.compression));
+        assert_eq!(to_bits(&point.log_slip), to_bits(&wanted.log_slip));
+    }
     assert_eq!(found.state.edge.to_bits(), OTHER_NAN);
     assert_eq!(found.error_estimate.map(f64::to_bits), expected.error_estimate.map(f64::to_bits));
     // `Debug` prints the shortest decimal that gives the same number, and the sign of zero.

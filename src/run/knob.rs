@@ -26,6 +26,9 @@ const FITTED_SPRINGS: f64 = 24.0;
 /// Part of the accuracy asked for that the fitted error may take up, so that scenes off the fit keep to it too.
 const MARGIN: f64 = 0.35;
 
+/// Part of the accuracy asked for that the error of the time stepping may take up.
+const OF_TIME: f64 = 0.3;
+
 /// Springs added, as a part, for every unit of `n ln(a0/c)` beyond the first number, up to the second: with a small stick zone the fit's order sets
 /// in late.
 const ADDED: f64 = 0.1;
@@ -63,11 +66,7 @@ const MOST_STEPS: u64 = 2000;
 
 /// Whether the program chose the springs of a run on a model, and a pilot tells its error.
 pub(super) fn serves(numerics: &Numerics, model: &Model) -> bool {
-    numerics.springs.is_none()
-        && numerics.stepper == Stepper::Implicit
-        && model.schedule().wears_smoothly()
-        && model.moving().is_none()
-        && !model.slides()
+    numerics.springs.is_none() && numerics.stepper == Stepper::Implicit && model.wears_smoothly()
 }
 
 /// `n ln(a0/c)`: the logarithm of the profile's height at the first contact edge over that at the edge of stick.
@@ -97,10 +96,9 @@ pub(super) fn springs_for(clustering: Clustering, contact: &InitialContact, accu
     (added * fitted).clamp(fewest, MOST_RAISED as f64).ceil() as usize
 }
 
-/// Tolerance of one step that keeps the accumulated error of the time stepping below half of `accuracy`: errors come to 0.2 of the tolerance
-/// where steps are few and to 0.8 where they are many.
+/// Tolerance of the time stepping, whose error is about as large, that leaves most of `accuracy` to the springs.
 pub(super) fn tolerance_for(accuracy: f64) -> f64 {
-    (0.6 * (accuracy / 1e-4).powf(0.3)).clamp(0.4, 2.0) * accuracy
+    OF_TIME * accuracy
 }
 
 /// Springs with which a run is made anew that was off by `error`, or found no end; none beyond [`MOST_REFINED`].

@@ -7,6 +7,7 @@ use super::labelled::{
 };
 use super::layout::*;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
+use crate::model::Past;
 use crate::stick_slip::Regime;
 
 /// Everything that one save stores.
@@ -137,6 +138,9 @@ impl Run<'_> {
         if let Some(estimate) = self.checkpoint.error_estimate {
             put_array(&group, ERROR_ESTIMATE, &[], &[estimate])?;
         }
+        if !state.past.points.is_empty() {
+            put_past(&group, &state.past)?;
+        }
         let Some(stick) = &state.stick else { return Ok(()) };
         let group = create_group(&group, STICK)?;
         let station = Dimension::create(&group, STATION, stick.left_behind.len(), false)?;
@@ -148,4 +152,22 @@ impl Run<'_> {
         }
         Ok(())
     }
+}
+
+fn put_past(checkpoint: &Group, past: &Past) -> Result<()> {
+    let group = create_group(checkpoint, PAST)?;
+    let points = &past.points;
+    let (springs, with_edge) = points.first().map_or((0, 0), |it| (it.compression.len(), it.log_slip.len()));
+    let earlier = Dimension::create(&group, EARLIER, points.len(), false)?;
+    let spring = Dimension::create(&group, SPRING, springs, false)?;
+    let spring_or_edge = Dimension::create(&group, SPRING_OR_EDGE, with_edge, false)?;
+    put_array(&group, ORDER, &[], &[past.order as u64])?;
+    for field in &PAST_REALS {
+        let values: Vec<f64> = points.iter().map(|it| *(field.of)(it)).collect();
+        put_array(&group, field.label, &[&earlier], &values)?;
+    }
+    let compressions: Vec<f64> = points.iter().flat_map(|it| &it.compression).copied().collect();
+    put_array(&group, COMPRESSION, &[&earlier, &spring], &compressions)?;
+    let log_slips: Vec<f64> = points.iter().flat_map(|it| &it.log_slip).copied().collect();
+    put_array(&group, LOG_SLIP, &[&earlier, &spring_or_edge], &log_slips).map(drop)
 }

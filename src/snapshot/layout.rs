@@ -1,7 +1,7 @@
 //! Names, units and meaning of all datasets of a run file: the writer and the reader both go by these tables.
 
 use super::{Checkpoint, Snapshot};
-use crate::model::StickEdge;
+use crate::model::{PastPoint, StickEdge};
 
 /// Value of the root attribute `format`.
 pub const FORMAT: &str = "fretwear-run";
@@ -80,6 +80,16 @@ pub const LEFT_BEHIND: Label = label("left_behind", "m", "slip depth left behind
 pub const WORN_NODE: Label = label("worn_node", "1", "index of the node");
 /// Wear depth at the radii of the output, shape `(worn_node,)`.
 pub const STICK_WEAR_DEPTH: Label = label("wear_depth", "m", "wear depth at the nodes, to go on from");
+/// Group, in that of the checkpoint, of the times that a method of several steps remembers; absent where there are none.
+pub const PAST: &str = "past";
+/// Index coordinate along those times, the newest first, shape `(earlier,)`.
+pub const EARLIER: Label = label("earlier", "1", "index of the time remembered, the newest first");
+/// Index coordinate along the springs and the contact edge, shape `(spring_or_edge,)`.
+pub const SPRING_OR_EDGE: Label = label("spring_or_edge", "1", "index of the spring, the contact edge last");
+/// Logarithm of the slip over that of the unworn profile, shape `(earlier, spring_or_edge)`.
+pub const LOG_SLIP: Label = label("log_slip", "1", "logarithm of the slip over that of the unworn profile");
+/// Order of the step to be tried next, scalar.
+pub const ORDER: Label = label("order", "1", "order of the next step");
 /// Error estimate, scalar, in the group of the checkpoint; absent where there is none.
 pub const ERROR_ESTIMATE: Label =
     label("error_estimate", "1", "estimated error of worn volume and profile relative to those of the limit");
@@ -249,6 +259,26 @@ pub(super) const CHECKPOINT_COUNTS: [Field<Checkpoint, u64>; 4] = [
         label("next_output", "1", "index of the next entry of the output plan"),
         |it| &it.progress.next_output,
         |it| &mut it.progress.next_output,
+    ),
+];
+
+/// Shape `(earlier,)`.
+pub(super) const PAST_REALS: [Field<PastPoint, f64>; 4] = [
+    field(label("cycles", "1", "number of fretting cycles done"), |it| &it.cycles, |it| &mut it.cycles),
+    field(
+        label("edge", "m2", "square of the contact radius less that of the stick radius"),
+        |it| &it.edge,
+        |it| &mut it.edge,
+    ),
+    field(
+        label("dissipated_energy", "J", "energy dissipated by friction since the start"),
+        |it| &it.dissipated_energy,
+        |it| &mut it.dissipated_energy,
+    ),
+    field(
+        label("volume_by_rate", "m3", "worn volume by the rates of the cycles"),
+        |it| &it.volume_by_rate,
+        |it| &mut it.volume_by_rate,
     ),
 ];
 

@@ -14,7 +14,7 @@ use super::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason}
 use crate::error::{Error, Result};
 use crate::indenter::TabulatedProfile;
 use crate::loading::RecordedPath;
-use crate::model::StickEdge;
+use crate::model::{Past, PastPoint, StickEdge};
 use crate::stick_slip::Regime;
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
@@ -255,7 +255,29 @@ impl Source {
             }
             checkpoint.state.stick = Some(stick);
         }
+        if group.link_exists(PAST) {
+            let group = group.group(PAST).map_err(|error| self.damaged("/checkpoint/past", &error))?;
+            checkpoint.state.past = self.past(&group, checkpoint.state.compression.len())?;
+        }
         Ok(checkpoint)
+    }
+
+    fn past(&self, group: &Group, springs: usize) -> Result<Past> {
+        let count = self.values::<i64>(group, EARLIER, &[None])?.len();
+        let mut points = vec![PastPoint::default(); count];
+        for field in &PAST_REALS {
+            let values: Vec<f64> = self.values(group, field.label, &[Some(count)])?;
+            points.iter_mut().zip(values).for_each(|(point, value)| *(field.of_mut)(point) = value);
+        }
+        let compressions: Vec<f64> = self.values(group, COMPRESSION, &[Some(count), Some(springs)])?;
+        let log_slips: Vec<f64> = self.values(group, LOG_SLIP, &[Some(count), Some(springs + 1)])?;
+        let rows = compressions.chunks(springs.max(1)).zip(log_slips.chunks(springs + 1));
+        for (point, (compression, log_slip)) in points.iter_mut().zip(rows) {
+            (point.compression, point.log_slip) = (compression.to_vec(), log_slip.to_vec());
+        }
+        let order = self.scalar::<u64>(group, ORDER)?;
+        let order = usize::try_from(order).unwrap_or(usize::MAX);
+        Ok(Past { order, points: points.into_iter().map(Arc::new).collect() })
     }
 
     fn scalar<T: H5Type + Copy>(&self, group: &Group, label: Label) -> Result<T> {

@@ -1,13 +1,12 @@
 //! Implicit steps of a contact whose edge of stick moves.
 
-use super::implicit::{
-    GAMMA, ITERATIONS, MATRIX, RENEWALS, ROUND_OFF, SLOWEST, STAGES, TIMES, embedded_error,
-};
+use super::implicit::{GAMMA, MATRIX, STAGES, TIMES, embedded_error};
+use super::newton::{ITERATIONS, RENEWALS, ROUND_OFF, SLOWEST};
 use super::{Stepper, Trial};
 use crate::error::Result;
 use crate::grid::lagrange;
 use crate::linear::Factors;
-use crate::model::{Model, State, StickEdge, StickTarget, StickTrial};
+use crate::model::{Model, Past, State, StickEdge, StickTarget, StickTrial};
 
 /// The method of [`Implicit`](super::Implicit) with the edge of stick and the depth of the profile there as further unknowns.
 #[derive(Debug)]
@@ -234,10 +233,11 @@ impl Stepper for MovingStickImplicit {
                 rates: [(at.area - stick.area) / cycles, (at.depth - stick.depth) / cycles],
             }),
             compression: at.compression,
+            past: Past::default(),
         };
         let slopes = stages.iter().map(|stage| &stage.log_slip[..]);
         let error = embedded_error(model, &self.trial.fields, cycles, slopes);
-        Ok(Trial { state: Some(next), error, rate_evaluations: evaluations })
+        Ok(Trial { state: Some(next), error, rate_evaluations: evaluations, next_step: None })
     }
 
     fn estimate_order(&self) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::StickEdge;
 use crate::error::Result;
-use crate::model::{Fields, Model, Place, State};
+use crate::model::{Fields, Model, Past, Place, State};
 use crate::roots::bracketed;
 
 /// Steps of the integrals over the ground that comes to rest in a jump of the edge of stick.
@@ -73,6 +73,7 @@ impl Model {
             compression_rate: vec![0.0; moved.len()],
             compression: moved,
             edge_rate: 0.0,
+            past: Past::default(),
             stick: Some(StickEdge {
                 area: next.stick_area,
                 depth: self.contact.indentation() - compression,

@@ -1,0 +1,82 @@
+//! What a method of several steps remembers.
+
+use std::sync::Arc;
+
+use super::State;
+
+/// Times before a state, for a method that needs more of them than one.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Past {
+    /// Order of the next step; zero at the start.
+    pub order: usize,
+    /// The state itself and those before it, the newest first.
+    pub points: Vec<Arc<PastPoint>>,
+}
+
+impl Past {
+    /// Whether this is the past of a state that a method of orders up to `highest` can go on from.
+    pub fn fits(&self, state: &State, highest: usize) -> bool {
+        let Some(newest) = self.points.first() else { return true };
+        let springs = state.compression.len();
+        let finite = |point: &PastPoint| {
+            let scalars = [point.cycles, point.edge, point.dissipated_energy, point.volume_by_rate];
+            scalars.iter().chain(&point.compression).chain(&point.log_slip).all(|value| value.is_finite())
+                && (point.compression.len(), point.log_slip.len()) == (springs, springs + 1)
+        };
+        (1..=highest.min(self.points.len())).contains(&self.order)
+            // A step that lands on an output ends there, its own time a rounding aside.
+            && (newest.cycles - state.cycles).abs() <= 1e-12 * state.cycles
+            && self.points.iter().all(|point| point.cycles >= 0.0 && finite(point))
+            && self.points.windows(2).all(|pair| pair[0].cycles > pair[1].cycles)
+    }
+}
+
+/// What is remembered of one time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PastPoint {
+    /// Cycles done.
+    pub cycles: f64,
+    /// `Z = a² - c²`, m².
+    pub edge: f64,
+    /// Energy dissipated, J.
+    pub dissipated_energy: f64,
+    /// Worn volume by the rates of the cycles, m³.
+    pub volume_by_rate: f64,
+    /// Compression `q`, m, of the inner springs, shape `(springs - 1,)`.
+    pub compression: Vec<f64>,
+    /// `λ`, shape `(springs,)`.
+    pub log_slip: Vec<f64>,
+}
+
+impl PastPoint {
+    /// What is remembered of a state.
+    pub fn new(state: &State, log_slip: &[f64]) -> Arc<Self> {
+        Arc::new(Self {
+            cycles: state.cycles,
+            edge: state.edge,
+            dissipated_energy: state.dissipated_energy,
+            volume_by_rate: state.volume_by_rate,
+            compression: state.compression.clone(),
+            log_slip: log_slip.to_vec(),
+        })
+    }
+
+    /// A weighted sum of points; the time is not summed.
+    pub fn sum(weights: &[f64], points: &[Arc<Self>]) -> Self {
+        let (springs, edge) = points.first().map_or((0, 0), |it| (it.compression.len(), it.log_slip.len()));
+        let mut sum = Self { compression: vec![0.0; springs], log_slip: vec![0.0; edge], ..Self::default() };
+        for (weight, point) in weights.iter().zip(points) {
+            sum.edge += weight * point.edge;
+            sum.dissipated_energy += weight * point.dissipated_energy;
+            sum.volume_by_rate += weight * point.volume_by_rate;
+            for (total, values) in
+                [(&mut sum.compression, &point.compression), (&mut sum.log_slip, &point.log_slip)]
+            {
+                for (total, value) in total.iter_mut().zip(values) {
+                    *total += weight * value;
+                }
+            }
+        }
+        sum
+    }
+}

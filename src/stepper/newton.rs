@@ -1,0 +1,147 @@
+//! Newton's method for the compressions and the edge at the end of an implicit stage, with the analytic Jacobian.
+
+use faer::Mat;
+
+use crate::linear::Factors;
+use crate::model::{CycleFields, Drive, Fields, Model, State};
+
+/// Newton iterations before the matrix is renewed, and renewals before the step is given up.
+pub(super) const ITERATIONS: usize = 8;
+pub(super) const RENEWALS: usize = 2;
+
+/// Corrections, relative to `q_c` or the edge, that are round-off.
+pub(super) const ROUND_OFF: f64 = 1e-14;
+
+/// Slowest contraction of Newton's corrections that is waited for.
+pub(super) const SLOWEST: f64 = 0.5;
+
+/// The largest part of the tolerance of the time stepping that Newton's method may leave, and its bounds.
+const OF_TOLERANCE: f64 = 1e-3;
+const BOUNDS: [f64; 2] = [1e-12, 1e-5];
+
+/// What a stage is solved for,
+///
+/// ```text
+/// λ - λ̂ - (1 - Ẑ/Z) ξ ∂λ/∂ξ - h W/S = 0 on the inner springs,    w = 0 at the edge.
+/// ```
+#[derive(Debug)]
+pub(super) struct Target {
+    /// `λ̂`, what earlier times make of the logarithms, shape `(springs,)`.
+    pub log_slip: Vec<f64>,
+    /// `Ẑ`, m².
+    pub edge: f64,
+    /// `h`, cycles.
+    pub step: f64,
+    /// What acts.
+    pub drive: Drive,
+}
+
+/// Newton's method and what it left: the fields and the cycle of the last state tried.
+#[derive(Debug)]
+pub(super) struct Newton {
+    tolerance: f64,
+    pub fields: Fields,
+    pub cycle: CycleFields,
+}
+
+impl Newton {
+    /// A method that leaves well less than the tolerance of the time stepping.
+    pub fn new(tolerance: f64) -> Self {
+        let [least, most] = BOUNDS;
+        let tolerance = (OF_TOLERANCE * tolerance).clamp(least, most);
+        Self { tolerance, fields: Fields::default(), cycle: CycleFields::default() }
+    }
+
+    /// Newton's method for one stage, from and into `at`; leaves the fields there. Whether it converged to a contact.
+    pub fn solve(
+        &mut self,
+        model: &Model,
+        target: &Target,
+        at: &mut State,
+        factors: &mut Option<Factors>,
+        evaluations: &mut u64,
+    ) -> bool {
+        let inner = at.compression.len();
+        let scale = model.contact().slip_compression();
+        self.evaluate(model, target, at);
+        for _ in 0..=RENEWALS {
+            let fresh = factors.is_none();
+            let lu = factors.get_or_insert_with(|| Factors::new(self.matrix(model, target, &at.compression)));
+            let mut before = f64::INFINITY;
+            for _ in 0..ITERATIONS {
+                let mut change = residual(model, target, &self.fields, &self.cycle.growth);
+                lu.solve(&mut change);
+                for (q, dq) in at.compression.iter_mut().zip(&change) {
+                    *q -= dq;
+                }
+                at.edge -= change[inner];
+                if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
+                    return false;
+                }
+                self.evaluate(model, target, at);
+                *evaluations += 1;
+                if !self.fields.are_physical() {
+                    return false;
+                }
+                let largest = change[..inner].iter().fold(0.0, |m: f64, dq| m.max(dq.abs())) / scale;
+                let size = largest.max(change[inner].abs() / at.edge);
+                let left = at.compression.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
+                // What is left falls as the corrections do, and the first one with a matrix of its own leaves its square.
+                let first = if fresh { size / left } else { SLOWEST };
+                let part = if before.is_finite() { size / before } else { first }.min(SLOWEST);
+                if size * part / (1.0 - part) <= self.tolerance * left || size <= ROUND_OFF {
+                    return true;
+                }
+                if size > SLOWEST * before {
+                    break;
+                }
+                before = size;
+            }
+            *factors = None;
+        }
+        false
+    }
+
+    /// Recomputes the fields and what a cycle does.
+    fn evaluate(&mut self, model: &Model, target: &Target, at: &State) {
+        model.evaluate(at.edge, &at.compression, &mut self.fields);
+        self.cycle = model.cycle(&target.drive, &at.compression, &self.fields);
+    }
+
+    /// Newton's matrix at the current fields, columns the compressions and then the edge.
+    fn matrix(&self, model: &Model, target: &Target, compression: &[f64]) -> Mat<f64> {
+        let fields = &self.fields;
+        let n = model.springs();
+        let inner = n - 1;
+        let theta = 1.0 - target.edge / fields.edge;
+        let mu = model.mu();
+        let mut matrix = Mat::zeros(n, n);
+        model.add_growth_slopes(&target.drive, compression, fields, &self.cycle, -target.step, &mut matrix);
+        model.add_log_slip_by_compression(fields, theta, &mut matrix);
+        let by_edge = model.log_slip_by_edge(fields);
+        let carried = model.along_annulus(&by_edge);
+        let along = model.along_annulus(&fields.log_slip);
+        for i in 0..inner {
+            matrix[(i, inner)] +=
+                by_edge[i] - theta * carried[i] - along[i] * target.edge / (fields.edge * fields.edge);
+        }
+        let scale = fields.edge.powf(mu) / fields.slip_depth[inner];
+        for j in 0..inner {
+            matrix[(inner, j)] = -scale * model.elastic_depth_by_compression(fields, inner, j);
+        }
+        matrix[(inner, inner)] = by_edge[inner];
+        matrix
+    }
+}
+
+/// What is left of the stage's equations, shape `(springs,)`; the last is `λ` at the edge.
+fn residual(model: &Model, target: &Target, fields: &Fields, growth: &[f64]) -> Vec<f64> {
+    let inner = model.springs() - 1;
+    let theta = 1.0 - target.edge / fields.edge;
+    let mut left = model.along_annulus(&fields.log_slip);
+    for (i, value) in left.iter_mut().enumerate().take(inner) {
+        *value = fields.log_slip[i] - target.log_slip[i] - theta * *value - target.step * growth[i];
+    }
+    left[inner] = fields.log_slip[inner];
+    left
+}
