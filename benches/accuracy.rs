@@ -1,8 +1,10 @@
-//! Measured errors of worn volume and profile, over springs and over the tolerance of the time stepping.
+//! Measured errors of worn volume and profile, over springs, and over the tolerance of both implicit methods of time stepping.
 //!
 //! `cargo bench --bench accuracy` prints the tables of docs/numerics.md. Each scene is judged by the same one with 160 springs and a
-//! tolerance of 1e-7, at sixteen times from the first wear to the limit; errors are relative to the worn volume and to the largest
+//! tolerance of 1e-8, at sixteen times from the first wear to the limit; errors are relative to the worn volume and to the largest
 //! depth of the limit.
+
+use std::time::Instant;
 
 use fretwear::contact::InitialContact;
 use fretwear::error::Result;
@@ -13,7 +15,7 @@ use fretwear::indenter::Indenter;
 use fretwear::loading::{Amplitude, Duration, Load, Loading};
 use fretwear::model::Model;
 use fretwear::simulation::{End, Observer, Plan, Simulation};
-use fretwear::stepper::Implicit;
+use fretwear::stepper::{Implicit, Multistep, Stepper};
 use fretwear::wear::Archard;
 
 /// Exponent of the indenter, grading, stick ratio.
@@ -32,7 +34,7 @@ const SCENES: [(f64, f64, f64); 12] = [
     (2.0, 0.0, 0.05),
 ];
 const SPRINGS: [usize; 7] = [12, 16, 24, 36, 54, 80, 120];
-const TOLERANCES: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+const TOLERANCES: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 const OUTPUTS: i32 = 16;
 
 /// What a run shows at its outputs.
@@ -43,7 +45,17 @@ struct Shown {
     volume_by_energy: Vec<f64>,
     depth_scale: f64,
     steps: u64,
+    evaluations: u64,
+    milliseconds: f64,
 }
+
+/// A method of time stepping, by its tolerance.
+type Method = fn(f64) -> Box<dyn Stepper + Send>;
+
+const METHODS: [(&str, Method); 2] = [
+    ("Runge-Kutta", |tolerance| Box::new(Implicit::new(tolerance))),
+    ("backward differentiation", |tolerance| Box::new(Multistep::new(tolerance))),
+];
 
 impl Observer for Shown {
     fn output(&mut self, simulation: &Simulation) -> Result<()> {
@@ -60,7 +72,12 @@ impl Observer for Shown {
     }
 }
 
-fn run((exponent, grading, stick_ratio): (f64, f64, f64), springs: usize, tolerance: f64) -> Result<Shown> {
+fn run(
+    (exponent, grading, stick_ratio): (f64, f64, f64),
+    springs: usize,
+    tolerance: f64,
+    method: Method,
+) -> Result<Shown> {
     let contact = InitialContact::new(
         &Indenter::power_law(1.0, exponent)?,
         &HalfSpace::from_stiffness(grading, 1.0, 1.0)?,
@@ -83,10 +100,15 @@ fn run((exponent, grading, stick_ratio): (f64, f64, f64), springs: usize, tolera
         volume_by_energy: vec![],
         depth_scale: model.depth_scale(),
         steps: 0,
+        evaluations: 0,
+        milliseconds: 0.0,
     };
-    let mut simulation = Simulation::new(model, Box::new(Implicit::new(tolerance)), tolerance, plan)?;
+    let begun = Instant::now();
+    let mut simulation = Simulation::new(model, method(tolerance), tolerance, plan)?;
     simulation.run(&mut [&mut shown])?;
-    shown.steps = simulation.progress().steps;
+    shown.milliseconds = 1e3 * begun.elapsed().as_secs_f64();
+    let progress = simulation.progress();
+    (shown.steps, shown.evaluations) = (progress.steps + progress.rejected_steps, progress.rate_evaluations);
     Ok(shown)
 }
 
@@ -107,23 +129,30 @@ fn main() -> Result<()> {
         "| n, k, c/a0 | springs | error of volume | of profile | energy balance |\n|---|---|---|---|---|"
     );
     for scene in SCENES {
-        let reference = run(scene, 160, 1e-7)?;
+        let reference = run(scene, 160, 1e-8, METHODS[1].1)?;
         for springs in SPRINGS {
-            let shown = run(scene, springs, 1e-7)?;
+            let shown = run(scene, springs, 1e-8, METHODS[1].1)?;
             let volume = volume_error(&shown.volume, &reference.volume);
             let balance = volume_error(&shown.volume_by_energy, &shown.volume);
             let depth = depth_error(&shown, &reference);
             println!("| {scene:?} | {springs} | {volume:.1e} | {depth:.1e} | {balance:.1e} |");
         }
     }
-    println!("\n| n, k, c/a0 | tolerance | error of volume | of profile | steps |\n|---|---|---|---|---|");
+    println!(
+        "\n| n, k, c/a0 | method | tolerance | error of volume | of profile | steps | evaluations | ms |\n|---|---|---|---|---|---|---|---|"
+    );
     for scene in SCENES {
-        let reference = run(scene, 60, 1e-8)?;
+        let reference = run(scene, 60, 1e-10, METHODS[1].1)?;
         for tolerance in TOLERANCES {
-            let shown = run(scene, 60, tolerance)?;
-            let volume = volume_error(&shown.volume, &reference.volume);
-            let depth = depth_error(&shown, &reference);
-            println!("| {scene:?} | {tolerance:e} | {volume:.1e} | {depth:.1e} | {} |", shown.steps);
+            for (name, method) in METHODS {
+                let shown = run(scene, 60, tolerance, method)?;
+                let volume = volume_error(&shown.volume, &reference.volume);
+                let depth = depth_error(&shown, &reference);
+                let Shown { steps, evaluations, milliseconds, .. } = shown;
+                println!(
+                    "| {scene:?} | {name} | {tolerance:e} | {volume:.1e} | {depth:.1e} | {steps} | {evaluations} | {milliseconds:.1} |"
+                );
+            }
         }
     }
     Ok(())

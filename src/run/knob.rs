@@ -23,11 +23,16 @@ const ERROR: [f64; 5] = [-10.0, 2.9, 0.30, 0.36, 0.30];
 const ORDER: [f64; 2] = [4.5, 1.3];
 const FITTED_SPRINGS: f64 = 24.0;
 
+/// Next to the edge of stick the profile is of third order only, `e = A e^(B k) N⁻³` for gradings from the first number on, below which that
+/// is not seen: `A` and `B` through the errors at k = 0.5 and 0.9 on 120 springs.
+const THIRD_ORDER_FROM: f64 = 0.4;
+const THIRD_ORDER: [f64; 2] = [0.25, 4.5];
+
 /// Part of the accuracy asked for that the fitted error may take up, so that scenes off the fit keep to it too.
-const MARGIN: f64 = 0.35;
+const MARGIN: f64 = 0.45;
 
 /// Part of the accuracy asked for that the error of the time stepping may take up.
-const OF_TIME: f64 = 0.3;
+const OF_TIME: f64 = 0.4;
 
 /// Springs added, as a part, for every unit of `n ln(a0/c)` beyond the first number, up to the second: with a small stick zone the fit's order sets
 /// in late.
@@ -46,6 +51,9 @@ const FEWEST_OF_PILOT: usize = 10;
 /// Error of a run over its difference `δ` from its pilot, `e = C δ/(ρ^p - 1)` with `ρ` the ratio of the springs: `C` and `p` in the middle of the
 /// random scenes, on smooth meshes and on those of cubics.
 const ERROR_PER_DIFFERENCE: [[f64; 2]; 2] = [[1.3, 4.0], [0.4, 3.0]];
+
+/// Part of the tolerance of the time stepping below which an error is not told: as much is of steps, and pilot and run may share it.
+const LEAST_OF_TIME: f64 = 0.15;
 
 /// Least ratio of the springs that tells anything: a mesh may have to be raised to carry the pilot.
 const LEAST_RATIO: f64 = 1.2;
@@ -93,7 +101,13 @@ pub(super) fn springs_for(clustering: Clustering, contact: &InitialContact, accu
     let fewest = if accuracy < 1e-2 { FEWEST_BELOW_A_HUNDREDTH } else { FEWEST };
     let added = 1.0 + ADDED * (smallness(contact).clamp(SMALLNESS[0], SMALLNESS[1]) - SMALLNESS[0]);
     let fitted = FITTED_SPRINGS * (error / (MARGIN * accuracy)).powf(order.recip());
-    (added * fitted).clamp(fewest, MOST_RAISED as f64).ceil() as usize
+    let [scale, growth] = THIRD_ORDER;
+    let next_to_stick = if grading >= THIRD_ORDER_FROM {
+        (scale * (growth * grading).exp() / (MARGIN * accuracy)).cbrt()
+    } else {
+        0.0
+    };
+    (added * fitted).max(next_to_stick).clamp(fewest, MOST_RAISED as f64).ceil() as usize
 }
 
 /// Tolerance of the time stepping, whose error is about as large, that leaves most of `accuracy` to the springs.
@@ -140,7 +154,8 @@ impl Pilot {
 
     /// Estimated error of a run at its snapshots: of the worn volume, relative to the limit's, or of the profile at any of its radii, relative
     /// to the limit's largest depth, whichever is larger. None where no snapshot is of a time that the pilot has seen.
-    pub(super) fn error_of(&self, model: &Model, snapshots: &[Snapshot]) -> Option<f64> {
+    pub(super) fn error_of(&self, simulation: &Simulation, snapshots: &[Snapshot]) -> Option<f64> {
+        let model = simulation.model();
         let ratio = model.springs() as f64 / self.model.springs() as f64;
         if ratio < LEAST_RATIO {
             return None;
@@ -162,7 +177,8 @@ impl Pilot {
         let [smooth, cubic] = ERROR_PER_DIFFERENCE;
         let is_smooth = model.operators().mesh().clustering() == Clustering::Smooth;
         let [factor, order] = if is_smooth { smooth } else { cubic };
-        largest.map(|largest| factor * largest / (ratio.powf(order) - 1.0))
+        let least = LEAST_OF_TIME * simulation.tolerance();
+        largest.map(|largest| (factor * largest / (ratio.powf(order) - 1.0)).max(least))
     }
 }
 

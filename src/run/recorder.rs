@@ -117,7 +117,7 @@ impl Recorder {
     /// By the pilot where there is one that saw a snapshot, else by the balance of the worn volume.
     fn error_estimate(&self, simulation: &Simulation) -> Option<f64> {
         let by_pilot = self.pilot.as_ref();
-        let error = by_pilot.and_then(|it| it.error_of(simulation.model(), self.writer.snapshots()));
+        let error = by_pilot.and_then(|it| it.error_of(simulation, self.writer.snapshots()));
         error.or_else(|| balance_error(simulation))
     }
 

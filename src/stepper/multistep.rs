@@ -41,12 +41,7 @@ impl Stepper for Multistep {
         let past = self.past(model, state);
         let now = state.cycles + cycles;
         let times = TimesBefore::new(model, now, &past);
-        let first = (past.points.len() == 1).then(|| self.first_guess(model, state, cycles));
-        let guess = first.as_ref().map_or_else(|| times.guess(&past), |guess| guess.clone());
-        let mut at = state_of(state, guess, now);
-        if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
-            return Ok(Trial::failed(1));
-        }
+        let first = (past.points.len() == 1).then(|| self.first_log_slip(model, state, cycles));
         let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
         let target = Target {
             log_slip: gathered.log_slip,
@@ -55,9 +50,13 @@ impl Stepper for Multistep {
             drive: model.schedule().drive(state.cycles, now),
         };
         let mut evaluations = 1;
-        if !self.newton.solve(model, &target, &mut at, &mut None, &mut evaluations) {
-            return Ok(Trial::failed(evaluations));
-        }
+        // Where the past leads first; on fine meshes with gradings near -1 that may be beyond what Newton's method comes back from.
+        let still = State { cycles: now, past: Past::default(), ..state.clone() };
+        let guesses = [state_of(state, times.guess(&past), now), still];
+        let found = guesses.into_iter().find_map(|mut at| {
+            self.newton.solve(model, &target, &mut at, &mut None, &mut evaluations).then_some(at)
+        });
+        let Some(mut at) = found else { return Ok(Trial::failed(evaluations)) };
         let cycle = &self.newton.cycle;
         at.dissipated_energy = gathered.dissipated_energy + target.step * cycle.dissipation;
         at.volume_by_rate = gathered.volume_by_rate + target.step * cycle.volume;
@@ -67,9 +66,7 @@ impl Stepper for Multistep {
         past.points.insert(0, PastPoint::new(&at, &self.newton.fields.log_slip));
         let error = match first {
             // The guess and the step are off by as much to either side.
-            Some(guess) => {
-                0.5 * self.depth_error(model, &[1.0, -1.0], &[&past.points[0].log_slip, &guess.log_slip])
-            }
+            Some(guess) => 0.5 * self.depth_error(model, &[1.0, -1.0], &[&past.points[0].log_slip, &guess]),
             None => self.error_at(model, past.order, &times, &past),
         };
         let (order, factor) = self.choose(model, error, &times, &past);
@@ -119,28 +116,17 @@ impl Multistep {
         Past { order: 1, points: vec![PastPoint::new(state, &self.newton.fields.log_slip)] }
     }
 
-    /// Where the rates at the start lead.
-    fn first_guess(&mut self, model: &Model, state: &State, cycles: f64) -> PastPoint {
+    /// `λ` where the rates at the start lead, from zero.
+    fn first_log_slip(&mut self, model: &Model, state: &State, cycles: f64) -> Vec<f64> {
         let fields = &self.newton.fields;
         let drive = model.schedule().drive(state.cycles, state.cycles);
         let cycle = model.cycle(&drive, &state.compression, fields);
-        let (edge, compression) = model.rates(fields, &cycle);
-        let moved = model.along_annulus(&fields.log_slip);
-        let log_slip = |i: usize| {
-            let growth = cycle.growth.get(i).copied().unwrap_or(0.0);
-            fields.log_slip[i] + cycles * (growth + edge / state.edge * moved[i])
-        };
-        PastPoint {
-            edge: state.edge + cycles * edge,
-            compression: state
-                .compression
-                .iter()
-                .zip(&compression)
-                .map(|(q, rate)| q + cycles * rate)
-                .collect(),
-            log_slip: (0..model.springs()).map(log_slip).collect(),
-            ..PastPoint::default()
-        }
+        fields
+            .log_slip
+            .iter()
+            .zip(&cycle.growth)
+            .map(|(log_slip, growth)| log_slip + cycles * growth)
+            .collect()
     }
 
     /// Largest error in depth of a step at some order, over the limit's largest depth, from the divided difference of the next order:

@@ -63,7 +63,9 @@ impl Newton {
     ) -> bool {
         let inner = at.compression.len();
         let scale = model.contact().slip_compression();
-        self.evaluate(model, target, at);
+        if !self.evaluate(model, target, at) {
+            return false;
+        }
         for _ in 0..=RENEWALS {
             let fresh = factors.is_none();
             let lu = factors.get_or_insert_with(|| Factors::new(self.matrix(model, target, &at.compression)));
@@ -75,12 +77,8 @@ impl Newton {
                     *q -= dq;
                 }
                 at.edge -= change[inner];
-                if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
-                    return false;
-                }
-                self.evaluate(model, target, at);
                 *evaluations += 1;
-                if !self.fields.are_physical() {
+                if !self.evaluate(model, target, at) {
                     return false;
                 }
                 let largest = change[..inner].iter().fold(0.0, |m: f64, dq| m.max(dq.abs())) / scale;
@@ -102,10 +100,17 @@ impl Newton {
         false
     }
 
-    /// Recomputes the fields and what a cycle does.
-    fn evaluate(&mut self, model: &Model, target: &Target, at: &State) {
+    /// Recomputes the fields and what a cycle does; whether the state is one of a contact.
+    fn evaluate(&mut self, model: &Model, target: &Target, at: &State) -> bool {
+        if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
+            return false;
+        }
         model.evaluate(at.edge, &at.compression, &mut self.fields);
+        if !self.fields.are_physical() {
+            return false;
+        }
         self.cycle = model.cycle(&target.drive, &at.compression, &self.fields);
+        true
     }
 
     /// Newton's matrix at the current fields, columns the compressions and then the edge.
