@@ -36,9 +36,6 @@ const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 /// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
 const SPRINGS_TO_SLIDE: usize = 60;
 
-/// Springs below which a run that finds no end may do so for being coarse.
-const FEW_SPRINGS: usize = 60;
-
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 pub(crate) const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
@@ -271,7 +268,7 @@ impl Run {
             };
             let checkpoint = recorder.checkpoint(&simulation);
             if refinements < knob::REFINEMENTS
-                && let Some(springs) = wanting(&scene, &simulation, &outcome, &checkpoint, refinements)
+                && let Some(springs) = wanting(&scene, &simulation, &outcome, &checkpoint)
                 && let Ok(parts) = Parts::new(&scene, scene.numerics(), Some(springs), &store)
                 && let Ok(finer) = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)
             {
@@ -311,7 +308,6 @@ fn wanting(
     simulation: &Simulation,
     outcome: &Result<Outcome>,
     checkpoint: &Checkpoint,
-    refinements: usize,
 ) -> Option<usize> {
     let numerics = scene.numerics();
     let (model, accuracy) = (simulation.model(), numerics.accuracy);
@@ -322,7 +318,7 @@ fn wanting(
         Ok(Outcome::Interrupted) => return None,
         Ok(_) => Some(checkpoint.error_estimate.filter(|error| *error > accuracy)?),
         // More springs may find an end where few do not.
-        Err(Error::NotConverged { .. }) if refinements == 0 && model.springs() < FEW_SPRINGS => None,
+        Err(Error::NotConverged { .. }) => None,
         Err(_) => return None,
     };
     knob::refined(model.springs(), error, accuracy)

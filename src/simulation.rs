@@ -36,8 +36,9 @@ const OVERSHOT: f64 = 0.5;
 /// that are not all positive, and where the ground next to the edge of stick wears long after the rest it may come to nothing.
 const CERTAIN_WEAR: f64 = 0.5;
 
-/// How far a compression, over `q_c`, may leave the range from 0 to 1 in which that of the slip annulus lies.
-const BEYOND_CONTACT: f64 = 0.1;
+/// How far a compression, over `q_c`, may leave the range from 0 to 1 in which that of the slip annulus lies. Where the pressure at the edge of
+/// stick blows up it passes below nothing for a while, by 0.1 to 0.3 as `k → -1`; meshes that are unstable swing by more than one.
+const BEYOND_CONTACT: f64 = 0.3;
 
 /// Dimensionless time for which wear without end is followed when a run is to last until its rate has fallen.
 const SHOWN_UNENDING: f64 = 1.0;
