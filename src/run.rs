@@ -36,6 +36,9 @@ const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 /// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
 const SPRINGS_TO_SLIDE: usize = 60;
 
+/// Springs on which a contact is tried in a tenth of a second.
+const QUICKLY_TRIED: usize = 400;
+
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 pub(crate) const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
@@ -147,6 +150,9 @@ impl Run {
         let parts = Parts::new(scene, scene.numerics(), None, &shared.operators)?;
         let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
         let warning = effort::check(scene.numerics().stepper, &mut simulation)?;
+        if scene.numerics().stepper == StepperChoice::Implicit {
+            simulation.model().release_factors();
+        }
         let header = header(scene, simulation.model(), parts.limit.as_ref());
         let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
         let store = shared.operators.clone();
@@ -233,6 +239,21 @@ impl Run {
         let store = shared.operators.clone();
         let limit = parts.limit;
         Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit, warning: None, scene, store })))
+    }
+
+    /// Refuses what [`Run::new`] would refuse for its mesh: springs that do not carry the contact, or do not fit into memory.
+    ///
+    /// Where more springs are asked for than can be tried in a moment, only their memory is looked at.
+    ///
+    /// # Errors
+    /// As [`Run::new`].
+    pub fn check_mesh(scene: &Scene) -> Result<()> {
+        let (contact, numerics) = (scene.contact()?, scene.numerics());
+        if numerics.springs.is_some_and(|springs| springs > QUICKLY_TRIED) {
+            return mesh::check_memory(numerics);
+        }
+        let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
+        mesh::model(&contact, &schedule, numerics, None, &OperatorStore::default()).map(|_| ())
     }
 
     /// A word about a run that will take hours, where that is known beforehand.

@@ -143,7 +143,8 @@ pub struct Simulation {
     state: State,
     fields: Fields,
     cycle: CycleFields,
-    radial: RadialFields,
+    /// Wear depth on the limit's springs, m.
+    depth: Vec<f64>,
     rate: f64,
     progress: Progress,
 }
@@ -188,9 +189,9 @@ impl Simulation {
     ) -> Self {
         let fields = model.fields(&state);
         let cycle = cycle_of(&model, &state, &fields, state.cycles);
-        let radial = model.radial_fields(&state, &fields, &cycle);
+        let depth = model.depth_on_springs(&state, &fields);
         let rate = rate_of_wear(&model, &fields, &cycle);
-        Self { model, stepper, tolerance, plan, state, fields, cycle, radial, rate, progress }
+        Self { model, stepper, tolerance, plan, state, fields, cycle, depth, rate, progress }
     }
 
     /// The model.
@@ -219,13 +220,13 @@ impl Simulation {
     }
 
     /// The fields at the radii of the output.
-    pub fn radial_fields(&self) -> &RadialFields {
-        &self.radial
+    pub fn radial_fields(&self) -> RadialFields {
+        self.model.radial_fields(&self.state, &self.fields, &self.cycle)
     }
 
-    /// Wear depth at the radii of the output, m, shape `(springs,)`.
-    pub fn wear_depth(&self) -> &[f64] {
-        &self.radial.wear_depth
+    /// Wear depth at the radii of the output, m, shape `(node,)`.
+    pub fn wear_depth(&self) -> Vec<f64> {
+        self.radial_fields().wear_depth
     }
 
     /// The plan.
@@ -392,7 +393,7 @@ impl Simulation {
         rate: f64,
         target: Option<f64>,
     ) -> Result<bool> {
-        let radial = self.model.radial_fields(&state, &fields, &cycle);
+        let depth = self.model.depth_on_springs(&state, &fields);
         let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
         let interpolation = match self.model.operators().mesh().clustering() {
             Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
@@ -400,7 +401,7 @@ impl Simulation {
             _ => KINKED_INTERPOLATION,
         };
         let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
-        let mut pairs = radial.wear_depth.iter().zip(&self.radial.wear_depth);
+        let mut pairs = depth.iter().zip(&self.depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);
         if !(grew && fields.are_physical() && self.presses(&state)) {
             return Ok(false);
@@ -422,7 +423,7 @@ impl Simulation {
             cycle = cycle_of(&self.model, &state, &fields, state.cycles);
             rate = rate_of_wear(&self.model, &fields, &cycle);
         }
-        (self.state, self.fields, self.cycle, self.radial, self.rate) = (state, fields, cycle, radial, rate);
+        (self.state, self.fields, self.cycle, self.depth, self.rate) = (state, fields, cycle, depth, rate);
         Ok(true)
     }
 

@@ -69,6 +69,11 @@ pub struct UnwornSlopes {
 }
 
 impl UnwornValues {
+    /// `ln(F q_c/S_0)`: how much the logarithm of slip has grown where no pressure is left.
+    pub fn limit_log_slip(&self) -> f64 {
+        (self.limit_slip / self.slip).ln()
+    }
+
     /// Depth that the limit takes away, m: zero where it would add.
     pub fn limit_depth(&self) -> f64 {
         (self.limit_slip - self.slip).max(0.0)

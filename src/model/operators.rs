@@ -12,8 +12,8 @@ use crate::linear::Factors;
 #[derive(Debug)]
 pub(super) struct Operators {
     pub abel: AbelOperators,
-    /// LU factors of `F` without the edge.
-    pub profile_factors: Factors,
+    /// LU factors of `F` without the edge, while they are kept.
+    factors: Mutex<Option<Arc<Factors>>>,
     /// Row of `F` at the edge times the inverse of the rest.
     pub edge_row: Vec<f64>,
     pub derivative: Vec<Stencil>,
@@ -66,13 +66,36 @@ impl OperatorStore {
     }
 }
 
+/// Springs from which on the factors of `F` are not kept where they are not needed any more: a quarter of a run's memory.
+const MANY_SPRINGS: usize = 500;
+
 impl Operators {
+    /// LU factors of `F` without the edge.
+    pub fn factors(&self) -> Arc<Factors> {
+        let mut kept = self.factors.lock().unwrap_or_else(PoisonError::into_inner);
+        Arc::clone(kept.get_or_insert_with(|| Arc::new(factors(&self.abel))))
+    }
+
+    /// Gives the factors back where they are large; whoever asks for them again waits for them to be made anew.
+    pub fn release_factors(&self) {
+        if self.abel.len() >= MANY_SPRINGS {
+            *self.factors.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        }
+    }
+
     fn new(grading: f64, stretch: f64, springs: usize, clustering: Clustering) -> Result<Self> {
         let abel = AbelOperators::new(grading, Mesh::new(springs, stretch, clustering))?;
         let inner = springs - 1;
-        let profile_factors = Factors::new(abel.profile().submatrix(0, 0, inner, inner).to_owned());
+        let factors = factors(&abel);
         let mut edge_row: Vec<f64> = (0..inner).map(|j| abel.profile()[(inner, j)]).collect();
-        profile_factors.solve_transposed(&mut edge_row);
-        Ok(Self { derivative: derivative_stencils(abel.mesh()), abel, profile_factors, edge_row })
+        factors.solve_transposed(&mut edge_row);
+        let factors = Mutex::new(Some(Arc::new(factors)));
+        Ok(Self { derivative: derivative_stencils(abel.mesh()), abel, factors, edge_row })
     }
+}
+
+/// LU factors of `F` without the edge.
+fn factors(abel: &AbelOperators) -> Factors {
+    let inner = abel.len() - 1;
+    Factors::new(abel.profile().submatrix(0, 0, inner, inner).to_owned())
 }

@@ -15,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
 use crate::indenter::{Indenter, TabulatedProfile};
 use crate::loading::{Duration, Loading, Mode};
+use crate::model::FEWEST_SPRINGS;
 use crate::wear::{Archard, WearLaw};
 
 /// Reads the whole document; the text is kept as it is.
@@ -296,7 +297,7 @@ fn numerics(section: &Section, conditions: &Conditions, warnings: &mut Vec<Strin
         numerics.accuracy = fraction(entry, "[1e-10, 0.1]", 1e-10)?;
     }
     if let Some(entry) = section.optional("springs") {
-        numerics.springs = Some(entry.whole(3..=usize::MAX)?);
+        numerics.springs = Some(entry.whole(FEWEST_SPRINGS..=usize::MAX)?);
     }
     if let Some(entry) = section.optional("stepper") {
         numerics.stepper = Stepper::ALL[entry.word(&Stepper::ALL.map(Stepper::name))?];
