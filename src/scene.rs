@@ -138,6 +138,9 @@ impl WearFrom {
     }
 }
 
+/// Finest accuracy that double precision reaches: below it what is asked of one step is below the round-off of slip (docs/accuracy.md).
+pub const FINEST_ACCURACY: f64 = 1e-8;
+
 /// The table `[numerics]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Numerics {

@@ -123,6 +123,8 @@ impl UnwornSlip {
         let limit_edge = squared * logarithm.exp_m1();
         let end = (MARGIN * limit_edge / squared).ln_1p();
         let growth = (transform.slip(end) / transform.slip(AT_STICK * end)).ln() / end;
+        // A table may begin flat.
+        let growth = if growth.is_finite() { growth } else { 0.0 };
         let slip = |l: f64| transform.slip(l) * (-growth * l).exp();
         let tabulated = profile.end_of_table().is_some();
         Ok(Self {

@@ -24,7 +24,7 @@ type Key = (u64, u64, usize, Clustering);
 
 type Kept = Vec<(Key, Arc<Operators>)>;
 
-/// Operators used last, for all the models of a process.
+/// Operators used last, for all the models of a process; one at most of those so large that they fill the memory.
 ///
 /// Models share them when grading, number of springs and the ratio `a∞/c` agree to the last bit: scenes that differ in load, friction,
 /// wear or stiffness at one stick ratio. A model is the same bit for bit whether its operators were shared or not.
@@ -50,6 +50,11 @@ impl OperatorStore {
         if let Some(found) = self.touch(key) {
             return Ok(found);
         }
+        if springs >= MANY_SPRINGS {
+            // One of that size is enough: on a mesh that did not do, another follows.
+            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.retain(|((_, _, springs, _), _)| *springs < MANY_SPRINGS);
+        }
         // Without the lock, so that others go on meanwhile; two that build the same build it equal.
         let built = Arc::new(Operators::new(grading, stretch, springs, clustering)?);
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -66,7 +71,7 @@ impl OperatorStore {
     }
 }
 
-/// Springs from which on the factors of `F` are not kept where they are not needed any more: a quarter of a run's memory.
+/// Springs from which on what is not needed any more is not kept: the factors of `F`, a quarter of a run's memory, and operators used before.
 const MANY_SPRINGS: usize = 500;
 
 impl Operators {

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use super::document::{Entry, Section};
 use super::laws::{self, OneClock};
 use super::quantity::Dimension;
-use super::{Cycle, MOST_SNAPSHOTS, MOST_SUBSTEPS, Numerics, Output, Rows, Scene, Stepper, WearFrom};
+use super::{
+    Cycle, FINEST_ACCURACY, MOST_SNAPSHOTS, MOST_SUBSTEPS, Numerics, Output, Rows, Scene, Stepper, WearFrom,
+};
 use super::{motion, profile_file};
 use crate::conditions::Conditions;
 use crate::contact::InitialContact;
@@ -294,7 +296,11 @@ fn numerics(section: &Section, conditions: &Conditions, warnings: &mut Vec<Strin
     };
     let accuracy = section.optional("accuracy");
     if let Some(entry) = &accuracy {
-        numerics.accuracy = fraction(entry, "[1e-10, 0.1]", 1e-10)?;
+        numerics.accuracy = fraction(
+            entry,
+            "[1e-8, 0.1]; below 1e-8 round-off lets steps of any length fail",
+            FINEST_ACCURACY,
+        )?;
     }
     if let Some(entry) = section.optional("springs") {
         numerics.springs = Some(entry.whole(FEWEST_SPRINGS..=usize::MAX)?);
