@@ -138,7 +138,7 @@ impl WearFrom {
     }
 }
 
-/// Finest accuracy that double precision reaches: below it what is asked of one step is below the round-off of slip (docs/accuracy.md).
+/// Finest accuracy that was seen to be reached: finer runs came to no end (docs/accuracy.md).
 pub const FINEST_ACCURACY: f64 = 1e-8;
 
 /// The table `[numerics]`.

@@ -37,7 +37,7 @@ const OVERSHOT: f64 = 0.5;
 const CERTAIN_WEAR: f64 = 0.5;
 
 /// How far a compression, over `q_c`, may leave the range from 0 to 1 in which that of the slip annulus lies. Where the pressure at the edge of
-/// stick blows up it passes below nothing for a while, by 0.1 to 0.3 as `k → -1`; meshes that are unstable swing by more than one.
+/// stick blows up it passes below nothing for a while, by more than 0.1 as `k → -1`; meshes that are unstable swing by more than one.
 const BEYOND_CONTACT: f64 = 0.3;
 
 /// Dimensionless time for which wear without end is followed when a run is to last until its rate has fallen.

@@ -298,7 +298,7 @@ fn numerics(section: &Section, conditions: &Conditions, warnings: &mut Vec<Strin
     if let Some(entry) = &accuracy {
         numerics.accuracy = fraction(
             entry,
-            "[1e-8, 0.1]; below 1e-8 round-off lets steps of any length fail",
+            "[1e-8, 0.1]; 1e-8 is the finest that was seen to be reached",
             FINEST_ACCURACY,
         )?;
     }
