@@ -5,6 +5,9 @@ use std::ops::Range;
 /// Most nodes of a local polynomial on a [`Mesh`].
 pub const MOST_POINTS: usize = 6;
 
+/// Stretch below which a mesh is as good as without.
+const NO_STRETCH: f64 = 1e-8;
+
 /// Least stretch of a smooth mesh.
 const SMOOTH_STRETCH: f64 = 10.0;
 
@@ -129,6 +132,11 @@ impl Mesh {
         self.nodes.len() - 1
     }
 
+    /// `Λ`.
+    pub fn stretch(&self) -> f64 {
+        self.stretch
+    }
+
     /// How the nodes cluster.
     pub fn clustering(&self) -> Clustering {
         self.clustering
@@ -146,18 +154,8 @@ impl Mesh {
 
     /// The place at `y` in [0, n].
     pub fn at(&self, y: f64) -> MeshPoint {
-        let cells = self.cells() as f64;
-        let (low, high) = self.clustering.exponents();
-        let (x, left) = (y / cells, (cells - y) / cells);
-        let (part, rest) = if x < 0.5 {
-            let part = x.powi(low + 1) * polynomial(&self.rising, x);
-            (part, 1.0 - part)
-        } else {
-            let rest = left.powi(high + 1) * polynomial(&self.falling, left);
-            (1.0 - rest, rest)
-        };
-        let slope = self.rising[0] * f64::from(low + 1) * x.powi(low) * left.powi(high) / cells;
-        if self.stretch < 1e-8 {
+        let (part, rest, slope) = self.unstretched(y);
+        if self.stretch < NO_STRETCH {
             return MeshPoint { value: part, complement: rest, slope };
         }
         let (whole, grown) = (self.stretch.exp_m1(), (self.stretch * part).exp());
@@ -168,6 +166,21 @@ impl Mesh {
         }
     }
 
+    /// `g(y/n)`, `1 - g(y/n)` and `dg/dy`.
+    fn unstretched(&self, y: f64) -> (f64, f64, f64) {
+        let cells = self.cells() as f64;
+        let (low, high) = self.clustering.exponents();
+        let (x, left) = (y / cells, (cells - y) / cells);
+        let (part, rest) = if x < 0.5 {
+            let part = x.powi(low + 1) * polynomial(&self.rising, x);
+            (part, 1.0 - part)
+        } else {
+            let rest = left.powi(high + 1) * polynomial(&self.falling, left);
+            (1.0 - rest, rest)
+        };
+        (part, rest, self.rising[0] * f64::from(low + 1) * x.powi(low) * left.powi(high) / cells)
+    }
+
     /// The cell in which `ξ` in [0, 1) lies.
     pub fn cell(&self, fraction: f64) -> usize {
         self.nodes.partition_point(|node| *node <= fraction).clamp(1, self.cells()) - 1
@@ -175,18 +188,25 @@ impl Mesh {
 
     /// `y` of `ξ` in [0, 1).
     pub fn place(&self, fraction: f64) -> f64 {
+        let wanted = match self.stretch {
+            stretch if stretch < NO_STRETCH => fraction,
+            stretch => (fraction * stretch.exp_m1()).ln_1p() / stretch,
+        };
         let cell = self.cell(fraction) as f64;
         let (mut low, mut high) = (cell, cell + 1.0);
         let mut y = cell + 0.5;
         for _ in 0..60 {
-            let point = self.at(y);
-            let off = point.value - fraction;
+            let (part, _, slope) = self.unstretched(y);
+            let off = part - wanted;
+            if off.abs() <= f64::EPSILON * wanted {
+                return y;
+            }
             if off > 0.0 {
                 high = y;
             } else {
                 low = y;
             }
-            let newton = y - off / point.slope;
+            let newton = y - off / slope;
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             if (next - y).abs() <= 1e-14 * next {
                 return next;
@@ -249,10 +269,34 @@ impl Mesh {
 
     /// Value at `y` of what is given at the nodes from the first one off the edge of stick on, by the local polynomial.
     pub fn interpolate(&self, values: &[f64], y: f64) -> f64 {
+        self.local(y, values.len()).sum(values)
+    }
+
+    /// The local polynomial at `y` through what is given at `count` nodes from the first one off the edge of stick on.
+    pub fn local(&self, y: f64, count: usize) -> Local {
         let cell = (y as usize).min(self.cells() - 1);
-        let stencil = Self::stencil(cell, self.clustering.degree() + 1, values.len());
+        let stencil = Self::stencil(cell, self.clustering.degree() + 1, count);
         let weights = self.lagrange(&stencil, y, &self.at(y));
-        weights.iter().zip(&values[stencil.start - 1..stencil.end - 1]).map(|(w, v)| w * v).sum()
+        Local { stencil, weights }
+    }
+}
+
+/// A local polynomial at one place of a [`Mesh`].
+#[derive(Debug, Clone)]
+pub struct Local {
+    stencil: Range<usize>,
+    weights: [f64; MOST_POINTS],
+}
+
+impl Local {
+    /// Its value there for what is given at the nodes.
+    pub fn sum(&self, values: &[f64]) -> f64 {
+        self.sum_of(|node| values[node])
+    }
+
+    /// Its value there for what is known of every node, counted from the first one off the edge of stick on.
+    pub fn sum_of(&self, value: impl Fn(usize) -> f64) -> f64 {
+        self.weights.iter().zip(self.stencil.clone()).map(|(weight, node)| weight * value(node - 1)).sum()
     }
 }
 

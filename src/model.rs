@@ -24,8 +24,6 @@ mod schedule;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use faer::Mat;
-
 use crate::abel::AbelOperators;
 use crate::conditions::Conditions;
 use crate::contact::InitialContact;
@@ -41,6 +39,7 @@ pub use moving::{MovingStick, StickEdge, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;
 pub use output::RadialFields;
+use output::Shown;
 pub use past::{Past, PastPoint};
 use reach::Reach;
 pub use schedule::{Demand, Drive, Resolution, Schedule};
@@ -127,12 +126,12 @@ pub struct Model {
     schedule: Schedule,
     unworn: UnwornSlip,
     operators: Arc<Operators>,
-    /// `F` without signs, where slip may turn: the direction of slip on the surface.
-    positive: Option<Mat<f64>>,
     /// The unworn slip on the springs of the limit.
     radial_unworn: Vec<UnwornValues>,
     /// Springs next to the edge of stick that the output does not show.
     hidden: usize,
+    /// Where the output shows the fields.
+    shown: Shown,
     /// The edge of stick, its innermost place where it moves.
     place: Place,
     moving: Option<MovingStick>,
@@ -211,16 +210,12 @@ impl Model {
             Clustering::Smooth => operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN),
             _ => 0,
         };
-        let positive = schedule.resolves().then(|| {
-            let profile = operators.abel.profile();
-            Mat::from_fn(springs, springs, |i, j| profile[(i, j)].abs())
-        });
         Ok(Self {
             contact: contact.clone(),
             schedule,
+            shown: Shown::new(&unworn, operators.abel.mesh(), hidden),
             unworn,
             operators,
-            positive,
             radial_unworn,
             hidden,
             place: Place {
@@ -274,6 +269,11 @@ impl Model {
         &self.unworn
     }
 
+    /// Gives back memory that only explicit steps and the search for a state need, where it is much.
+    pub fn release_factors(&self) {
+        self.operators.release_factors();
+    }
+
     /// Number of springs, the contact edge included.
     pub fn springs(&self) -> usize {
         self.operators.abel.len()
@@ -291,8 +291,7 @@ impl Model {
 
     /// `r² - c²`, m², at [`Model::radii`], without the rounding of the radii.
     pub fn offsets(&self) -> Vec<f64> {
-        let shown = &self.operators.abel.nodes()[1 + self.hidden..];
-        shown.iter().map(|x| self.unworn.limit_edge() * x).collect()
+        self.shown.offsets().to_vec()
     }
 
     /// The unworn state: the edge and the compressions whose wear depth is zero at every spring.
@@ -366,7 +365,7 @@ impl Model {
         let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
         let depth = |(i, v): (usize, &UnwornValues)| v.limit_slip - slip(i, v);
         let mut solution: Vec<f64> = values.iter().take(inner).enumerate().map(depth).collect();
-        self.operators.profile_factors.solve(&mut solution);
+        self.operators.factors().solve(&mut solution);
         let (scale, at_stick) = (edge.powf(-self.mu()), self.density_factor_at_stick(place));
         for (q, v) in solution.iter_mut().zip(&values) {
             *q *= scale / (at_stick * self.density_ratio(v));
@@ -432,7 +431,7 @@ impl Model {
 
     /// Depth that the limit takes away at [`Model::radii`] by the program's own quadrature, m.
     pub fn limit_depth(&self) -> Vec<f64> {
-        self.radial_unworn[self.hidden..].iter().map(UnwornValues::limit_depth).collect()
+        self.shown.limit_depth()
     }
 
     /// The unworn slip on every spring, with the contact edge at `edge`.

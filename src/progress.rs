@@ -88,7 +88,7 @@ impl Observer for Progress {
         let left = model
             .limit_depth()
             .iter()
-            .zip(simulation.wear_depth())
+            .zip(&simulation.wear_depth())
             .fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
         self.bar.set_position((done.clamp(0.0, 1.0) * PARTS as f64) as u64);
         self.bar.set_message(format!(

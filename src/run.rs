@@ -36,8 +36,8 @@ const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 /// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
 const SPRINGS_TO_SLIDE: usize = 60;
 
-/// Springs below which a run that finds no end may do so for being coarse.
-const FEW_SPRINGS: usize = 60;
+/// Springs on which a contact is tried in a tenth of a second.
+const QUICKLY_TRIED: usize = 400;
 
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 pub(crate) const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
@@ -150,6 +150,9 @@ impl Run {
         let parts = Parts::new(scene, scene.numerics(), None, &shared.operators)?;
         let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
         let warning = effort::check(scene.numerics().stepper, &mut simulation)?;
+        if scene.numerics().stepper == StepperChoice::Implicit {
+            simulation.model().release_factors();
+        }
         let header = header(scene, simulation.model(), parts.limit.as_ref());
         let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
         let store = shared.operators.clone();
@@ -239,6 +242,21 @@ impl Run {
         Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit, warning: None, scene, store })))
     }
 
+    /// Refuses what [`Run::new`] would refuse for its mesh: springs that do not carry the contact, or do not fit into memory.
+    ///
+    /// Where more springs are asked for than can be tried in a moment, only their memory is looked at.
+    ///
+    /// # Errors
+    /// As [`Run::new`].
+    pub fn check_mesh(scene: &Scene) -> Result<()> {
+        let (contact, numerics) = (scene.contact()?, scene.numerics());
+        if numerics.springs.is_some_and(|springs| springs > QUICKLY_TRIED) {
+            return mesh::check_memory(numerics);
+        }
+        let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
+        mesh::model(&contact, &schedule, numerics, None, &OperatorStore::default()).map(|_| ())
+    }
+
     /// A word about a run that will take hours, where that is known beforehand.
     pub fn warning(&self) -> Option<&str> {
         self.warning.as_deref()
@@ -272,7 +290,7 @@ impl Run {
             };
             let checkpoint = recorder.checkpoint(&simulation);
             if refinements < knob::REFINEMENTS
-                && let Some(springs) = wanting(&scene, &simulation, &outcome, &checkpoint, refinements)
+                && let Some(springs) = wanting(&scene, &simulation, &outcome, &checkpoint)
                 && let Ok(parts) = Parts::new(&scene, scene.numerics(), Some(springs), &store)
                 && let Ok(finer) = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)
             {
@@ -312,7 +330,6 @@ fn wanting(
     simulation: &Simulation,
     outcome: &Result<Outcome>,
     checkpoint: &Checkpoint,
-    refinements: usize,
 ) -> Option<usize> {
     let numerics = scene.numerics();
     let (model, accuracy) = (simulation.model(), numerics.accuracy);
@@ -323,7 +340,7 @@ fn wanting(
         Ok(Outcome::Interrupted) => return None,
         Ok(_) => Some(checkpoint.error_estimate.filter(|error| *error > accuracy)?),
         // More springs may find an end where few do not.
-        Err(Error::NotConverged { .. }) if refinements == 0 && model.springs() < FEW_SPRINGS => None,
+        Err(Error::NotConverged { .. }) => None,
         Err(_) => return None,
     };
     knob::refined(model.springs(), error, accuracy)

@@ -138,6 +138,9 @@ impl WearFrom {
     }
 }
 
+/// Finest accuracy that was seen to be reached: finer runs came to no end (docs/accuracy.md).
+pub const FINEST_ACCURACY: f64 = 1e-8;
+
 /// The table `[numerics]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Numerics {

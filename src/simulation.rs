@@ -36,8 +36,9 @@ const OVERSHOT: f64 = 0.5;
 /// that are not all positive, and where the ground next to the edge of stick wears long after the rest it may come to nothing.
 const CERTAIN_WEAR: f64 = 0.5;
 
-/// How far a compression, over `q_c`, may leave the range from 0 to 1 in which that of the slip annulus lies.
-const BEYOND_CONTACT: f64 = 0.1;
+/// How far a compression, over `q_c`, may leave the range from 0 to 1 in which that of the slip annulus lies. Where the pressure at the edge of
+/// stick blows up it passes below nothing for a while, by more than 0.1 as `k → -1`; meshes that are unstable swing by more than one.
+const BEYOND_CONTACT: f64 = 0.3;
 
 /// Dimensionless time for which wear without end is followed when a run is to last until its rate has fallen.
 const SHOWN_UNENDING: f64 = 1.0;
@@ -142,7 +143,8 @@ pub struct Simulation {
     state: State,
     fields: Fields,
     cycle: CycleFields,
-    radial: RadialFields,
+    /// Wear depth on the limit's springs, m.
+    depth: Vec<f64>,
     rate: f64,
     progress: Progress,
 }
@@ -187,9 +189,9 @@ impl Simulation {
     ) -> Self {
         let fields = model.fields(&state);
         let cycle = cycle_of(&model, &state, &fields, state.cycles);
-        let radial = model.radial_fields(&state, &fields, &cycle);
+        let depth = model.depth_on_springs(&state, &fields);
         let rate = rate_of_wear(&model, &fields, &cycle);
-        Self { model, stepper, tolerance, plan, state, fields, cycle, radial, rate, progress }
+        Self { model, stepper, tolerance, plan, state, fields, cycle, depth, rate, progress }
     }
 
     /// The model.
@@ -218,13 +220,13 @@ impl Simulation {
     }
 
     /// The fields at the radii of the output.
-    pub fn radial_fields(&self) -> &RadialFields {
-        &self.radial
+    pub fn radial_fields(&self) -> RadialFields {
+        self.model.radial_fields(&self.state, &self.fields, &self.cycle)
     }
 
-    /// Wear depth at the radii of the output, m, shape `(springs,)`.
-    pub fn wear_depth(&self) -> &[f64] {
-        &self.radial.wear_depth
+    /// Wear depth at the radii of the output, m, shape `(node,)`.
+    pub fn wear_depth(&self) -> Vec<f64> {
+        self.radial_fields().wear_depth
     }
 
     /// The plan.
@@ -304,8 +306,7 @@ impl Simulation {
     ) -> Result<()> {
         for (state, fields) in passed {
             let cycle = cycle_of(&self.model, &state, &fields, state.cycles);
-            let radial = self.model.radial_fields(&state, &fields, &cycle);
-            let mut shown = (state, fields, cycle, radial);
+            let mut shown = (state, fields, cycle);
             self.progress.next_output += 1;
             self.exchange(&mut shown);
             let told = self.tell(observers);
@@ -315,11 +316,10 @@ impl Simulation {
         Ok(())
     }
 
-    fn exchange(&mut self, other: &mut (State, Fields, CycleFields, RadialFields)) {
+    fn exchange(&mut self, other: &mut (State, Fields, CycleFields)) {
         std::mem::swap(&mut self.state, &mut other.0);
         std::mem::swap(&mut self.fields, &mut other.1);
         std::mem::swap(&mut self.cycle, &mut other.2);
-        std::mem::swap(&mut self.radial, &mut other.3);
     }
 
     fn tell(&self, observers: &mut [&mut dyn Observer]) -> Result<()> {
@@ -443,7 +443,7 @@ impl Simulation {
         rate: f64,
         target: Option<f64>,
     ) -> Result<bool> {
-        let radial = self.model.radial_fields(&state, &fields, &cycle);
+        let depth = self.model.depth_on_springs(&state, &fields);
         let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
         let interpolation = match self.model.operators().mesh().clustering() {
             Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
@@ -451,7 +451,7 @@ impl Simulation {
             _ => KINKED_INTERPOLATION,
         };
         let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
-        let mut pairs = radial.wear_depth.iter().zip(&self.radial.wear_depth);
+        let mut pairs = depth.iter().zip(&self.depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);
         if !(grew && fields.are_physical() && self.presses(&state)) {
             return Ok(false);
@@ -473,7 +473,7 @@ impl Simulation {
             cycle = cycle_of(&self.model, &state, &fields, state.cycles);
             rate = rate_of_wear(&self.model, &fields, &cycle);
         }
-        (self.state, self.fields, self.cycle, self.radial, self.rate) = (state, fields, cycle, radial, rate);
+        (self.state, self.fields, self.cycle, self.depth, self.rate) = (state, fields, cycle, depth, rate);
         Ok(true)
     }
 

@@ -27,6 +27,9 @@ const TABLE_ACCURACY: f64 = 1e-9;
 /// How far beyond the limiting contact edge the slip is tabulated, as a factor of `Z`.
 const MARGIN: f64 = 1.1;
 
+/// Where slip next to the edge of stick is taken, over the logarithm at the end.
+const AT_STICK: f64 = 1e-6;
+
 /// Slip depth of the unworn contact over the annulus outside the stick zone, as a function of `z = r² - c²`.
 #[derive(Debug, Clone)]
 pub struct UnwornSlip {
@@ -36,8 +39,11 @@ pub struct UnwornSlip {
     mu: f64,
     /// `(F 1)/ℓ^μ` over `ℓ = ln(r²/c²)`, with `μ = (1-k)/2`.
     uniform: Chebyshev,
-    /// `(F(q_c - q_0))/ℓ^(1+μ)`.
+    /// `(F(q_c - q_0))/ℓ^(1+μ) e^(-λℓ)` with [`UnwornSlip::growth`] as `λ`.
     slip: Chebyshev,
+    /// By how much `ln((F(q_c - q_0))/ℓ^(1+μ))` grows on average: where the stick zone is small, slip next to it is orders of magnitude below
+    /// that at the contact edge, and a series without that growth would keep as many digits fewer of it.
+    growth: f64,
     rule: Rule,
     limit_edge: f64,
 }
@@ -63,6 +69,11 @@ pub struct UnwornSlopes {
 }
 
 impl UnwornValues {
+    /// `ln(F q_c/S_0)`: how much the logarithm of slip has grown where no pressure is left.
+    pub fn limit_log_slip(&self) -> f64 {
+        (self.limit_slip / self.slip).ln()
+    }
+
     /// Depth that the limit takes away, m: zero where it would add.
     pub fn limit_depth(&self) -> f64 {
         (self.limit_slip - self.slip).max(0.0)
@@ -111,7 +122,10 @@ impl UnwornSlip {
         let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
         let limit_edge = squared * logarithm.exp_m1();
         let end = (MARGIN * limit_edge / squared).ln_1p();
-        let slip = |l: f64| transform.slip(l);
+        let growth = (transform.slip(end) / transform.slip(AT_STICK * end)).ln() / end;
+        // A table may begin flat.
+        let growth = if growth.is_finite() { growth } else { 0.0 };
+        let slip = |l: f64| transform.slip(l) * (-growth * l).exp();
         let tabulated = profile.end_of_table().is_some();
         Ok(Self {
             stick_radius_squared: squared,
@@ -124,6 +138,7 @@ impl UnwornSlip {
             } else {
                 Chebyshev::fit(slip, end)
             },
+            growth,
             rule: transform.rule.clone(),
             limit_edge,
         })
@@ -146,7 +161,7 @@ impl UnwornSlip {
         UnwornValues {
             logarithm,
             limit_slip: self.slip_compression * power * self.uniform.value(logarithm),
-            slip: logarithm * power * self.slip.value(logarithm),
+            slip: logarithm * power * self.slip_series(logarithm),
         }
     }
 
@@ -162,7 +177,7 @@ impl UnwornSlip {
         let power = logarithm.powf(self.mu);
         let slip = match self.profile.exponent() {
             Some(exponent) => {
-                (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip.value(logarithm)
+                (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip_series(logarithm)
             }
             None => Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm),
         };
@@ -173,6 +188,11 @@ impl UnwornSlip {
         }
     }
 
+    /// `(F(q_c - q_0))/ℓ^(1+μ)`.
+    fn slip_series(&self, logarithm: f64) -> f64 {
+        self.slip.value(logarithm) * (self.growth * logarithm).exp()
+    }
+
     /// Derivatives of the slip depths where `values` belong to.
     pub fn slopes(&self, values: &UnwornValues) -> UnwornSlopes {
         let logarithm = values.logarithm;
@@ -181,7 +201,7 @@ impl UnwornSlip {
         let (slip, slip_slope) = self.slip.value_and_derivative(logarithm);
         UnwornSlopes {
             limit_slip: values.limit_slip * by_z * (uniform_slope / uniform + self.mu / logarithm),
-            log_slip: by_z * (slip_slope / slip + (1.0 + self.mu) / logarithm),
+            log_slip: by_z * (slip_slope / slip + self.growth + (1.0 + self.mu) / logarithm),
         }
     }
 }

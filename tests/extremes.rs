@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use fretwear::Error;
+use fretwear::report::CheckReport;
 use fretwear::run::{Run, RunResult};
 use fretwear::scene::Scene;
 use fretwear::snapshot::{RunFile, Snapshot, StopReason};
@@ -75,9 +76,8 @@ impl Extreme {
     /// Why the scene is refused.
     fn refusal(&self) -> String {
         match self.run() {
-            Err(error @ Error::Inconsistent { .. }) => error.to_string(),
-            Err(error @ Error::OutOfRange { .. }) => error.to_string(),
-            Err(error) => panic!("{error}"),
+            Err(error @ Error::NotConverged { .. }) => panic!("{error}"),
+            Err(error) => error.to_string(),
             Ok(result) => panic!("ran to {:?}", result.stop_reason),
         }
     }
@@ -236,7 +236,8 @@ fn tally(gradings: &[f64], exponents: &[f64], amplitudes: &[f64]) -> (Tally, Off
 fn combinations_end_at_the_limit_or_say_why_not() {
     let (tally, off) = tally(&[-0.9, 0.0, 0.9999], &[0.5, 2.0, 20.0], &[1e-10, 1.0 - 1e-2, 1.0 - 1e-6]);
     println!("{tally:?} {off:?}");
-    assert!(tally.limit >= 19 && tally.failed <= 7, "{tally:?}");
+    // One of them, k = -0.9 and n = 0.5 at 1 - 1e-2 and closer, is refused.
+    assert!(tally.limit >= 25 && tally.failed == 0, "{tally:?}");
     assert!(off.within(2e-12, 1e-3, 1e-13), "{off:?}");
 }
 
@@ -246,7 +247,10 @@ fn the_whole_matrix_ends_at_the_limit_or_says_why_not() {
     let gradings = [0.0, 0.9, -0.9, 0.99, -0.99, 0.999, -0.999, 0.9999, -0.9999];
     let (tally, off) = tally(&gradings, &[0.1, 0.5, 1.0, 2.0, 4.0, 10.0, 20.0], &AMPLITUDES);
     println!("{tally:?} {off:?}");
-    assert!(off.within(1e-10, 1e-3, 1e-4), "{off:?}");
+    // The one that fails: k = 0, n = 0.1 at 1 - 1e-6, a stick radius of 1e-60 of the contact radius.
+    assert!(tally.limit >= 451 && tally.failed <= 1, "{tally:?}");
+    // Measured: 1.7e-8 of the depth, 6.8e-8 of the radius, both n = 0.1 with c/a0 = 1e-60; seven of n = 0.1 are above 1e-11.
+    assert!(off.within(1e-7, 1e-3, 5e-7), "{off:?}");
 }
 
 #[test]
@@ -341,8 +345,8 @@ fn a_million_million_cycles_are_run_or_refused_but_never_waited_for() {
 fn springs_are_few_or_many_or_refused_with_the_figure() {
     let with = |springs: usize| Extreme { numerics: format!("springs = {springs}"), ..Extreme::default() };
     let off = worst([8, 12, 400].map(with));
-    // Measured: 2.3e-12, 1.1e-3 (8 springs), 2.5e-13.
-    assert!(off.within(1e-11, 5e-3, 1e-12), "{off:?}");
+    // Measured: 2.1e-11 (between 8 springs), 1.1e-3 (8 springs), 2.5e-13.
+    assert!(off.within(1e-10, 5e-3, 1e-12), "{off:?}");
     let message = with(3).refusal();
     assert!(message.contains("numerics.springs = 3"), "{message}");
     for (springs, size) in [(1_000_000, "40000.0 GB"), (1_000_000_000, "40000000000.0 GB")] {
@@ -354,6 +358,63 @@ fn springs_are_few_or_many_or_refused_with_the_figure() {
         message.contains("24 springs do not carry this contact") && message.contains("more springs"),
         "{message}"
     );
+}
+
+#[test]
+fn what_a_run_refuses_for_its_mesh_the_check_refuses_with_the_same_words() {
+    let with = |exponent: f64, amplitude: f64, springs: usize| Extreme {
+        exponent,
+        amplitude: ratio(amplitude),
+        numerics: format!("springs = {springs}"),
+        ..Extreme::default()
+    };
+    for case in [with(0.5, 1.0 - 1e-4, 24), with(2.0, 0.5, 1_000_000)] {
+        let scene = Scene::from_toml(&case.text(), "extreme.toml").unwrap();
+        let (checked, run) = (CheckReport::new(&scene).unwrap_err().to_string(), case.refusal());
+        // The memory that is free may differ from one moment to the next.
+        let said = |text: &str| text.split(" and ").next().unwrap_or_default().to_owned();
+        assert_eq!(said(&checked), said(&run));
+    }
+    let scene = Scene::from_toml(&with(2.0, 0.5, 24).text(), "extreme.toml").unwrap();
+    assert_eq!(CheckReport::new(&scene).unwrap().regime, "partial-slip");
+}
+
+/// The radii and depths of a run with some numerics.
+fn depths(grading: f64, exponent: f64, stick_ratio: f64, numerics: &str) -> (Vec<f64>, Vec<Snapshot>, f64) {
+    let case = Extreme {
+        exponent,
+        amplitude: format!("stick_ratio = {stick_ratio}"),
+        end: "tau = 20".into(),
+        numerics: numerics.into(),
+        ..self::grading(grading)
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = folder.path().join("run.h5");
+    let text = case.text().replace("snapshots = 3", "at_tau = [0.01, 0.3, 2.0, 6.0]");
+    let scene = Scene::from_toml(&text, "depths.toml").unwrap();
+    let result = Run::new(&scene, &output, false).unwrap().execute(None).unwrap();
+    let file = RunFile::open(&output).unwrap();
+    (file.header.radius, file.snapshots, result.limit.unwrap().wear_depth_max())
+}
+
+#[test]
+fn few_springs_show_many_radii_and_between_the_springs_the_profile_is_as_right_as_at_them() {
+    for (k, n, stick) in [(0.0, 2.0, 0.7), (0.9, 2.0, 0.7), (0.3, 4.0, 0.2), (-0.8, 2.0, 0.5)] {
+        let (radii, snapshots, scale) = depths(k, n, stick, "accuracy = 1e-4");
+        let (fine_radii, fine, _) = depths(k, n, stick, "springs = 115\ntolerance = 1e-7");
+        assert!(radii.len() >= 120 && radii == fine_radii, "{} and {}", radii.len(), fine_radii.len());
+        assert!(snapshots[0].wear_depth.iter().all(|depth| *depth == 0.0));
+        for (snapshot, fine) in snapshots.iter().zip(&fine) {
+            let pairs = snapshot.wear_depth.iter().zip(&fine.wear_depth);
+            let off = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / scale;
+            println!("k {k} n {n} c/a0 {stick} at τ = {}: {off:.1e}", snapshot.tau);
+            // Measured: at most 5.5e-5, at the springs and between them.
+            assert!(off < 1e-4, "k {k} n {n} c/a0 {stick} at τ = {}: {off:e}", snapshot.tau);
+            let outside = radii.iter().zip(&snapshot.pressure).filter(|(r, _)| **r > snapshot.contact_radius);
+            assert!(outside.into_iter().all(|(_, pressure)| *pressure == 0.0));
+            assert!(snapshot.wear_depth.iter().chain(&snapshot.pressure).all(|value| *value >= 0.0));
+        }
+    }
 }
 
 #[test]

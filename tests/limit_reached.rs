@@ -28,7 +28,7 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
                 let model = simulation.model();
                 let limit: Vec<f64> =
                     model.offsets().iter().map(|offset| shape.wear_depth_at_offset(*offset)).collect();
-                let distance = support::distance(simulation.wear_depth(), &limit) / shape.wear_depth_max();
+                let distance = support::distance(&simulation.wear_depth(), &limit) / shape.wear_depth_max();
                 let worn = model.wear_volume(simulation.fields()) / shape.wear_volume() - 1.0;
                 let limit_edge = shape.contact_radius_limit().powi(2) - shape.stick_radius().powi(2);
                 let off = (simulation.state().edge / limit_edge - 1.0).abs();

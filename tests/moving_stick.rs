@@ -354,7 +354,7 @@ fn distance_from_limit(simulation: &Simulation) -> f64 {
     let model = simulation.model();
     let shape = LimitingShape::from_contact(model.contact()).unwrap().unwrap();
     let limit: Vec<f64> = model.offsets().iter().map(|it| shape.wear_depth_at_offset(*it)).collect();
-    distance(simulation.wear_depth(), &limit) / shape.wear_depth_max()
+    distance(&simulation.wear_depth(), &limit) / shape.wear_depth_max()
 }
 
 fn inward_laws(contact: &InitialContact) -> Vec<(&'static str, WearLaw)> {

@@ -28,6 +28,9 @@ const DEBRIS_LAYER: f64 = 0.1;
 /// Pressure, over the mean one of the unworn contact, from which on debris passes it on whole: without a kink at none.
 const LEAST_DEBRIS: f64 = 1e-3;
 
+/// Columns of a dense matrix that are formed at a time where only what follows from them is kept.
+const BLOCK: usize = 128;
+
 /// Agreement of two amplitudes that are the same number by two ways.
 const SAME: f64 = 1e-13;
 
@@ -210,12 +213,7 @@ impl Model {
             if drive.path.is_some() {
                 let slipped =
                     Mat::from_fn(inner, columns, |j, m| motion.slip[(j, m)] * fields.density_factor[j]);
-                product(
-                    &mut direction,
-                    self.positive.as_ref().expect("made for paths").subcols(0, inner),
-                    slipped.as_ref(),
-                    1.0,
-                );
+                product_without_signs(&mut direction, self.operators.abel.profile(), slipped.as_ref());
                 normalise(&mut direction, components);
             }
         }
@@ -300,20 +298,11 @@ impl Model {
         let surface = self.surface(drive, &motion, compression, fields);
         let worn = self.worn(&drive.wear, &surface, true);
         let (steps, components) = (motion.steps(), motion.components);
-        let mut by_pressure = Mat::zeros(n, inner);
-        if motion.load.ncols() == 1 {
-            let total: Vec<f64> = (0..n).map(|i| worn.by_pressure.row(i).iter().sum()).collect();
-            by_pressure = Mat::from_fn(n, inner, |i, j| total[i] * motion.load_slope[(j, 0)]);
-        } else {
-            product(&mut by_pressure, worn.by_pressure.as_ref(), motion.load_slope.transpose(), 1.0);
-        }
         let along = Mat::from_fn(n, steps * components, |i, c| {
             let step = c / components;
             let slips = surface.path[(i, step)] > 0.0;
             if slips { worn.by_path[(i, step)] * surface.direction[(i, c)] } else { 0.0 }
         });
-        let mut by_slip = Mat::zeros(n, inner);
-        product(&mut by_slip, along.as_ref(), motion.slip_slope.transpose(), 1.0);
         let smeared;
         let pressure = if let WearLaw::NonLocal { length, .. } = drive.wear {
             smeared = self.smeared_pressure(drive, &motion, compression, fields, length);
@@ -324,13 +313,26 @@ impl Model {
         let per_cycle = factor / drive.cycles_per_period;
         let scale = fields.edge.powf(self.mu());
         let profile = self.operators.abel.profile();
-        for j in 0..inner {
-            for i in 0..n {
-                let carried = scale * profile[(i, j)] * fields.density_factor[j];
-                let worn =
-                    by_pressure[(i, j)] * pressure_scale * pressure[(i, j)] + by_slip[(i, j)] * carried;
-                matrix[(i, j)] +=
-                    (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
+        let total: Vec<f64> = (0..n).map(|i| worn.by_pressure.row(i).iter().sum()).collect();
+        for columns in blocks(inner) {
+            let (first, count) = (columns.start, columns.len());
+            let mut by_slip = Mat::zeros(n, count);
+            product(&mut by_slip, along.as_ref(), motion.slip_slope.subrows(first, count).transpose(), 1.0);
+            let mut by_pressure = Mat::zeros(n, count);
+            if motion.load.ncols() == 1 {
+                by_pressure = Mat::from_fn(n, count, |i, j| total[i] * motion.load_slope[(first + j, 0)]);
+            } else {
+                let slopes = motion.load_slope.subrows(first, count).transpose();
+                product(&mut by_pressure, worn.by_pressure.as_ref(), slopes, 1.0);
+            }
+            for j in columns {
+                for i in 0..n {
+                    let carried = scale * profile[(i, j)] * fields.density_factor[j];
+                    let worn = by_pressure[(i, j - first)] * pressure_scale * pressure[(i, j)]
+                        + by_slip[(i, j - first)] * carried;
+                    matrix[(i, j)] +=
+                        (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
+                }
             }
         }
         if let WearLaw::NonLocal { .. } = drive.wear {
@@ -492,6 +494,21 @@ fn growth(drive: &Drive, worn: &Worn, fields: &Fields) -> Vec<f64> {
 /// `to = scale · left · right`.
 fn product(to: &mut Mat<f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>, scale: f64) {
     matmul(to.as_mut(), Accum::Replace, left, right, scale, Par::Seq);
+}
+
+/// `to = |left| right` for the leading columns of `left`, some at a time, so that no second matrix of that size is held.
+fn product_without_signs(to: &mut Mat<f64>, left: &Mat<f64>, right: MatRef<'_, f64>) {
+    to.fill(0.0);
+    for columns in blocks(right.nrows()) {
+        let part = Mat::from_fn(left.nrows(), columns.len(), |i, j| left[(i, columns.start + j)].abs());
+        let rows = right.subrows(columns.start, columns.len());
+        matmul(to.as_mut(), Accum::Add, part.as_ref(), rows, 1.0, Par::Seq);
+    }
+}
+
+/// Columns of a matrix, some at a time.
+fn blocks(columns: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    (0..columns).step_by(BLOCK).map(move |first| first..(first + BLOCK).min(columns))
 }
 
 /// Makes the vectors along each row unit vectors, or zero.

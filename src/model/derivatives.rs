@@ -96,8 +96,9 @@ impl Model {
         let edge_slope = slip[inner] * by_edge[inner];
         let edge_rate =
             -dot(&self.operators.edge_row, &worn) / (dot(&self.operators.edge_row, &moved) - edge_slope);
-        self.operators.profile_factors.solve(&mut worn);
-        self.operators.profile_factors.solve(&mut moved);
+        let factors = self.operators.factors();
+        factors.solve(&mut worn);
+        factors.solve(&mut moved);
         let scale = fields.edge.powf(-self.mu());
         let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * edge_rate);
         (edge_rate, (0..inner).map(rate).collect())

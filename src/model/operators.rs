@@ -12,8 +12,8 @@ use crate::linear::Factors;
 #[derive(Debug)]
 pub(super) struct Operators {
     pub abel: AbelOperators,
-    /// LU factors of `F` without the edge.
-    pub profile_factors: Factors,
+    /// LU factors of `F` without the edge, while they are kept.
+    factors: Mutex<Option<Arc<Factors>>>,
     /// Row of `F` at the edge times the inverse of the rest.
     pub edge_row: Vec<f64>,
     pub derivative: Vec<Stencil>,
@@ -24,7 +24,7 @@ type Key = (u64, u64, usize, Clustering);
 
 type Kept = Vec<(Key, Arc<Operators>)>;
 
-/// Operators used last, for all the models of a process.
+/// Operators used last, for all the models of a process; one at most of those so large that they fill the memory.
 ///
 /// Models share them when grading, number of springs and the ratio `a∞/c` agree to the last bit: scenes that differ in load, friction,
 /// wear or stiffness at one stick ratio. A model is the same bit for bit whether its operators were shared or not.
@@ -50,6 +50,11 @@ impl OperatorStore {
         if let Some(found) = self.touch(key) {
             return Ok(found);
         }
+        if springs >= MANY_SPRINGS {
+            // One of that size is enough: on a mesh that did not do, another follows.
+            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.retain(|((_, _, springs, _), _)| *springs < MANY_SPRINGS);
+        }
         // Without the lock, so that others go on meanwhile; two that build the same build it equal.
         let built = Arc::new(Operators::new(grading, stretch, springs, clustering)?);
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -66,13 +71,36 @@ impl OperatorStore {
     }
 }
 
+/// Springs from which on what is not needed any more is not kept: the factors of `F`, a quarter of a run's memory, and operators used before.
+const MANY_SPRINGS: usize = 500;
+
 impl Operators {
+    /// LU factors of `F` without the edge.
+    pub fn factors(&self) -> Arc<Factors> {
+        let mut kept = self.factors.lock().unwrap_or_else(PoisonError::into_inner);
+        Arc::clone(kept.get_or_insert_with(|| Arc::new(factors(&self.abel))))
+    }
+
+    /// Gives the factors back where they are large; whoever asks for them again waits for them to be made anew.
+    pub fn release_factors(&self) {
+        if self.abel.len() >= MANY_SPRINGS {
+            *self.factors.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        }
+    }
+
     fn new(grading: f64, stretch: f64, springs: usize, clustering: Clustering) -> Result<Self> {
         let abel = AbelOperators::new(grading, Mesh::new(springs, stretch, clustering))?;
         let inner = springs - 1;
-        let profile_factors = Factors::new(abel.profile().submatrix(0, 0, inner, inner).to_owned());
+        let factors = factors(&abel);
         let mut edge_row: Vec<f64> = (0..inner).map(|j| abel.profile()[(inner, j)]).collect();
-        profile_factors.solve_transposed(&mut edge_row);
-        Ok(Self { derivative: derivative_stencils(abel.mesh()), abel, profile_factors, edge_row })
+        factors.solve_transposed(&mut edge_row);
+        let factors = Mutex::new(Some(Arc::new(factors)));
+        Ok(Self { derivative: derivative_stencils(abel.mesh()), abel, factors, edge_row })
     }
+}
+
+/// LU factors of `F` without the edge.
+fn factors(abel: &AbelOperators) -> Factors {
+    let inner = abel.len() - 1;
+    Factors::new(abel.profile().submatrix(0, 0, inner, inner).to_owned())
 }

@@ -2,13 +2,17 @@
 
 use std::f64::consts::PI;
 
-use super::{CycleFields, Fields, Model, State};
+use super::{CycleFields, Fields, HIDDEN, Model, State};
+use crate::grid::{Clustering, Mesh};
 use crate::linear::dot;
-use crate::slip_depth::UnwornValues;
+use crate::slip_depth::{UnwornSlip, UnwornValues};
 use crate::stick_slip::Regime;
 
 /// Distance from the contact edge, over the annulus, that is round-off.
 const AT_EDGE: f64 = 1e-13;
+
+/// Places at which the fields on a smooth mesh are shown where its springs are fewer.
+const SHOWN: usize = 128;
 
 /// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
 /// innermost of them may be as strong as the core.
@@ -139,56 +143,161 @@ impl Model {
         if x <= 0.0 || x >= 1.0 - AT_EDGE {
             return 0.0;
         }
-        let mesh = self.operators.abel.mesh();
-        let growth = mesh.interpolate(&fields.log_slip, mesh.place(x)).exp_m1();
-        self.unworn_at(&fields.place, z).slip * growth
+        let unworn = self.unworn_at(&fields.place, z);
+        let of_limit = |spring: usize| fields.unworn[spring].limit_log_slip();
+        unworn.slip * self.log_slip_at(fields, x, &unworn, of_limit).1.exp_m1()
     }
 
-    /// The fields at [`Model::radii`], by local interpolation between the springs.
+    /// The coordinate of `ξ` on the mesh, and `λ` there, where the unworn slip is known.
+    ///
+    /// On a smooth mesh it is the local polynomial, corrected by what that is off by for the limit's `λ_∞`, which is known everywhere, as far as
+    /// wear has come: so the limit is met between the springs as it is at them.
+    fn log_slip_at(
+        &self,
+        fields: &Fields,
+        fraction: f64,
+        unworn: &UnwornValues,
+        of_limit: impl Fn(usize) -> f64,
+    ) -> (f64, f64) {
+        let mesh = self.operators.abel.mesh();
+        let y = mesh.place(fraction);
+        let local = mesh.local(y, self.springs());
+        let log_slip = local.sum(&fields.log_slip);
+        if mesh.clustering() != Clustering::Smooth {
+            return (y, log_slip);
+        }
+        let between = local.sum_of(of_limit);
+        let worn = if between > 0.0 { (log_slip / between).clamp(0.0, 1.0) } else { 1.0 };
+        (y, log_slip + worn * (unworn.limit_log_slip() - between))
+    }
+
+    /// Wear depth, m, at the places of the limit's springs that are shown, at least zero: fewer than [`Model::radii`] where springs are few.
+    pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
+        if let Some(stick) = state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
+            return stick.wear_depth.clone();
+        }
+        let places = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
+        let of_limit = self.limit_log_slip(fields);
+        let depth = |(x, unworn): (&f64, &UnwornValues)| {
+            let spot = self.spot(state, fields, &of_limit, self.unworn.limit_edge() * x, unworn);
+            spot.map_or(0.0, |spot| spot.wear_depth())
+        };
+        places.map(depth).collect()
+    }
+
+    /// The fields at [`Model::radii`], by the local polynomials between the springs.
     pub fn radial_fields(&self, state: &State, fields: &Fields, cycle: &CycleFields) -> RadialFields {
         let mesh = self.operators.abel.mesh();
-        let (n, nodes) = (self.springs(), mesh.nodes());
         let nu = 1.0 - self.mu();
         // Slip over slip depth is smooth along the annulus.
         let per_depth: Vec<f64> =
             cycle.slip.iter().zip(&fields.slip_depth).map(|(slip, depth)| slip / depth).collect();
-        let eased: Vec<f64> =
-            (0..n - 1).map(|i| fields.pressure[i] * mesh.node(i + 1).complement.powf(-nu)).collect();
-        let shown = n - self.hidden;
+        let eased: Vec<f64> = (0..self.springs() - 1)
+            .map(|i| fields.pressure[i] * mesh.node(i + 1).complement.powf(-nu))
+            .collect();
+        let shown = self.shown.offsets.len();
         let mut radial =
             RadialFields { wear_depth: vec![0.0; shown], pressure: vec![0.0; shown], slip: vec![0.0; shown] };
-        for i in 0..shown {
-            let spring = i + self.hidden;
-            let offset = self.unworn.limit_edge() * nodes[spring + 1];
-            let x = match &state.stick {
-                None => nodes[spring + 1] * (self.unworn.limit_edge() / fields.edge),
-                Some(stick) => (self.place.stick_area + offset - stick.area) / fields.edge,
+        let of_limit = self.limit_log_slip(fields);
+        let left_behind = state.stick.as_ref().map_or(&[][..], |stick| &stick.wear_depth);
+        for (i, (offset, unworn)) in self.shown.offsets.iter().zip(&self.shown.unworn).enumerate() {
+            let spot = self.spot(state, fields, &of_limit, *offset, unworn);
+            radial.wear_depth[i] = match left_behind.get(i) {
+                Some(worn) => *worn,
+                None => spot.as_ref().map_or(0.0, Spot::wear_depth),
             };
-            if let Some(worn) = state.stick.as_ref().and_then(|stick| stick.wear_depth.get(i)) {
-                radial.wear_depth[i] = *worn;
-            }
-            if x >= 1.0 - AT_EDGE {
-                break;
-            }
-            if x <= 0.0 {
-                continue;
-            }
-            let y = mesh.place(x);
-            let log_slip = mesh.interpolate(&fields.log_slip, y);
-            let unworn = match &state.stick {
-                None => self.radial_unworn[spring].slip,
-                Some(stick) => {
-                    let z = self.place.stick_area + offset - stick.area;
-                    self.unworn_at(&fields.place, z).slip
-                }
-            };
-            if state.stick.as_ref().is_none_or(|stick| stick.wear_depth.is_empty()) {
-                // Between the last springs before the contact edge the polynomial may pass below nothing, by less than the run is off.
-                radial.wear_depth[i] = unworn * log_slip.exp_m1().max(0.0);
-            }
+            let Some(Spot { x, y, unworn, log_slip }) = spot else { continue };
             radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
             radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
+            if mesh.clustering() == Clustering::Smooth {
+                radial.pressure[i] = radial.pressure[i].max(0.0);
+            }
         }
         radial
+    }
+
+    /// `λ_∞` on the springs.
+    fn limit_log_slip(&self, fields: &Fields) -> Vec<f64> {
+        fields.unworn.iter().map(UnwornValues::limit_log_slip).collect()
+    }
+
+    /// A place of the annulus at `offset = r² - c²`, m², with the edge of stick at rest, where the unworn slip of that is known; none outside.
+    fn spot(
+        &self,
+        state: &State,
+        fields: &Fields,
+        of_limit: &[f64],
+        offset: f64,
+        at_rest: &UnwornValues,
+    ) -> Option<Spot> {
+        let (z, unworn) = match &state.stick {
+            None => (offset, *at_rest),
+            Some(stick) => {
+                let z = self.place.stick_area + offset - stick.area;
+                (z, if z > 0.0 { self.unworn_at(&fields.place, z) } else { *at_rest })
+            }
+        };
+        let x = z / fields.edge;
+        if x <= 0.0 || x >= 1.0 - AT_EDGE {
+            return None;
+        }
+        let (y, log_slip) = self.log_slip_at(fields, x, &unworn, |spring| of_limit[spring]);
+        Some(Spot { x, y, unworn: unworn.slip, log_slip })
+    }
+}
+
+/// A place between the springs.
+struct Spot {
+    /// `ξ`.
+    x: f64,
+    /// Its coordinate on the mesh.
+    y: f64,
+    /// Slip depth of the unworn contact, m.
+    unworn: f64,
+    /// `λ`.
+    log_slip: f64,
+}
+
+impl Spot {
+    /// At least zero: before the contact edge the polynomial may pass below nothing, by less than the run is off.
+    fn wear_depth(&self) -> f64 {
+        self.unworn * self.log_slip.exp_m1().max(0.0)
+    }
+}
+
+/// Where fields are shown.
+#[derive(Debug, Clone)]
+pub(super) struct Shown {
+    /// `r² - c²`, m², increasing.
+    offsets: Vec<f64>,
+    /// The unworn slip there.
+    unworn: Vec<UnwornValues>,
+}
+
+impl Shown {
+    /// The places of the limit's springs, but for the first ones; on a smooth mesh of few springs, whose polynomials serve between them, at
+    /// least [`SHOWN`] places, graded as the mesh is, from [`HIDDEN`] to the contact edge.
+    pub(super) fn new(unworn: &UnwornSlip, mesh: &Mesh, hidden: usize) -> Self {
+        let springs = &mesh.nodes()[1 + hidden..];
+        let fractions = if mesh.clustering() == Clustering::Smooth && springs.len() < SHOWN {
+            let like = Mesh::new(SHOWN, mesh.stretch(), Clustering::Smooth);
+            let first = like.place(HIDDEN);
+            let spacing = (SHOWN as f64 - first) / (SHOWN - 1) as f64;
+            (0..SHOWN).map(|i| like.at(SHOWN as f64 - spacing * (SHOWN - 1 - i) as f64).value).collect()
+        } else {
+            springs.to_vec()
+        };
+        let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_edge() * x).collect();
+        Self { unworn: offsets.iter().map(|offset| unworn.at(*offset)).collect(), offsets }
+    }
+
+    /// `r² - c²`, m².
+    pub(super) fn offsets(&self) -> &[f64] {
+        &self.offsets
+    }
+
+    /// Depth that the limit takes away, m.
+    pub(super) fn limit_depth(&self) -> Vec<f64> {
+        self.unworn.iter().map(UnwornValues::limit_depth).collect()
     }
 }

@@ -10,6 +10,7 @@ use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::indenter::Indenter;
 use crate::loading::Duration;
+use crate::run::Run;
 use crate::scene::Scene;
 use crate::stick_slip::Regime;
 
@@ -99,10 +100,13 @@ impl CheckReport {
     /// Derives the quantities.
     ///
     /// # Errors
-    /// As [`InitialContact::new`] and [`LimitingShape::from_contact`]; [`Error::Inconsistent`] if the number of cycles overflows.
+    /// As [`InitialContact::new`], [`LimitingShape::from_contact`] and, under partial slip, [`Run::check_mesh`]; [`Error::Inconsistent`] if the number of cycles overflows.
     pub fn new(scene: &Scene) -> Result<Self> {
         let contact = scene.contact()?;
         let limit = LimitingShape::from_contact(&contact)?;
+        if contact.regime() == Regime::PartialSlip {
+            Run::check_mesh(scene)?;
+        }
         let of_limit =
             |value: fn(&LimitingShape) -> f64| limit.as_ref().map(|shape| unsigned_zero(value(shape)));
         let half_space = contact.half_space();

@@ -73,7 +73,7 @@ pub(super) fn model(
     let chosen = || springs_for(clusterings[0], contact, numerics.accuracy);
     let mut springs = given.or(wanted).unwrap_or_else(chosen);
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
-    check_memory(key, springs)?;
+    check_memory_of(key, springs)?;
     let allowed = match given {
         Some(_) => Quality { compression: COARSEST, volume: COARSEST_VOLUME, round_off: ROUND_OFF },
         None => Quality { compression: COARSE, volume: numerics.accuracy, round_off: ROUND_OFF },
@@ -159,8 +159,16 @@ fn too_coarse(contact: &InitialContact, springs: usize, by_hand: bool, quality: 
     Error::Inconsistent { what, why }
 }
 
+/// Refuses springs asked for by hand that do not fit into the memory that is free.
+///
+/// # Errors
+/// [`Error::Inconsistent`] with the figures.
+pub(super) fn check_memory(numerics: &Numerics) -> Result<()> {
+    numerics.springs.map_or(Ok(()), |springs| check_memory_of("numerics.springs", springs))
+}
+
 /// Refuses springs for which the dense operators do not fit into the memory that is free.
-fn check_memory(key: &'static str, springs: usize) -> Result<()> {
+fn check_memory_of(key: &'static str, springs: usize) -> Result<()> {
     let needed = BYTES_PER_PAIR * (springs as f64).powi(2);
     let Some(free) = free_memory() else { return Ok(()) };
     if needed < free {

@@ -19,7 +19,7 @@ const LOOP_STEPS: usize = 64;
 pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
     let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
     let (contact, cycle) = (model.contact(), simulation.cycle());
-    let radial = simulation.radial_fields().clone();
+    let radial = simulation.radial_fields();
     let unworn = state.cycles == 0.0;
     let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
     let fretting_loop = fretting_loop(simulation);

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::Scene;
+use super::{FINEST_ACCURACY, Scene};
 use crate::error::Error;
 
 /// Sets of keys of a table of the scene of which a scene has one at most: a patch that sets a key of one set removes the others.
@@ -124,10 +124,9 @@ pub(super) fn last_until(scene: &mut Table, tau: f64) -> Result<(), String> {
 /// As [`Patch::apply`].
 pub(super) fn refine(scene: &mut Table) -> Result<(), String> {
     const DEFAULT_ACCURACY: f64 = 1e-4;
-    const FINEST: f64 = 1e-10;
     let numerics = table_of(scene, "numerics")?;
     let accuracy = numerics.get("accuracy").and_then(float).unwrap_or(DEFAULT_ACCURACY);
-    numerics.insert("accuracy".into(), Value::Float((accuracy / 8.0).max(FINEST)));
+    numerics.insert("accuracy".into(), Value::Float((accuracy / 8.0).max(FINEST_ACCURACY)));
     if let Some(springs) = numerics.get("springs").and_then(Value::as_integer) {
         numerics.insert("springs".into(), Value::Integer(springs.saturating_mul(2)));
     }

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use super::document::{Entry, Section};
 use super::laws::{self, OneClock};
 use super::quantity::Dimension;
-use super::{Cycle, MOST_SNAPSHOTS, MOST_SUBSTEPS, Numerics, Output, Rows, Scene, Stepper, WearFrom};
+use super::{
+    Cycle, FINEST_ACCURACY, MOST_SNAPSHOTS, MOST_SUBSTEPS, Numerics, Output, Rows, Scene, Stepper, WearFrom,
+};
 use super::{motion, profile_file};
 use crate::conditions::Conditions;
 use crate::contact::InitialContact;
@@ -15,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
 use crate::indenter::{Indenter, TabulatedProfile};
 use crate::loading::{Duration, Loading, Mode};
+use crate::model::FEWEST_SPRINGS;
 use crate::wear::{Archard, WearLaw};
 
 /// Reads the whole document; the text is kept as it is.
@@ -293,10 +296,11 @@ fn numerics(section: &Section, conditions: &Conditions, warnings: &mut Vec<Strin
     };
     let accuracy = section.optional("accuracy");
     if let Some(entry) = &accuracy {
-        numerics.accuracy = fraction(entry, "[1e-10, 0.1]", 1e-10)?;
+        numerics.accuracy =
+            fraction(entry, "[1e-8, 0.1]; 1e-8 is the finest that was seen to be reached", FINEST_ACCURACY)?;
     }
     if let Some(entry) = section.optional("springs") {
-        numerics.springs = Some(entry.whole(3..=usize::MAX)?);
+        numerics.springs = Some(entry.whole(FEWEST_SPRINGS..=usize::MAX)?);
     }
     if let Some(entry) = section.optional("stepper") {
         numerics.stepper = Stepper::ALL[entry.word(&Stepper::ALL.map(Stepper::name))?];

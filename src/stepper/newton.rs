@@ -12,6 +12,9 @@ pub(super) const RENEWALS: usize = 2;
 /// Corrections, relative to `q_c` or the edge, that are round-off.
 pub(super) const ROUND_OFF: f64 = 1e-14;
 
+/// Units of round-off in a slip depth of the unworn contact, by a series, and in what springs take away from it, by a sum over all of them.
+const RESIDUAL_ROUND_OFF: f64 = 64.0;
+
 /// Slowest contraction of Newton's corrections that is waited for.
 pub(super) const SLOWEST: f64 = 0.5;
 
@@ -91,6 +94,9 @@ impl Newton {
                     return true;
                 }
                 if size > SLOWEST * before {
+                    if self.has_converged(model, target) {
+                        return true;
+                    }
                     break;
                 }
                 before = size;
@@ -98,6 +104,17 @@ impl Newton {
             *factors = None;
         }
         false
+    }
+
+    /// Whether no more is left of the stage's equations than the round-off of slip, a difference of the depths without pressure and with it.
+    fn has_converged(&self, model: &Model, target: &Target) -> bool {
+        let left = residual(model, target, &self.fields, &self.cycle.growth);
+        let round_off = |i: usize| {
+            let fields = &self.fields;
+            let cancelled = fields.unworn[i].limit_slip / fields.slip_depth[i];
+            RESIDUAL_ROUND_OFF * f64::EPSILON * (cancelled + fields.log_slip[i].abs())
+        };
+        left.iter().enumerate().all(|(i, value)| value.abs() <= round_off(i))
     }
 
     /// Recomputes the fields and what a cycle does; whether the state is one of a contact.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::error::{Error, Result};
 use crate::loading::Mode;
-use crate::scene::{Cycle, Scene, Stepper};
+use crate::scene::{Cycle, FINEST_ACCURACY, Scene, Stepper};
 
 /// The ladders, of which every rung is combined with every other.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,8 +58,8 @@ impl Ladders {
         if let Some(value) = self.tolerances.iter().find(|it| !(**it > 0.0 && **it <= 0.1)) {
             return wrong("--tolerances", format!("{value} is outside (0, 0.1]"));
         }
-        if let Some(value) = self.accuracies.iter().find(|it| !(1e-10..=0.1).contains(*it)) {
-            return wrong("--accuracies", format!("{value} is outside [1e-10, 0.1]"));
+        if let Some(value) = self.accuracies.iter().find(|it| !(FINEST_ACCURACY..=0.1).contains(*it)) {
+            return wrong("--accuracies", format!("{value} is outside [1e-8, 0.1]"));
         }
         if self.springs.is_empty() || self.tolerances.is_empty() || self.steppers.is_empty() {
             return wrong(

@@ -122,7 +122,7 @@ pub fn end(case: &Case, conditions: &Conditions, end: End) -> Ending {
         outcome: outcome.unwrap(),
         cycles: simulation.state().cycles,
         steps: simulation.progress().steps,
-        distance: distance(simulation.wear_depth(), &limit) / shape.wear_depth_max(),
+        distance: distance(&simulation.wear_depth(), &limit) / shape.wear_depth_max(),
         volume: model.wear_volume(simulation.fields()) / shape.wear_volume(),
     }
 }

@@ -108,7 +108,7 @@ impl Observer for Record {
             self.0.push(Seen {
                 state: simulation.state().clone(),
                 wear_volume: simulation.model().wear_volume(simulation.fields()),
-                wear_depth: simulation.wear_depth().to_vec(),
+                wear_depth: simulation.wear_depth(),
                 depth_at_parts: depth_at_parts(simulation),
                 steps: simulation.progress().steps,
             });
