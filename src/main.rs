@@ -17,6 +17,10 @@ use fretwear::submit::{self, Engine, SubmitReport, Wishes};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result, universality};
 
+#[path = "main/completions.rs"]
+mod completions;
+#[path = "main/export.rs"]
+mod export;
 #[path = "main/tradeoff.rs"]
 mod tradeoff;
 
@@ -56,6 +60,12 @@ enum Command {
     Submit(Submit),
     /// Show what is in a result file and whether it is complete
     Info(Info),
+    /// Write any table of a result file as CSV, or the worn surface of a run for ParaView
+    Export(export::Export),
+    /// Print a script with which a shell completes commands and options
+    Completions(completions::Completions),
+    /// Write manual pages, one for each subcommand
+    Man(completions::Man),
 }
 
 #[derive(Args)]
@@ -272,6 +282,9 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check(&arguments).map(done),
         Command::Submit(arguments) => submit(&arguments),
         Command::Info(arguments) => info(&arguments).map(done),
+        Command::Export(arguments) => export::export(&arguments).map(done),
+        Command::Completions(arguments) => Ok(done(completions::completions::<Cli>(&arguments))),
+        Command::Man(arguments) => completions::man::<Cli>(&arguments).map(done),
     };
     match outcome {
         Ok((text, code)) => print(&text, code),

@@ -52,6 +52,7 @@ mod path_file;
 mod profile_file;
 pub mod quantity;
 pub mod sampling;
+pub mod schema;
 mod sections;
 mod spacing;
 mod study;

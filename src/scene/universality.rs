@@ -37,6 +37,7 @@ mod cover;
 mod reading;
 
 pub use cover::covering_design;
+pub(super) use reading::MOST_ENTRIES;
 
 use std::path::{Path, PathBuf};
 

@@ -17,7 +17,7 @@ use crate::scene::sections;
 const TABLES: [&str; 4] = ["media", "wear", "friction", "modes"];
 
 /// Most levels of a factor, single cases and pairs left out.
-const MOST_ENTRIES: usize = 10_000;
+pub(in crate::scene) const MOST_ENTRIES: usize = 10_000;
 
 /// What the document says, before the base scene is there.
 pub(super) struct Plan {
