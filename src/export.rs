@@ -46,7 +46,8 @@ pub fn worn_surface(path: &Path, sectors: usize) -> Result<SurfaceSeries> {
             ),
         });
     }
-    let inner = (0..=INNER_CIRCLES).map(|circle| header.radius[0] * circle as f64 / (INNER_CIRCLES + 1) as f64);
+    let inner =
+        (0..=INNER_CIRCLES).map(|circle| header.radius[0] * circle as f64 / (INNER_CIRCLES + 1) as f64);
     let radius: Vec<f64> = inner.clone().chain(header.radius.iter().copied()).collect();
     let unworn: Vec<f64> = inner.map(|r| scene.indenter().profile(r)).collect();
     // Along the radius, the axis first.

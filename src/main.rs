@@ -21,6 +21,8 @@ use fretwear::{Error, Result, universality};
 mod completions;
 #[path = "main/export.rs"]
 mod export;
+#[path = "main/schema.rs"]
+mod schema;
 #[path = "main/tradeoff.rs"]
 mod tradeoff;
 
@@ -62,6 +64,10 @@ enum Command {
     Info(Info),
     /// Write any table of a result file as CSV, or the worn surface of a run for ParaView
     Export(export::Export),
+    /// Write a commented scene to begin with
+    Init(schema::Init),
+    /// Print the JSON Schema of a kind of file, for editors
+    Schema(schema::Schema),
     /// Print a script with which a shell completes commands and options
     Completions(completions::Completions),
     /// Write manual pages, one for each subcommand
@@ -283,6 +289,8 @@ fn main() -> ExitCode {
         Command::Submit(arguments) => submit(&arguments),
         Command::Info(arguments) => info(&arguments).map(done),
         Command::Export(arguments) => export::export(&arguments).map(done),
+        Command::Init(arguments) => schema::init(&arguments).map(done),
+        Command::Schema(arguments) => schema::schema(&arguments).map(done),
         Command::Completions(arguments) => Ok(done(completions::completions::<Cli>(&arguments))),
         Command::Man(arguments) => completions::man::<Cli>(&arguments).map(done),
     };

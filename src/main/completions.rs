@@ -57,10 +57,8 @@ pub fn man<C: CommandFactory>(arguments: &Man) -> Result<String> {
 
 fn page(command: Command) -> Result<String> {
     let mut text = vec![];
-    clap_mangen::Man::new(command).render(&mut text).map_err(|error| Error::File {
-        path: "manual page".into(),
-        why: error.to_string(),
-    })?;
+    clap_mangen::Man::new(command)
+        .render(&mut text)
+        .map_err(|error| Error::File { path: "manual page".into(), why: error.to_string() })?;
     Ok(String::from_utf8(text).expect("made of UTF-8 strings"))
 }
-

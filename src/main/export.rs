@@ -68,7 +68,10 @@ fn list(arguments: &Export) -> Result<String> {
         text += &format!("{}: {rows}{usual}\n    {}\n", table.name, table.columns.join("  "));
     }
     if let [first, .., last] = &tables.runs()[..] {
-        text += &format!("{} runs are kept, {first} to {last}; those of the others have the same tables\n", tables.runs().len());
+        text += &format!(
+            "{} runs are kept, {first} to {last}; those of the others have the same tables\n",
+            tables.runs().len()
+        );
     }
     Ok(text)
 }

@@ -112,7 +112,11 @@ impl ResultTables {
         let summary = |table: &Table| TableSummary {
             name: table.name.clone(),
             rows: table.rows(),
-            columns: table.columns.iter().map(|it| it.head(&self.source).unwrap_or(it.name.clone())).collect(),
+            columns: table
+                .columns
+                .iter()
+                .map(|it| it.head(&self.source).unwrap_or(it.name.clone()))
+                .collect(),
         };
         self.tables.iter().map(summary).collect()
     }
@@ -131,10 +135,8 @@ impl ResultTables {
         let names: Vec<&str> = self.tables.iter().map(|table| table.name.as_str()).collect();
         let likeness = |other: &&&str| (1e9 * strsim::jaro_winkler(name, other)) as u64;
         let near = names.iter().max_by_key(likeness).map_or("", |near| near);
-        self.source.error(format!(
-            "has no table {name:?}; did you mean {near:?}? There are: {}",
-            names.join("  ")
-        ))
+        self.source
+            .error(format!("has no table {name:?}; did you mean {near:?}? There are: {}", names.join("  ")))
     }
 
     fn list_runs(&mut self, file: &File) -> Result<Option<String>> {
@@ -223,7 +225,10 @@ impl ResultTables {
 }
 
 /// The dimensions of a dataset.
-fn axes(dataset: &Dataset, known: &[(String, Dataset)]) -> std::result::Result<Vec<(String, Dataset)>, String> {
+fn axes(
+    dataset: &Dataset,
+    known: &[(String, Dataset)],
+) -> std::result::Result<Vec<(String, Dataset)>, String> {
     let along = |axis: usize| {
         let found = known.iter().find(|(_, it)| is_dimension(it) && runs_along(dataset, axis, it));
         let (name, dimension) = found.ok_or(format!("axis {axis} has no dimension scale"))?;
@@ -276,7 +281,9 @@ impl Table {
         }
         let place = |axis| {
             let found = self.axes.iter().position(|dimension| runs_along(dataset, axis, dimension));
-            found.ok_or_else(|| source.damaged(name, &format!("does not run along the dimensions of {}", self.name)))
+            found.ok_or_else(|| {
+                source.damaged(name, &format!("does not run along the dimensions of {}", self.name))
+            })
         };
         let axes = (0..dataset.ndim()).map(place).collect::<Result<_>>()?;
         self.columns.push(Variable { name: name.to_owned(), dataset: dataset.clone(), axes });

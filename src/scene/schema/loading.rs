@@ -17,10 +17,7 @@ pub(super) fn loading() -> Table {
             force("Normal force that presses the unworn indenter, N; the indentation found so is held."),
         ),
         ("normal_force", force("Normal force, N; held, so that the indentation grows as the contact wears.")),
-        (
-            "amplitude",
-            quantity("Tangential amplitude U, half the stroke, m.", at_least_zero(), "0.3 um"),
-        ),
+        ("amplitude", quantity("Tangential amplitude U, half the stroke, m.", at_least_zero(), "0.3 um")),
         ("amplitude_ratio", number("U/(μ_f d).", at_least_zero())),
         (
             "stick_ratio",
@@ -41,10 +38,7 @@ pub(super) fn loading() -> Table {
         (
             "tangential_control",
             or(
-                word(
-                    "What is held of the tangential oscillation.",
-                    &["displacement", "force", "rig"],
-                ),
+                word("What is held of the tangential oscillation.", &["displacement", "force", "rig"]),
                 "displacement",
             ),
         ),
@@ -56,7 +50,10 @@ pub(super) fn loading() -> Table {
                 "5 MN/m",
             ),
         ),
-        ("blocks", list("Blocks of cycles, one after the other; the last goes on.", block(), [1, MOST_TIMES])),
+        (
+            "blocks",
+            list("Blocks of cycles, one after the other; the last goes on.", block(), [1, MOST_TIMES]),
+        ),
         ("repeat", or(switch("After the last block the first one again."), false)),
         ("normal_oscillation", normal_oscillation()),
         ("orbit", orbit()),
@@ -144,13 +141,12 @@ fn orbit() -> Value {
 }
 
 fn path() -> Value {
-    let file = text("File of columns x, y and, if it changes, the indentation over that of the scene; relative to the scene.");
+    let file = text(
+        "File of columns x, y and, if it changes, the indentation over that of the scene; relative to the scene.",
+    );
     Table::new(
         "The indenter follows a recorded path; the amplitude is left out.",
-        vec![
-            ("file", file),
-            ("displacement_unit", or(text("Unit of all columns, a length."), "m")),
-        ],
+        vec![("file", file), ("displacement_unit", or(text("Unit of all columns, a length."), "m"))],
     )
     .requires(&["file"])
     .whole()

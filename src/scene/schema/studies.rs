@@ -3,8 +3,7 @@
 use serde_json::{Value, json};
 
 use super::keys::{
-    Table, above_zero, described, line, list, magnitude, number, one_form, or, switch,
-    text, whole, word,
+    Table, above_zero, described, line, list, magnitude, number, one_form, or, switch, text, whole, word,
 };
 use super::tables::{patch, poisson_ratio};
 use crate::scene::map::MOST_ALONG_AXIS;
@@ -35,7 +34,10 @@ pub(super) fn study() -> Table {
                 Task::default().name(),
             ),
         ),
-        ("axes", list("What varies; every value of one axis meets every one of the others.", axis(), [0, 100])),
+        (
+            "axes",
+            list("What varies; every value of one axis meets every one of the others.", axis(), [0, 100]),
+        ),
         ("sampling", sampling()),
         ("output", output()),
     ];
@@ -67,10 +69,7 @@ fn axis() -> Value {
 
 fn sampling() -> Value {
     let keys = vec![
-        (
-            "method",
-            or(word("How samples are spread.", &Method::ALL.map(Method::name)), Method::Sobol.name()),
-        ),
+        ("method", or(word("How samples are spread.", &Method::ALL.map(Method::name)), Method::Sobol.name())),
         ("count", whole("Number of samples.", 1, Some(MOST))),
         ("seed", or(whole("Seed of the random numbers.", 0, None), 0)),
         ("variables", list("What is drawn.", variable(), [1, UnitCube::MOST_VARIABLES])),
@@ -119,9 +118,11 @@ fn variable() -> Value {
 }
 
 fn output() -> Value {
-    let numbers = json!({ "type": "array", "items": { "type": "integer", "minimum": 0 }, "maxItems": 100_000 });
+    let numbers =
+        json!({ "type": "array", "items": { "type": "integer", "minimum": 0 }, "maxItems": 100_000 });
     let kept = json!({ "anyOf": [{ "enum": ["none", "all"] }, numbers] });
-    let kept = or(described(kept, "Of which scenes the whole run is kept: none, all, or their numbers."), "none");
+    let kept =
+        or(described(kept, "Of which scenes the whole run is kept: none, all, or their numbers."), "none");
     Table::new("What is kept beside the rows.", vec![("snapshots", kept)]).whole()
 }
 
@@ -146,8 +147,12 @@ pub(super) fn map() -> Table {
     let grading = json!({ "exclusiveMinimum": -1, "exclusiveMaximum": 1 });
     let amplitude = json!({ "minimum": 1e-12, "maximum": 1e3 });
     let depth = json!({ "minimum": 1e-6, "maximum": 1e6 });
-    let exponent = number("Exponent n of f = A r^n: 1 is a cone, 2 a paraboloid.", json!({ "minimum": 0.1, "maximum": 20 }));
-    let indenter = Table::new("Shape of the indenter.", vec![("exponent", or(exponent, 2))]).requires(&["exponent"]);
+    let exponent = number(
+        "Exponent n of f = A r^n: 1 is a cone, 2 a paraboloid.",
+        json!({ "minimum": 0.1, "maximum": 20 }),
+    );
+    let indenter =
+        Table::new("Shape of the indenter.", vec![("exponent", or(exponent, 2))]).requires(&["exponent"]);
     let half_space = Table::new("All half-spaces.", vec![("poisson_ratio", or(poisson_ratio(), "similar"))])
         .requires(&["poisson_ratio"]);
     let ratios = |of: &str| values(&format!("Amplitudes U/(μ_f d) of {of}."), &amplitude);
@@ -165,7 +170,10 @@ pub(super) fn map() -> Table {
             ("amplitude_ratio", ratios("the homogeneous contact")),
             (
                 "reference_depth",
-                values("Depths z0 over the contact radius of the homogeneous contact, for equal force.", &depth),
+                values(
+                    "Depths z0 over the contact radius of the homogeneous contact, for equal force.",
+                    &depth,
+                ),
             ),
         ],
     );
@@ -178,7 +186,13 @@ pub(super) fn map() -> Table {
             ("points", or(whole("Number of radii.", 2, Some(MOST_ALONG_AXIS)), 401)),
         ],
     );
-    let tables = [("indenter", indenter), ("half_space", half_space), ("map", map), ("optimum", optimum), ("profiles", profiles)];
+    let tables = [
+        ("indenter", indenter),
+        ("half_space", half_space),
+        ("map", map),
+        ("optimum", optimum),
+        ("profiles", profiles),
+    ];
     let mut keys = vec![("title", line("Title, one line."))];
     keys.extend(tables.into_iter().map(|(name, table)| (name, table.whole())));
     Table::new("Wear maps: what is compared; any part can be left out.", keys)
@@ -206,7 +220,8 @@ pub(super) fn universality() -> Table {
         ("reason", line("Why, one sentence.")),
         ("finer", or(switch("Once more with twice the springs and an eighth of the tolerance."), false)),
     ]);
-    let case = Table::new("A case that stands for itself.", case_keys).requires(&["name", "predicted"]).whole();
+    let case =
+        Table::new("A case that stands for itself.", case_keys).requires(&["name", "predicted"]).whole();
     let levels = |about: &str| list(about, level(about), [0, MOST_ENTRIES]);
     let keys = vec![
         ("title", line("Title, one line.")),
@@ -217,7 +232,10 @@ pub(super) fn universality() -> Table {
         ("wear", levels("Laws of wear.")),
         ("friction", levels("Laws of friction.")),
         ("modes", levels("Modes of oscillation.")),
-        ("without", list("Pairs that are left out.", without.requires(&["levels"]).whole(), [0, MOST_ENTRIES])),
+        (
+            "without",
+            list("Pairs that are left out.", without.requires(&["levels"]).whole(), [0, MOST_ENTRIES]),
+        ),
         ("cases", list("Single cases.", case, [0, MOST_ENTRIES])),
     ];
     Table::new("Laws and modes of which each is to wear to one limit.", keys).requires(&["scene"])

@@ -14,8 +14,13 @@ use crate::scene::{Cycle, MOST_SNAPSHOTS, MOST_SUBSTEPS, Stepper, WearFrom};
 pub(super) fn scene() -> Table {
     let mut keys = vec![("title", line("Title, one line; stored in the result."))];
     keys.extend(tables().into_iter().map(|(name, table)| (name, table.whole())));
-    Table::new("A scene: what is pressed on what, how it moves and for how long.", keys)
-        .requires(&["indenter", "half_space", "friction", "wear", "loading"])
+    Table::new("A scene: what is pressed on what, how it moves and for how long.", keys).requires(&[
+        "indenter",
+        "half_space",
+        "friction",
+        "wear",
+        "loading",
+    ])
 }
 
 /// Any part of a scene, as a patch lays it over another.
@@ -31,7 +36,9 @@ fn tables() -> Vec<(&'static str, Table)> {
         ("half_space", body("Elastic half-space E = E0 (z/z0)^k.").requires(&["grading"])),
         (
             "counter_body",
-            body("The indenter is elastic too; its grading is that of the half-space, and the stiffnesses act in series."),
+            body(
+                "The indenter is elastic too; its grading is that of the half-space, and the stiffnesses act in series.",
+            ),
         ),
         ("friction", friction()),
         ("wear", wear()),
@@ -45,8 +52,11 @@ fn indenter() -> Table {
     let radius = |about: &str| quantity(about, above_zero(), "10 mm");
     let unit = |of: &str| or(text(&format!("Unit of {of}, a length.")), "m");
     let shape = |about: &str, keys, required: &[&'static str]| Table::new(about, keys).requires(required);
-    let paraboloid =
-        shape("f = r²/(2R).", vec![("radius", radius("Radius of curvature R of f = r²/(2R), m."))], &["radius"]);
+    let paraboloid = shape(
+        "f = r²/(2R).",
+        vec![("radius", radius("Radius of curvature R of f = r²/(2R), m."))],
+        &["radius"],
+    );
     let sphere = shape("f = R - √(R² - r²).", vec![("radius", radius("Radius R, m."))], &["radius"]);
     let cone = Table::new(
         "f = r tan θ.",
@@ -67,7 +77,10 @@ fn indenter() -> Table {
     let table = shape(
         "A measured profile.",
         vec![
-            ("file", text("File of two columns r and f, from the tip at r = 0 outwards; relative to the scene.")),
+            (
+                "file",
+                text("File of two columns r and f, from the tip at r = 0 outwards; relative to the scene."),
+            ),
             ("radius_unit", unit("the radii")),
             ("profile_unit", unit("the heights")),
         ],
@@ -168,7 +181,8 @@ fn wear() -> Table {
     let per_pressure = |about: &str, example: &str| quantity(about, above_zero(), example);
     let coefficient =
         || per_pressure("Depth per sliding distance and pressure, 1/Pa or m³/(N m).", "1e-8 1/MPa");
-    let law = |about: &str, keys, required: &[&'static str]| Table::new(about, keys).requires(required).whole();
+    let law =
+        |about: &str, keys, required: &[&'static str]| Table::new(about, keys).requires(required).whole();
     let keys = vec![
         ("archard", law("Archard's law.", vec![("coefficient", coefficient())], &["coefficient"])),
         (
@@ -273,7 +287,11 @@ fn numerics() -> Table {
         (
             "checkpoint_interval",
             or(
-                quantity("Wall time between checkpoints, s.", json!({ "minimum": 0, "maximum": 1e9 }), "30 s"),
+                quantity(
+                    "Wall time between checkpoints, s.",
+                    json!({ "minimum": 0, "maximum": 1e9 }),
+                    "30 s",
+                ),
                 30.0,
             ),
         ),
@@ -301,13 +319,19 @@ fn numerics() -> Table {
 
 fn output() -> Table {
     let times = |about: &str| list(about, number("Time.", at_least_zero()), [0, MOST_SNAPSHOTS]);
-    let snapshots =
-        whole("Number of snapshots after the start, spread geometrically in cycles.", 1, Some(MOST_SNAPSHOTS));
+    let snapshots = whole(
+        "Number of snapshots after the start, spread geometrically in cycles.",
+        1,
+        Some(MOST_SNAPSHOTS),
+    );
     let keys = vec![
         ("snapshots", or(snapshots, 50)),
         ("at_cycles", times("Numbers of cycles at which snapshots are taken.")),
         ("at_tau", times("Dimensionless times at which snapshots are taken.")),
     ];
-    Table::new("When snapshots are taken, besides the start and the end.", keys)
-        .rule(at_most_one_of(&["snapshots", "at_cycles", "at_tau"]))
+    Table::new("When snapshots are taken, besides the start and the end.", keys).rule(at_most_one_of(&[
+        "snapshots",
+        "at_cycles",
+        "at_tau",
+    ]))
 }
