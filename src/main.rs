@@ -323,7 +323,7 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
         (Some(path), None) => {
             let scene = read(path)?;
             let output = arguments.output.clone().unwrap_or_else(|| default_output(path));
-            fretwear::run::Run::new(&scene, &output, arguments.force)?
+            fretwear::run::Run::new(&scene, &output, arguments.force).map_err(at(&scene, path))?
         }
         (None, None) => unreachable!("clap requires one of the two"),
     };
@@ -356,7 +356,7 @@ fn limit(arguments: &Limit) -> Result<String> {
     let scene = read(&arguments.scene)?;
     let radii = arguments.at.as_deref().map(report::parse_radii).transpose()?;
     let table = arguments.csv.as_deref().map(|path| TableFile::new(path, arguments.force)).transpose()?;
-    let report = LimitReport::new(&scene, radii.as_deref())?;
+    let report = LimitReport::new(&scene, radii.as_deref()).map_err(at(&scene, &arguments.scene))?;
     if let Some(table) = table {
         table.write(&report.csv())?;
     }
@@ -485,7 +485,8 @@ fn universality(arguments: &Universality) -> Result<(String, ExitCode)> {
 }
 
 fn check(arguments: &Check) -> Result<String> {
-    let report = CheckReport::new(&Scene::read(&arguments.scene)?)?;
+    let scene = Scene::read(&arguments.scene)?;
+    let report = CheckReport::new(&scene).map_err(at(&scene, &arguments.scene))?;
     report.warnings.iter().for_each(|warning| complain("warning", warning));
     Ok(if arguments.json { report::json(&report) } else { report.text() })
 }
@@ -542,6 +543,11 @@ fn read(path: &Path) -> Result<Scene> {
     let scene = Scene::read(path)?;
     scene.warnings().iter().for_each(|warning| complain("warning", warning));
     Ok(scene)
+}
+
+/// Shows an error at its line of the scene.
+fn at<'a>(scene: &'a Scene, path: &'a Path) -> impl Fn(Error) -> Error + 'a {
+    move |error| scene.locate(error, &path.display().to_string())
 }
 
 fn complain(kind: &str, message: &str) {

@@ -52,10 +52,42 @@ impl FileKind {
             Self::Scene => tables::scene().whole(),
             Self::Study => studies::study().whole(),
             Self::Map => studies::map().whole(),
-            Self::Universality => studies::universality().whole(),
+            Self::Universality => studies::universality(),
         };
         schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
         schema["title"] = format!("fretwear {}", self.name()).into();
         schema
     }
+}
+
+/// Unit in SI of the number that a dotted key of a scene stands for, in the spelling of UDUNITS; "1" for plain numbers, words and what has a
+/// unit that depends on an exponent.
+///
+/// ```
+/// use fretwear::scene::schema::unit_of;
+///
+/// assert_eq!(unit_of("loading.amplitude"), "m");
+/// assert_eq!(unit_of("wear.archard.coefficient"), "Pa-1");
+/// assert_eq!(unit_of("friction.coulomb.coefficient"), "1");
+/// ```
+pub fn unit_of(key: &str) -> String {
+    let scene = FileKind::Scene.schema();
+    let entry = key.split('.').fold(&scene, |table, key| &table["properties"][key]);
+    entry[keys::UNIT].as_str().unwrap_or("1").to_owned()
+}
+
+/// Dotted keys of a scene that have values, as studies vary them; those of arrays of tables by the array alone.
+pub(super) fn keys_of_scene() -> Vec<String> {
+    fn add(schema: &Value, path: &str, keys: &mut Vec<String>) {
+        match schema["properties"].as_object() {
+            Some(inner) => inner.iter().for_each(|(key, schema)| {
+                let dot = if path.is_empty() { "" } else { "." };
+                add(schema, &format!("{path}{dot}{key}"), keys);
+            }),
+            None => keys.push(path.to_owned()),
+        }
+    }
+    let mut keys = vec![];
+    add(&FileKind::Scene.schema(), "", &mut keys);
+    keys
 }

@@ -22,13 +22,25 @@ pub(super) fn any() -> Value {
 /// A number in SI, or a string with a unit.
 ///
 /// # Arguments
-/// * `about` -- what it is, with its unit
+/// * `about` -- what it is, with its unit in SI
+/// * `unit` -- the same in the spelling of UDUNITS; "1" where it depends on an exponent
 /// * `limits` -- of the number in SI
 /// * `example` -- with a unit
-pub(super) fn quantity(about: &str, limits: Value, example: &str) -> Value {
+pub(super) fn quantity(about: &str, unit: &str, limits: Value, example: &str) -> Value {
     let text = json!({ "type": "string", "pattern": format!("{NUMBER}{AND_UNIT}") });
-    let value = json!({ "anyOf": [limited("number", limits), text], "examples": [example] });
+    let value = json!({ "anyOf": [limited("number", limits), text], "examples": [example], UNIT: unit });
     described(value, about)
+}
+
+/// Annotation of a quantity: the unit of its number, in the spelling of UDUNITS.
+pub(super) const UNIT: &str = "x-unit";
+
+/// Where the parts of a schema stand that occur often in it.
+pub(super) const DEFINITIONS: &str = "definitions";
+
+/// A part that stands among the definitions.
+pub(super) fn defined(name: &str) -> Value {
+    json!({ "$ref": format!("#/{DEFINITIONS}/{name}") })
 }
 
 /// A plain number, or its digits as a string.

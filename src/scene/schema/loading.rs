@@ -9,15 +9,18 @@ use super::keys::{
 use crate::scene::laws::MOST_TIMES;
 
 pub(super) fn loading() -> Table {
-    let force = |about: &str| quantity(about, above_zero(), "10 N");
+    let force = |about: &str| quantity(about, "N", above_zero(), "10 N");
     let keys = vec![
-        ("indentation", quantity("Indentation depth d, m; held.", above_zero(), "1 um")),
+        ("indentation", quantity("Indentation depth d, m; held.", "m", above_zero(), "1 um")),
         (
             "initial_force",
             force("Normal force that presses the unworn indenter, N; the indentation found so is held."),
         ),
         ("normal_force", force("Normal force, N; held, so that the indentation grows as the contact wears.")),
-        ("amplitude", quantity("Tangential amplitude U, half the stroke, m.", at_least_zero(), "0.3 um")),
+        (
+            "amplitude",
+            quantity("Tangential amplitude U, half the stroke, m.", "m", at_least_zero(), "0.3 um"),
+        ),
         ("amplitude_ratio", number("U/(μ_f d).", at_least_zero())),
         (
             "stick_ratio",
@@ -46,6 +49,7 @@ pub(super) fn loading() -> Table {
             "rig_stiffness",
             quantity(
                 "Stiffness of the rig, whose far end moves by the amplitude, N/m.",
+                "N m-1",
                 above_zero(),
                 "5 MN/m",
             ),
@@ -90,7 +94,7 @@ fn block() -> Value {
 }
 
 fn phase(about: &str) -> Value {
-    or(quantity(about, any(), "35 deg"), 0)
+    or(quantity(about, "rad", any(), "35 deg"), 0)
 }
 
 fn normal_oscillation() -> Value {
@@ -102,7 +106,7 @@ fn normal_oscillation() -> Value {
         ],
         "examples": [2, "3/2"],
     });
-    let amplitude = quantity("Amplitude d1, m, below the indentation.", above_zero(), "0.1 um");
+    let amplitude = quantity("Amplitude d1, m, below the indentation.", "m", above_zero(), "0.1 um");
     let amplitude_ratio =
         number("d1 over the indentation.", json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 }));
     Table::new(
@@ -121,12 +125,12 @@ fn normal_oscillation() -> Value {
 
 fn orbit() -> Value {
     let centre = |axis: &str| {
-        or(quantity(&format!("Where the indenter was pressed on, along {axis}, m."), any(), "0.1 um"), 0)
+        or(quantity(&format!("Where the indenter was pressed on, along {axis}, m."), "m", any(), "0.1 um"), 0)
     };
     Table::new(
         "The indenter moves along x and y.",
         vec![
-            ("transverse_amplitude", quantity("Amplitude along y, m.", above_zero(), "0.1 um")),
+            ("transverse_amplitude", quantity("Amplitude along y, m.", "m", above_zero(), "0.1 um")),
             ("transverse_ratio", number("Amplitude along y over that along x.", above_zero())),
             ("phase", phase("Phase of the motion along y, rad; 0 is an ellipse with the axes x and y.")),
             ("centre_x", centre("x")),

@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use super::keys::{
-    Table, above_zero, described, line, list, magnitude, number, one_form, or, switch, text, whole, word,
+    DEFINITIONS, Table, above_zero, defined, described, line, list, magnitude, number, one_form, or, switch,
+    text, whole, word,
 };
 use super::tables::{patch, poisson_ratio};
 use crate::scene::map::MOST_ALONG_AXIS;
@@ -13,6 +14,8 @@ use crate::scene::universality::MOST_ENTRIES;
 use crate::scene::{MOST_SCENES, Prediction, Task};
 
 const MOST: usize = MOST_SCENES as usize;
+/// Name of a part of a scene among the definitions.
+const PATCH: &str = "patch";
 
 fn key_of_scene(about: &str) -> Value {
     let pattern = r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)+$";
@@ -198,9 +201,16 @@ pub(super) fn map() -> Table {
     Table::new("Wear maps: what is compared; any part can be left out.", keys)
 }
 
-pub(super) fn universality() -> Table {
+/// The schema of a universality study, and of what stands in it often.
+pub(super) fn universality() -> Value {
+    let mut schema = universality_keys().whole();
+    schema[DEFINITIONS][PATCH] = patch("Keys of a scene that are laid over those of the base scene.");
+    schema
+}
+
+fn universality_keys() -> Table {
     let file = text("File of the base scene, relative to the study.");
-    let scene = json!({ "anyOf": [file, patch("The base scene itself.")] });
+    let scene = json!({ "anyOf": [file, defined(PATCH)] });
     let tolerances = Table::new(
         "Distances from the limit over its largest depth that decide.",
         vec![
@@ -244,7 +254,7 @@ pub(super) fn universality() -> Table {
 fn level_keys() -> Vec<(&'static str, Value)> {
     vec![
         ("name", line("Name, different from all others.")),
-        ("patch", patch("Keys of a scene that are laid over those of the base scene.")),
+        ("patch", defined(PATCH)),
         ("tau", number("Dimensionless time that the run lasts at least.", above_zero())),
     ]
 }

@@ -49,7 +49,7 @@ fn tables() -> Vec<(&'static str, Table)> {
 }
 
 fn indenter() -> Table {
-    let radius = |about: &str| quantity(about, above_zero(), "10 mm");
+    let radius = |about: &str| quantity(about, "m", above_zero(), "10 mm");
     let unit = |of: &str| or(text(&format!("Unit of {of}, a length.")), "m");
     let shape = |about: &str, keys, required: &[&'static str]| Table::new(about, keys).requires(required);
     let paraboloid = shape(
@@ -62,14 +62,14 @@ fn indenter() -> Table {
         "f = r tan θ.",
         vec![
             ("slope", number("Slope tan θ of the flank against the surface.", above_zero())),
-            ("half_angle", quantity("Angle between axis and flank, rad.", above_zero(), "85 deg")),
+            ("half_angle", quantity("Angle between axis and flank, rad.", "rad", above_zero(), "85 deg")),
         ],
     );
     let cone = cone.rule(one_of(&["slope", "half_angle"]));
     let power_law = shape(
         "f = coefficient r^exponent.",
         vec![
-            ("coefficient", quantity("Coefficient A of f = A r^n, m^(1-n).", above_zero(), "50 1/m")),
+            ("coefficient", quantity("Coefficient A of f = A r^n, m^(1-n).", "1", above_zero(), "50 1/m")),
             ("exponent", number("Exponent n: 1 is a cone, 2 a paraboloid.", above_zero())),
         ],
         &["coefficient", "exponent"],
@@ -118,12 +118,15 @@ fn body(about: &str) -> Table {
                 json!({ "exclusiveMinimum": -1, "exclusiveMaximum": 1 }),
             ),
         ),
-        ("modulus", quantity("Young's modulus E0 at the reference depth, Pa.", above_zero(), "210 GPa")),
-        ("reference_depth", or(quantity("Depth z0 at which E is E0, m.", above_zero(), "2 mm"), "1 m")),
+        (
+            "modulus",
+            quantity("Young's modulus E0 at the reference depth, Pa.", "Pa", above_zero(), "210 GPa"),
+        ),
+        ("reference_depth", or(quantity("Depth z0 at which E is E0, m.", "m", above_zero(), "2 mm"), "1 m")),
         ("poisson_ratio", poisson_ratio()),
         (
             "normal_stiffness",
-            quantity("Normal stiffness c_N of the springs, N/m^(2+k).", above_zero(), "2.3e11 N/m^2"),
+            quantity("Normal stiffness c_N of the springs, N/m^(2+k).", "1", above_zero(), "2.3e11 N/m^2"),
         ),
         (
             "stiffness_ratio",
@@ -159,7 +162,12 @@ fn friction() -> Table {
             ("exponent", number("Exponent; 0 is Coulomb's law.", exponent)),
             (
                 "reference_compression",
-                quantity("Compression of reference, m; by default the indentation.", above_zero(), "1 um"),
+                quantity(
+                    "Compression of reference, m; by default the indentation.",
+                    "m",
+                    above_zero(),
+                    "1 um",
+                ),
             ),
         ],
     )
@@ -178,9 +186,9 @@ fn friction() -> Table {
 }
 
 fn wear() -> Table {
-    let per_pressure = |about: &str, example: &str| quantity(about, above_zero(), example);
+    let per_pressure = |about: &str, unit: &str, example: &str| quantity(about, unit, above_zero(), example);
     let coefficient =
-        || per_pressure("Depth per sliding distance and pressure, 1/Pa or m³/(N m).", "1e-8 1/MPa");
+        || per_pressure("Depth per sliding distance and pressure, 1/Pa or m³/(N m).", "Pa-1", "1e-8 1/MPa");
     let law =
         |about: &str, keys, required: &[&'static str]| Table::new(about, keys).requires(required).whole();
     let keys = vec![
@@ -189,7 +197,7 @@ fn wear() -> Table {
             "dissipated-energy",
             law(
                 "Volume by the energy that friction dissipates.",
-                vec![("coefficient", per_pressure("Volume per energy, m³/J.", "2e-5 mm^3/J"))],
+                vec![("coefficient", per_pressure("Volume per energy, m³/J.", "m3 J-1", "2e-5 mm^3/J"))],
                 &["coefficient"],
             ),
         ),
@@ -211,7 +219,10 @@ fn wear() -> Table {
                 "Archard's law above a pressure.",
                 vec![
                     ("coefficient", coefficient()),
-                    ("pressure", quantity("Pressure below which nothing wears, Pa.", above_zero(), "50 MPa")),
+                    (
+                        "pressure",
+                        quantity("Pressure below which nothing wears, Pa.", "Pa", above_zero(), "50 MPa"),
+                    ),
                 ],
                 &["coefficient", "pressure"],
             ),
@@ -222,7 +233,7 @@ fn wear() -> Table {
                 "Archard's law, spread over a length.",
                 vec![
                     ("coefficient", coefficient()),
-                    ("length", quantity("Length over which wear spreads, m.", above_zero(), "5 um")),
+                    ("length", quantity("Length over which wear spreads, m.", "m", above_zero(), "5 um")),
                 ],
                 &["coefficient", "length"],
             ),
@@ -289,6 +300,7 @@ fn numerics() -> Table {
             or(
                 quantity(
                     "Wall time between checkpoints, s.",
+                    "s",
                     json!({ "minimum": 0, "maximum": 1e9 }),
                     "30 s",
                 ),
