@@ -4,6 +4,7 @@ mod support;
 
 use std::process::{Command, Stdio};
 
+use support::command::done;
 use support::results::every_kind;
 
 const CURE: &str = "`bash .ci/setup` installs what is missing on Debian and Ubuntu; elsewhere: pip install h5py xarray h5netcdf, and HDF5's tools";
@@ -51,4 +52,27 @@ fn h5py_xarray_and_h5dump_see_units_meaning_dimensions_and_values_of_every_datas
             file.display()
         );
     }
+}
+
+/// The code of the documentation, in the order of its pages, with results where it looks for them.
+#[test]
+fn the_python_code_of_the_documentation_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    every_kind(folder.path());
+    std::fs::rename(folder.path().join("merged.h5"), folder.path().join("study.h5")).unwrap();
+    done(folder.path(), &["export", "paraboloid.h5", "--table", "time,node", "-o", "curves.csv"]);
+    let mut count = 0;
+    for page in [include_str!("../README.md"), include_str!("../docs/python.md")] {
+        for block in
+            page.split("```python\n").skip(1).map(|rest| rest.split("```").next().unwrap_or_default())
+        {
+            let mut command = Command::new(python());
+            let output =
+                command.current_dir(folder.path()).args(["-c", block]).output().expect("Python starts");
+            let complaint = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success() && !output.stdout.is_empty(), "{block}\n{complaint}");
+            count += 1;
+        }
+    }
+    assert_eq!(count, 5);
 }

@@ -550,8 +550,8 @@ fn what_is_refused_after_reading_is_shown_at_its_line_too() {
         ("amplitude = \"1 um\"", "amplitude = 0", "amplitude = 0", "loading.amplitude: 0e0 m leaves"),
         // Keys that are left out: the innermost table that is there.
         (
-            "amplitude = \"1 um\"",
-            "amplitude = \"1 mm\"\n[numerics]\naccuracy = 0.1",
+            "amplitude = \"1 um\"\ncycles = 1e6",
+            "amplitude = \"1 mm\"\ncycles = 1e6\n[numerics]\naccuracy = 0.1",
             "[numerics]",
             "numerics.springs: ",
         ),
