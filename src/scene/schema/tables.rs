@@ -256,8 +256,8 @@ fn history(limits: Value) -> Value {
     Table::new(
         "A factor on the coefficients along the cycles.",
         vec![
-            ("final_factor", number("Factor that is approached as 1 - e^(-time/cycles) or /tau.", limits)),
-            ("cycles", number("Cycles after which the change is done but for 1/e.", above_zero())),
+            ("final_factor", number("Factor after a long time, approached exponentially from 1.", limits)),
+            ("cycles", number("Cycles after which 1/e of the change is left.", above_zero())),
             ("tau", number("The same as dimensionless time.", above_zero())),
             ("factors", list("Factors at the times, linear between them.", factors, [1, MOST_TIMES])),
             ("at_cycles", times("Times of the factors in cycles, increasing.")),
