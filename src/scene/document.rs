@@ -22,10 +22,17 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// Parses the text.
     pub(super) fn parse(self) -> Result<Spanned<DeTable<'a>>> {
-        DeTable::parse(self.text).map_err(|error| {
-            let end = self.text.len();
-            self.error(error.span().unwrap_or(end..end), format_args!("not valid TOML: {}", error.message()))
-        })
+        DeTable::parse(self.text).map_err(|error| self.not_toml(&error))
+    }
+
+    /// The values of the text without their places, to be laid over others.
+    pub(super) fn values(self) -> Result<toml::Table> {
+        self.text.parse().map_err(|error| self.not_toml(&error))
+    }
+
+    fn not_toml(&self, error: &toml::de::Error) -> Error {
+        let end = self.text.len();
+        self.error(error.span().unwrap_or(end..end), format_args!("not valid TOML: {}", error.message()))
     }
 
     /// An error that shows its line, with carets under the span.

@@ -307,9 +307,7 @@ impl Study {
 /// [`Error::Scene`] shows the line that is not TOML.
 pub(super) fn base_table(text: &str, path: &Path) -> Result<Table> {
     let name = path.display().to_string();
-    let source = Source { name: &name, text, kind: "a scene" };
-    source.parse()?;
-    text.parse().map_err(|error: toml::de::Error| source.unplaced(error.message()))
+    Source { name: &name, text, kind: "a scene" }.values()
 }
 
 impl Input {

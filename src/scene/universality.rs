@@ -41,8 +41,6 @@ pub(super) use reading::MOST_ENTRIES;
 
 use std::path::{Path, PathBuf};
 
-use toml::Table;
-
 use super::document::{Section, Source};
 use super::study::base_table;
 use super::{LARGEST, Rows, Scene, read_text};
@@ -154,10 +152,7 @@ impl UniversalityStudy {
         }
         let document = source.parse()?;
         let root = Section::root(source, document.get_ref());
-        // The same values without their places, to be laid over each other.
-        let values = text
-            .parse::<Table>()
-            .map_err(|error| source.unplaced(format_args!("not valid TOML: {}", error.message())))?;
+        let values = source.values()?;
         let plan = reading::read(&root, &values)?;
         let (base, folder) = match &plan.base {
             reading::Base::Table(table) => (table.clone(), folder.to_owned()),
