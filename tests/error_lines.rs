@@ -43,7 +43,7 @@ fn files() -> Vec<Sample> {
     files.push((data("studies/scatter.toml"), study, 1));
     files.push((data("maps/paper.toml"), map, 1));
     // Its design of cases takes a while each time.
-    files.push((data("studies/universality.toml"), universality, 11));
+    files.push((data("studies/universality.toml"), universality, 53));
     files
 }
 
