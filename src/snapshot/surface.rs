@@ -1,4 +1,4 @@
-//! A surface that changes with time, in VTK's HDF5 format, which ParaView (5.12 and later) and PyVista open.
+//! A surface that changes with time, in VTK's HDF5 format, which programs built on VTK open, ParaView and PyVista among them.
 
 use std::path::Path;
 
