@@ -38,9 +38,9 @@ pub(super) fn read(root: &Section) -> Result<Study> {
     let lengths = axes.iter().map(|axis| axis.rows.len() as u64).chain(sampling.as_ref().map(|it| it.count));
     let count = lengths.fold(1u64, u64::saturating_mul);
     if count > MOST_SCENES {
-        let longest =
+        let varied =
             root.optional("axes").or(root.optional("sampling")).expect("without either there is one scene");
-        return Err(longest.misplaced(format_args!(
+        return Err(varied.misplaced(format_args!(
             "expands to {} scenes, more than {MOST_SCENES}; make the axes shorter or split the study",
             if count == u64::MAX { "too many".into() } else { count.to_string() }
         )));
