@@ -88,7 +88,7 @@
 //! | storey | modules |
 //! |---|---|
 //! | entry | the binary; this page |
-//! | jobs | [`submit`], [`sweep`], [`report`], [`universality`], [`tradeoff`], [`progress`], [`run`], [`wear_map`] |
+//! | jobs | [`submit`], [`sweep`], [`report`], [`export`], [`universality`], [`tradeoff`], [`progress`], [`run`], [`wear_map`] |
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
 //! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`conditions`], [`wear`], [`spring`], [`path`], [`friction`], [`loading`], [`history`], [`indenter`], [`half_space`] |
@@ -102,6 +102,7 @@ pub mod closed_form;
 pub mod conditions;
 pub mod contact;
 pub mod error;
+pub mod export;
 pub mod friction;
 pub mod grid;
 pub mod half_space;

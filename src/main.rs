@@ -17,6 +17,12 @@ use fretwear::submit::{self, Engine, SubmitReport, Wishes};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result, universality};
 
+#[path = "main/completions.rs"]
+mod completions;
+#[path = "main/export.rs"]
+mod export;
+#[path = "main/schema.rs"]
+mod schema;
 #[path = "main/tradeoff.rs"]
 mod tradeoff;
 
@@ -56,6 +62,16 @@ enum Command {
     Submit(Submit),
     /// Show what is in a result file and whether it is complete
     Info(Info),
+    /// Write any table of a result file as CSV, or the worn surface of a run for ParaView
+    Export(export::Export),
+    /// Write a commented scene to begin with
+    Init(schema::Init),
+    /// Print the JSON Schema of a kind of file, for editors
+    Schema(schema::Schema),
+    /// Print a script with which a shell completes commands and options
+    Completions(completions::Completions),
+    /// Write manual pages, one for each subcommand
+    Man(completions::Man),
 }
 
 #[derive(Args)]
@@ -272,6 +288,11 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check(&arguments).map(done),
         Command::Submit(arguments) => submit(&arguments),
         Command::Info(arguments) => info(&arguments).map(done),
+        Command::Export(arguments) => export::export(&arguments).map(done),
+        Command::Init(arguments) => schema::init(&arguments).map(done),
+        Command::Schema(arguments) => schema::schema(&arguments).map(done),
+        Command::Completions(arguments) => Ok(done(completions::completions::<Cli>(&arguments))),
+        Command::Man(arguments) => completions::man::<Cli>(&arguments).map(done),
     };
     match outcome {
         Ok((text, code)) => print(&text, code),
@@ -302,7 +323,7 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
         (Some(path), None) => {
             let scene = read(path)?;
             let output = arguments.output.clone().unwrap_or_else(|| default_output(path));
-            fretwear::run::Run::new(&scene, &output, arguments.force)?
+            fretwear::run::Run::new(&scene, &output, arguments.force).map_err(at(&scene, path))?
         }
         (None, None) => unreachable!("clap requires one of the two"),
     };
@@ -335,7 +356,7 @@ fn limit(arguments: &Limit) -> Result<String> {
     let scene = read(&arguments.scene)?;
     let radii = arguments.at.as_deref().map(report::parse_radii).transpose()?;
     let table = arguments.csv.as_deref().map(|path| TableFile::new(path, arguments.force)).transpose()?;
-    let report = LimitReport::new(&scene, radii.as_deref())?;
+    let report = LimitReport::new(&scene, radii.as_deref()).map_err(at(&scene, &arguments.scene))?;
     if let Some(table) = table {
         table.write(&report.csv())?;
     }
@@ -464,7 +485,8 @@ fn universality(arguments: &Universality) -> Result<(String, ExitCode)> {
 }
 
 fn check(arguments: &Check) -> Result<String> {
-    let report = CheckReport::new(&Scene::read(&arguments.scene)?)?;
+    let scene = Scene::read(&arguments.scene)?;
+    let report = CheckReport::new(&scene).map_err(at(&scene, &arguments.scene))?;
     report.warnings.iter().for_each(|warning| complain("warning", warning));
     Ok(if arguments.json { report::json(&report) } else { report.text() })
 }
@@ -521,6 +543,11 @@ fn read(path: &Path) -> Result<Scene> {
     let scene = Scene::read(path)?;
     scene.warnings().iter().for_each(|warning| complain("warning", warning));
     Ok(scene)
+}
+
+/// Shows an error at its line of the scene.
+fn at<'a>(scene: &'a Scene, path: &'a Path) -> impl Fn(Error) -> Error + 'a {
+    move |error| scene.locate(error, &path.display().to_string())
 }
 
 fn complain(kind: &str, message: &str) {

@@ -52,6 +52,7 @@ mod path_file;
 mod profile_file;
 pub mod quantity;
 pub mod sampling;
+pub mod schema;
 mod sections;
 mod spacing;
 mod study;
@@ -251,7 +252,7 @@ impl Scene {
     fn with_rows(text: &str, name: &str, rows: &Rows) -> Result<Self> {
         let source = document::Source { name, text, kind: "a scene" };
         if text.len() as u64 > LARGEST {
-            return Err(source.missing(format_args!("is larger than {LARGEST} bytes, which no scene is")));
+            return Err(source.unplaced(format_args!("is larger than {LARGEST} bytes, which no scene is")));
         }
         let document = source.parse()?;
         sections::scene(&document::Section::root(source, document.get_ref()), text, rows)
@@ -334,6 +335,35 @@ impl Scene {
     /// As [`InitialContact::new`].
     pub fn contact(&self) -> Result<InitialContact> {
         InitialContact::new(&self.indenter, &self.half_space, &self.friction, &self.wear, &self.loading)
+    }
+
+    /// Shows an error that names a key of the scene, as it comes from what is computed with it, at that key.
+    ///
+    /// # Arguments
+    /// * `error` -- any error; what is none of a value is given back
+    /// * `name` -- what messages call the scene, the path of the file as a rule
+    ///
+    /// # Examples
+    /// ```
+    /// use fretwear::Error;
+    /// use fretwear::scene::Scene;
+    ///
+    /// let scene = Scene::from_toml(include_str!("../data/scenes/paraboloid.toml"), "ball.toml")?;
+    /// let error = Error::Inconsistent { what: "loading.amplitude", why: "is too large".into() };
+    /// assert!(scene.locate(error, "ball.toml").to_string().starts_with("ball.toml:29:13: loading.amplitude: is too large"));
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn locate(&self, error: Error, name: &str) -> Error {
+        let source = document::Source { name, text: &self.text, kind: "a scene" };
+        let Ok(document) = source.parse() else { return error };
+        let root = document::Section::root(source, document.get_ref());
+        match error {
+            Error::OutOfRange { name, value, range } => {
+                root.at_key(name, format_args!(" = {value} is outside {range}"))
+            }
+            Error::Inconsistent { what, why } => root.at_key(what, format_args!(": {why}")),
+            other => other,
+        }
     }
 
     /// The TOML text as it was read.

@@ -14,6 +14,8 @@ mod labelled;
 pub mod layout;
 mod reader;
 mod shard;
+mod surface;
+mod tables;
 mod writer;
 
 pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray, TextColumn};
@@ -21,6 +23,8 @@ pub(crate) use atomic::{AtomicFile, remove_abandoned};
 pub(crate) use folder::{cell, check_folder, make_folder, quoted, table};
 pub use reader::RunFile;
 pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
+pub use surface::SurfaceSeries;
+pub use tables::{ResultTables, TableSummary};
 pub use writer::RunWriter;
 
 use std::sync::Arc;

@@ -45,8 +45,19 @@ fn edited(old: &str, new: &str) -> String {
 fn refusal(text: &str) -> String {
     match Scene::from_toml(text, "scene.toml") {
         Ok(_) => panic!("this scene was taken:\n{text}"),
-        Err(error) => error.to_string(),
+        Err(error) => {
+            let message = error.to_string();
+            assert!(shows_its_line(&message), "{message}");
+            message
+        }
     }
+}
+
+/// Whether a message begins with file, line and column and shows the line with a caret under it.
+fn shows_its_line(message: &str) -> bool {
+    let place = message.strip_prefix("scene.toml:").unwrap_or_default();
+    let mut numbers = place.splitn(3, ':').map(|part| part.parse::<usize>().is_ok());
+    numbers.next() == Some(true) && numbers.next() == Some(true) && message.contains('^')
 }
 
 #[test]

@@ -122,24 +122,48 @@ fn mistakes_are_named_with_place_and_cure() {
     for (text, expected) in [
         ("scene = \"base.toml\"\nsteps = 3".to_string(), "steps is not a key of a study"),
         (axis("key = \"friction\"\nvalues = [1]"), "is not a key of a scene, such as"),
-        (axis("key = \"a.b\""), "axes[0].from is missing; an axis has values = [...], or from, to and count"),
-        (axis("key = \"a.b\"\nvalues = []"), "axes[0].values = [] is empty"),
-        (axis("key = \"a.b\"\nvalues = [{ x = 1 }]"), "is a table; vary its keys one by one"),
         (
-            axis("key = \"a.b\"\nfrom = \"1 mm\"\nto = \"2 um\"\ncount = 3"),
+            axis("key = \"friction.coulomb.coefficient\""),
+            "axes[0].from is missing; an axis has values = [...], or from, to and count",
+        ),
+        (axis("key = \"friction.coulomb.coefficient\"\nvalues = []"), "axes[0].values = [] is empty"),
+        (
+            axis("key = \"friction.coulomb.coefficient\"\nvalues = [{ x = 1 }]"),
+            "is a table; vary its keys one by one",
+        ),
+        (
+            axis("key = \"friction.coulomb.coefficient\"\nfrom = \"1 mm\"\nto = \"2 um\"\ncount = 3"),
             "has not the unit of axes[0].from, \"mm\"",
         ),
         (
-            axis("key = \"a.b\"\nfrom = \"1 furlong\"\nto = \"2 furlong\"\ncount = 3"),
+            axis(
+                "key = \"friction.coulomb.coefficient\"\nfrom = \"1 furlong\"\nto = \"2 furlong\"\ncount = 3",
+            ),
             "\"furlong\" is no known unit",
         ),
-        (axis("key = \"a.b\"\nfrom = 0\nto = 1\ncount = 3\nspacing = \"geometric\""), "must be above zero"),
-        (axis("key = \"a.b\"\nfrom = 0\nto = 1\ncount = 1"), "axes[0].count = 1 is outside 2 to 10000000"),
-        (axis("keys = [\"a.b\", \"a.c\"]\nrows = [[1, 2], [3]]"), "has 1 values for 2 keys"),
-        (axis("key = \"a.b\"\nvalues = [1]\n[[axes]]\nkey = \"a.b\"\nvalues = [2]"), "a.b is varied twice"),
         (
             axis(
-                "key = \"a.b\"\nfrom = 0\nto = 1\ncount = 10000\n[[axes]]\nkey = \"a.c\"\nfrom = 0\nto = 1\ncount = 10000",
+                "key = \"friction.coulomb.coefficient\"\nfrom = 0\nto = 1\ncount = 3\nspacing = \"geometric\"",
+            ),
+            "must be above zero",
+        ),
+        (
+            axis("key = \"friction.coulomb.coefficient\"\nfrom = 0\nto = 1\ncount = 1"),
+            "axes[0].count = 1 is outside 2 to 10000000",
+        ),
+        (
+            axis("keys = [\"friction.coulomb.coefficient\", \"loading.amplitude\"]\nrows = [[1, 2], [3]]"),
+            "has 1 values for 2 keys",
+        ),
+        (
+            axis(
+                "key = \"friction.coulomb.coefficient\"\nvalues = [1]\n[[axes]]\nkey = \"friction.coulomb.coefficient\"\nvalues = [2]",
+            ),
+            "axes[1].key = \"friction.coulomb.coefficient\" is varied twice",
+        ),
+        (
+            axis(
+                "key = \"friction.coulomb.coefficient\"\nfrom = 0\nto = 1\ncount = 10000\n[[axes]]\nkey = \"loading.amplitude\"\nfrom = 0\nto = 1\ncount = 10000",
             ),
             "expands to 100000000 scenes, more than 10000000",
         ),
@@ -156,7 +180,8 @@ fn mistakes_are_named_with_place_and_cure() {
         ("scene = \"base.toml\"\n[output]\nsnapshots = \"some\"".to_string(), "is none of the words"),
     ] {
         let message = refusal(&text);
-        assert!(message.contains(expected) && message.starts_with("study.toml"), "{text}\n{message}");
+        assert!(message.contains(expected) && message.starts_with("study.toml:"), "{text}\n{message}");
+        assert!(message.contains("\n  |") && message.contains('^'), "no line is shown: {message}");
     }
     let missing = Study::read(Path::new("data/studies/no-such.toml")).unwrap_err().to_string();
     assert!(missing.contains("there is no such file"), "{missing}");

@@ -174,7 +174,7 @@ fn a_bad_table_of_the_scene_is_refused_at_its_line() {
         (
             file,
             "file = \"absent.csv\"",
-            "absent.csv: there is no such file; indenter.table.file is taken relative to the folder of",
+            "indenter.table.file: absent.csv: there is no such file; it is taken relative to the folder of",
         ),
         (file, "file = \".\"", "is a directory; name a file"),
         (file, "file = \"/dev/zero\"", "is not a regular file"),

@@ -201,7 +201,7 @@ fn what_contradicts_itself_is_refused_by_name() {
         (level("waer", "a", ""), "waer is not a key of a universality study; did you mean wear?"),
         ("[[cases]]\nname = \"a\"\n".into(), "cases[0].predicted is missing"),
         ("[[cases]]\nname = \"a\"\npredicted = \"perhaps\"\n".into(), "is none of the words it may be"),
-        (String::new(), "study.toml: has no case"),
+        (String::new(), "has no case; give levels"),
         (
             level("wear", "a", "") + "[[without]]\nlevels = [\"a\", \"b\"]\n",
             "without[0].levels[1] = \"b\" is the name of no level",
@@ -209,6 +209,7 @@ fn what_contradicts_itself_is_refused_by_name() {
     ] {
         let message = refused(&format!("{BASE}{cases}"));
         assert!(message.contains(expected), "{cases}\n{message}");
+        assert!(message.starts_with("study.toml:") && message.contains('^'), "no line is shown: {message}");
     }
     // The same value is no conflict.
     let same = level("wear", "a", "loading = { tau = 1 }") + &level("modes", "b", "loading = { tau = 1 }");

@@ -10,7 +10,7 @@ use fretwear::scene::Stepper;
 use fretwear::tradeoff::{self, Ladders};
 use fretwear::{Error, Result};
 
-use super::{INTERRUPTED, complain, done, read};
+use super::{INTERRUPTED, at, complain, done, read};
 
 /// Candidates of the trade-off and where its results go.
 #[derive(Args)]
@@ -75,7 +75,8 @@ pub fn tradeoff(arguments: &Tradeoff) -> Result<(String, ExitCode)> {
         keep_runs: arguments.keep_runs,
         overwrite: arguments.force,
     };
-    let ready = tradeoff::Tradeoff::new(&scene, &arguments.output, &options)?;
+    let ready =
+        tradeoff::Tradeoff::new(&scene, &arguments.output, &options).map_err(at(&scene, &arguments.scene))?;
     let shown = !arguments.quiet && !arguments.json;
     if shown {
         complain("note", &format!("{} candidates, one after the other", ready.candidates()));

@@ -2,6 +2,7 @@
 
 use std::fmt::{Display, Write};
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use serde_spanned::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -21,10 +22,17 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// Parses the text.
     pub(super) fn parse(self) -> Result<Spanned<DeTable<'a>>> {
-        DeTable::parse(self.text).map_err(|error| {
-            let end = self.text.len();
-            self.error(error.span().unwrap_or(end..end), format_args!("not valid TOML: {}", error.message()))
-        })
+        DeTable::parse(self.text).map_err(|error| self.not_toml(&error))
+    }
+
+    /// The values of the text without their places, to be laid over others.
+    pub(super) fn values(self) -> Result<toml::Table> {
+        self.text.parse().map_err(|error| self.not_toml(&error))
+    }
+
+    fn not_toml(&self, error: &toml::de::Error) -> Error {
+        let end = self.text.len();
+        self.error(error.span().unwrap_or(end..end), format_args!("not valid TOML: {}", error.message()))
     }
 
     /// An error that shows its line, with carets under the span.
@@ -63,8 +71,14 @@ impl<'a> Source<'a> {
         Error::Scene(text)
     }
 
-    /// An error that concerns no line: something is missing.
+    /// An error that something is missing, shown where it could be added: at the end.
     pub(super) fn missing(&self, message: impl Display) -> Error {
+        let end = self.text.trim_end().len();
+        self.error(end..end, message)
+    }
+
+    /// An error that concerns no line.
+    pub(super) fn unplaced(&self, message: impl Display) -> Error {
         Error::Scene(format!("{}: {message}", self.name))
     }
 }
@@ -118,6 +132,27 @@ impl<'a> Section<'a> {
         match &self.place {
             Some(place) => self.source.error(place.clone(), message),
             None => self.source.missing(message),
+        }
+    }
+
+    /// Shows what is wrong with a key at its value, or at the innermost table in which it is missing.
+    ///
+    /// # Arguments
+    /// * `key` -- its dotted name, from this table on
+    /// * `message` -- what follows its name
+    pub(super) fn at_key(&self, key: &str, message: impl Display) -> Error {
+        let mut section = self.clone();
+        let name = self.name(key);
+        for part in key.split('.') {
+            let Some(entry) = section.optional(part) else { break };
+            match entry.section() {
+                Ok(inner) => section = inner,
+                Err(_) => return self.source.error(entry.place, format_args!("{name}{message}")),
+            }
+        }
+        match section.place {
+            Some(place) => self.source.error(place, format_args!("{name}{message}")),
+            None => self.source.unplaced(format_args!("{name}{message}")),
         }
     }
 
@@ -195,6 +230,21 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// The file of that name in the folder of the scene, which must be there.
+    pub(super) fn file(&self, folder: &Path, name: &str) -> Result<PathBuf> {
+        let path = folder.join(name);
+        match path.exists() {
+            true => Ok(path),
+            false => Err(self.at_key(
+                "file",
+                format_args!(
+                    ": {}: there is no such file; it is taken relative to the folder of the scene",
+                    path.display()
+                ),
+            )),
+        }
+    }
+
     /// A unit of length, the metre if it is not given.
     pub(super) fn length_unit(&self, key: &str) -> Result<&'a str> {
         let Some(entry) = self.optional(key) else { return Ok("m") };
@@ -231,18 +281,28 @@ fn listed(names: impl Iterator<Item = String>) -> String {
 
 /// The nearest of the known words, or all of them.
 fn suggestion(word: &str, known: &[&str]) -> String {
-    let folded = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
-    let target = folded(word);
-    // A long key would cost the square of its length, and is near to nothing.
-    let near = known.iter().filter(|_| target.len() <= 40).map(|candidate| {
-        let candidate_folded = folded(candidate);
-        (strsim::jaro_winkler(&target, &candidate_folded), *candidate)
-    });
-    match near.max_by(|a, b| a.0.total_cmp(&b.0)) {
+    match most_alike(word, known) {
         Some((likeness, candidate)) if likeness > 0.8 => format!("did you mean {candidate}?"),
         _ if known.len() == 1 => format!("this version offers {} only", known[0]),
         _ => format!("this version offers {}", listed(known.iter().map(|key| key.to_string()))),
     }
+}
+
+/// The nearest of words that are too many to be listed.
+pub(super) fn nearest(word: &str, known: &[&str]) -> String {
+    most_alike(word, known).map_or(String::new(), |(_, candidate)| format!("did you mean {candidate}?"))
+}
+
+/// How alike the most alike word is, from 0 to 1, and the word.
+fn most_alike<'a>(word: &str, known: &[&'a str]) -> Option<(f64, &'a str)> {
+    let folded = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let target = folded(word);
+    // A long key would cost the square of its length, and is near to nothing.
+    let near = known.iter().filter(|_| target.len() <= 60).map(|candidate| {
+        let candidate_folded = folded(candidate);
+        (strsim::jaro_winkler(&target, &candidate_folded), *candidate)
+    });
+    near.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// A key and its value.
@@ -270,6 +330,11 @@ impl<'a> Entry<'a> {
     /// The error that the key has no place beside another.
     pub(super) fn misplaced(&self, message: impl Display) -> Error {
         self.source.error(self.key_place.clone(), format_args!("{} {message}", self.path))
+    }
+
+    /// Where the value stands.
+    pub(super) fn place(&self) -> Range<usize> {
+        self.place.clone()
     }
 
     /// Dotted name.

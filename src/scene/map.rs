@@ -69,7 +69,7 @@ impl MapScene {
     pub fn from_toml(text: &str, name: &str) -> Result<Self> {
         let source = Source { name, text, kind: "a map" };
         if text.len() as u64 > LARGEST {
-            return Err(source.missing(format_args!("is larger than {LARGEST} bytes, which no map is")));
+            return Err(source.unplaced(format_args!("is larger than {LARGEST} bytes, which no map is")));
         }
         let document = source.parse()?;
         map(&Section::root(source, document.get_ref()), text)

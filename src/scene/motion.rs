@@ -96,7 +96,7 @@ fn path(section: &Section, rows: &Rows) -> Result<Arc<RecordedPath>> {
     let name = section.file_name("for example \"path.csv\", columns x and y")?;
     let unit = section.length_unit("displacement_unit")?;
     match rows {
-        Rows::In(folder) => path_file::read(&folder.join(name), name, unit).map(Arc::new),
+        Rows::In(folder) => path_file::read(&section.file(folder, name)?, name, unit).map(Arc::new),
         Rows::Stored { path: Some(path), .. } => Ok(Arc::clone(path)),
         Rows::Stored { path: None, .. } => {
             Err(section.error("its rows are not stored in the result; run the scene again"))

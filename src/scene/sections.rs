@@ -188,7 +188,10 @@ fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result
     let name = section.file_name("for example \"profile.csv\", two columns r and f")?;
     let units = [section.length_unit(UNITS[0])?, section.length_unit(UNITS[1])?];
     match rows {
-        Rows::In(folder) => profile_file::read(&folder.join(name), name, units, warnings).map(Arc::new),
+        Rows::In(folder) => {
+            let path = section.file(folder, name)?;
+            profile_file::read(&path, name, units, warnings).map(Arc::new)
+        }
         Rows::Stored { table: Some(table), .. } => Ok(Arc::clone(table)),
         Rows::Stored { table: None, .. } => {
             Err(section.error("its rows are not stored in the result; run the scene again"))

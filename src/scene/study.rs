@@ -139,7 +139,8 @@ impl Study {
         let root = Section::root(source, document.get_ref());
         let entry = root.required("scene", "name the file of the base scene, relative to the study")?;
         let base = path.parent().unwrap_or(Path::new("")).join(entry.string()?);
-        let base_text = read_text(&base)?;
+        let base_text =
+            read_text(&base).map_err(|error| entry.error(format_args!("cannot be used: {error}")))?;
         Self::from_texts(&text, &name, &base_text, &base)
     }
 
@@ -154,16 +155,12 @@ impl Study {
     pub fn from_texts(text: &str, name: &str, base_text: &str, base: &Path) -> Result<Self> {
         let source = Source { name, text, kind: "a study" };
         if (text.len() + base_text.len()) as u64 > LARGEST {
-            return Err(source.missing(format_args!("is larger than {LARGEST} bytes, which no study is")));
+            return Err(source.unplaced(format_args!("is larger than {LARGEST} bytes, which no study is")));
         }
         let document = source.parse()?;
         let root = Section::root(source, document.get_ref());
-        let base_table = base_text.parse::<Table>().map_err(|error| Error::File {
-            path: base.to_owned(),
-            why: format!("the base scene of {name} is not valid TOML: {}", error.message()),
-        })?;
         let mut study = reading::read(&root)?;
-        study.base = base_table;
+        study.base = base_table(base_text, base)?;
         study.folder = base.parent().unwrap_or(Path::new("")).to_owned();
         (study.name, study.text, study.base_text) = (name.into(), text.into(), base_text.into());
         Ok(study)
@@ -302,6 +299,15 @@ impl Study {
         let name = format!("{}, scene {scene}", self.name);
         Scene::with_rows(&self.scene_text(scene)?, &name, &Rows::In(&self.folder))
     }
+}
+
+/// The values of a base scene.
+///
+/// # Errors
+/// [`Error::Scene`] shows the line that is not TOML.
+pub(super) fn base_table(text: &str, path: &Path) -> Result<Table> {
+    let name = path.display().to_string();
+    Source { name: &name, text, kind: "a scene" }.values()
 }
 
 impl Input {

@@ -37,12 +37,12 @@ mod cover;
 mod reading;
 
 pub use cover::covering_design;
+pub(super) use reading::MOST_ENTRIES;
 
 use std::path::{Path, PathBuf};
 
-use toml::Table;
-
 use super::document::{Section, Source};
+use super::study::base_table;
 use super::{LARGEST, Rows, Scene, read_text};
 use crate::error::{Error, Result};
 
@@ -148,20 +148,23 @@ impl UniversalityStudy {
     pub fn from_toml(text: &str, name: &str, folder: &Path) -> Result<Self> {
         let source = Source { name, text, kind: "a universality study" };
         if text.len() as u64 > LARGEST {
-            return Err(source.missing(format_args!("is larger than {LARGEST} bytes, which no study is")));
+            return Err(source.unplaced(format_args!("is larger than {LARGEST} bytes, which no study is")));
         }
         let document = source.parse()?;
         let root = Section::root(source, document.get_ref());
-        // The same values without their places, to be laid over each other.
-        let values = text
-            .parse::<Table>()
-            .map_err(|error| source.missing(format_args!("not valid TOML: {}", error.message())))?;
+        let values = source.values()?;
         let plan = reading::read(&root, &values)?;
         let (base, folder) = match &plan.base {
             reading::Base::Table(table) => (table.clone(), folder.to_owned()),
-            reading::Base::File(file) => base_scene(&folder.join(file), name)?,
+            reading::Base::File(file) => {
+                let path = folder.join(file);
+                let entry = root.required("scene", "it was read above")?;
+                let text =
+                    read_text(&path).map_err(|error| entry.error(format_args!("cannot be used: {error}")))?;
+                (base_table(&text, &path)?, path.parent().unwrap_or(Path::new("")).to_owned())
+            }
         };
-        let cases = plan.cases(&base, name)?;
+        let cases = plan.cases(&base, source)?;
         let (title, tolerances) = (plan.title, plan.tolerances);
         Ok(Self { title, tolerances, cases, text: text.into(), name: name.into(), folder })
     }
@@ -209,13 +212,4 @@ impl UniversalityStudy {
     pub fn scene(&self, case: &str, text: &str) -> Result<Scene> {
         Scene::with_rows(text, &format!("{}, {case}", self.name), &Rows::In(&self.folder))
     }
-}
-
-/// A base scene in a file of its own, and its folder.
-fn base_scene(path: &Path, study: &str) -> Result<(Table, PathBuf)> {
-    let table = read_text(path)?.parse::<Table>().map_err(|error| Error::File {
-        path: path.to_owned(),
-        why: format!("the base scene of {study} is not valid TOML: {}", error.message()),
-    })?;
-    Ok((table, path.parent().unwrap_or(Path::new("")).to_owned()))
 }

@@ -18,6 +18,21 @@ const CHUNK_VALUES: usize = 1 << 17;
 unsafe extern "C" {
     fn H5DSset_scale(scale: hid_t, name: *const c_char) -> i32;
     fn H5DSattach_scale(dataset: hid_t, scale: hid_t, axis: c_uint) -> i32;
+    fn H5DSis_scale(dataset: hid_t) -> i32;
+    fn H5DSis_attached(dataset: hid_t, scale: hid_t, axis: c_uint) -> i32;
+}
+
+/// Whether a dataset is a dimension.
+pub(super) fn is_dimension(dataset: &Dataset) -> bool {
+    // SAFETY: under the library's lock, with an open dataset.
+    hdf5::sync::sync(|| unsafe { H5DSis_scale(dataset.id()) }) > 0
+}
+
+/// Whether an axis of a dataset runs along a dimension.
+pub(super) fn runs_along(dataset: &Dataset, axis: usize, dimension: &Dataset) -> bool {
+    let Ok(axis) = c_uint::try_from(axis) else { return false };
+    // SAFETY: under the library's lock, with two open datasets of one file; an axis that is not there is an error, which is below zero.
+    hdf5::sync::sync(|| unsafe { H5DSis_attached(dataset.id(), dimension.id(), axis) }) > 0
 }
 
 /// A dimension: an index coordinate `0, 1, …` that datasets name as the scale of an axis.

@@ -113,6 +113,7 @@ fn check_signature(path: &Path) -> Result<()> {
 }
 
 /// The file that is read, for its name in errors.
+#[derive(Debug)]
 pub(super) struct Source {
     path: PathBuf,
 }
@@ -296,9 +297,19 @@ impl Source {
             return Err(self.error(format!("dataset {name} is missing; {WRITE_AGAIN}")));
         }
         let dataset = group.dataset(label.name).map_err(|error| self.damaged(&name, &error))?;
-        let count = check_shape::<T>(&dataset, shape).map_err(|why| self.damaged(&name, &why))?;
-        let values = dataset.read_raw().map_err(|error| self.damaged(&name, &error))?;
-        if values.len() == count { Ok(values) } else { Err(self.damaged(&name, &"has no values")) }
+        self.values_of(&dataset, &name, shape)
+    }
+
+    /// As [`Source::values`], of a dataset that is open; errors call it `name`.
+    pub(super) fn values_of<T: H5Type>(
+        &self,
+        dataset: &Dataset,
+        name: &str,
+        shape: &[Option<usize>],
+    ) -> Result<Vec<T>> {
+        let count = check_shape::<T>(dataset, shape).map_err(|why| self.damaged(name, &why))?;
+        let values = dataset.read_raw().map_err(|error| self.damaged(name, &error))?;
+        if values.len() == count { Ok(values) } else { Err(self.damaged(name, &"has no values")) }
     }
 
     pub(super) fn text(&self, file: &Location, name: &str) -> Result<String> {

@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 const SCENE: Label<'static> = label("scene", "1", "number of the scene in the expanded study");
 
 /// Group of the runs whose snapshots are kept.
-const RUNS: &str = "runs";
+pub(super) const RUNS: &str = "runs";
 
 /// What a sweep is about; all its files must agree on it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

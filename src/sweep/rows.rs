@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::scene::{Input, Study, Task};
+use crate::scene::{Input, Study, Task, schema};
 use crate::snapshot::{Column, RunFile, SweepFile, SweepHeader, Values};
 
 /// What came out of one scene.
@@ -116,9 +116,10 @@ impl Schema {
                 .collect();
             let name = format!("input_{}", key.replace(['.', '-'], "_"));
             let long_name = format!("{key} of the scene, in SI");
+            let units = schema::unit_of(key);
             let [has_numbers, has_words] = self.kinds[index];
             if has_numbers {
-                columns.push(column(&name, "1", &long_name, Values::Numbers(numbers)));
+                columns.push(column(&name, &units, &long_name, Values::Numbers(numbers)));
             }
             // Where a key has both, the words have a column of their own.
             if has_words {

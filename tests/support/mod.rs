@@ -6,6 +6,7 @@
 pub mod command;
 pub mod laws;
 pub mod reference;
+pub mod results;
 pub mod resume;
 
 use fretwear::contact::InitialContact;

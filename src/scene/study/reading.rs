@@ -1,14 +1,16 @@
 //! The tables of a study: axes, samples and what is kept.
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 use toml::{Table, Value};
 
 use super::{Axis, KeptSnapshots, MOST_SCENES, Sampling, Study, Task, Variable, with_unit};
 use crate::error::Result;
-use crate::scene::document::{Entry, Section};
+use crate::scene::document::{Entry, Section, nearest};
 use crate::scene::quantity::{Dimension, split_number};
 use crate::scene::sampling::{Distribution, Method, UnitCube};
+use crate::scene::schema;
 use crate::scene::sections;
 use crate::scene::spacing::Spacing;
 use crate::scene::unit::Unit;
@@ -22,18 +24,23 @@ pub(super) fn read(root: &Section) -> Result<Study> {
         None => Task::default(),
     };
     const MOST_AXES: usize = 100;
-    let axes = match root.optional("axes") {
-        Some(entry) => {
-            entry.array(MOST_AXES)?.iter().map(|it| axis(&it.section()?)).collect::<Result<Vec<_>>>()?
+    let mut keys = Keys::default();
+    let mut axes = vec![];
+    if let Some(entry) = root.optional("axes") {
+        for entry in entry.array(MOST_AXES)? {
+            axes.push(axis(&entry.section()?, &mut keys)?);
         }
-        None => vec![],
+    }
+    let sampling = match root.optional("sampling") {
+        Some(entry) => Some(sampling(&entry.section()?, &mut keys)?),
+        None => None,
     };
-    let sampling =
-        root.optional("sampling").map(|entry| entry.section().and_then(|it| sampling(&it))).transpose()?;
     let lengths = axes.iter().map(|axis| axis.rows.len() as u64).chain(sampling.as_ref().map(|it| it.count));
     let count = lengths.fold(1u64, u64::saturating_mul);
     if count > MOST_SCENES {
-        return Err(root.error(format_args!(
+        let varied =
+            root.optional("axes").or(root.optional("sampling")).expect("without either there is one scene");
+        return Err(varied.misplaced(format_args!(
             "expands to {} scenes, more than {MOST_SCENES}; make the axes shorter or split the study",
             if count == u64::MAX { "too many".into() } else { count.to_string() }
         )));
@@ -46,7 +53,7 @@ pub(super) fn read(root: &Section) -> Result<Study> {
             snapshots = kept_snapshots(&entry, count)?;
         }
     }
-    let study = Study {
+    Ok(Study {
         title,
         task,
         snapshots,
@@ -58,13 +65,7 @@ pub(super) fn read(root: &Section) -> Result<Study> {
         count,
         text: String::new(),
         base_text: String::new(),
-    };
-    let mut keys = study.keys();
-    keys.sort_unstable();
-    if let Some(twice) = keys.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(root.error(format_args!("{} is varied twice; name it in one axis only", twice[0])));
-    }
-    Ok(study)
+    })
 }
 
 fn kept_snapshots(entry: &Entry, count: u64) -> Result<KeptSnapshots> {
@@ -79,25 +80,39 @@ fn kept_snapshots(entry: &Entry, count: u64) -> Result<KeptSnapshots> {
     Ok([KeptSnapshots::None, KeptSnapshots::All][entry.word(&["none", "all"])?].clone())
 }
 
-/// A dotted key of the scene.
-fn key(entry: &Entry) -> Result<String> {
-    let key = entry.string()?;
-    let bare = |part: &str| {
-        !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'))
-    };
-    match key.split('.').all(bare) && key.contains('.') && key.len() < 200 {
-        true => Ok(key.into()),
-        false => Err(entry.error("is not a key of a scene, such as \"friction.coulomb.coefficient\"")),
+/// The keys that vary, each once.
+#[derive(Default)]
+struct Keys(HashSet<String>);
+
+impl Keys {
+    /// A dotted key of the scene.
+    fn take(&mut self, entry: &Entry) -> Result<String> {
+        let key = entry.string()?;
+        let bare = |part: &str| {
+            !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'))
+        };
+        if !(key.split('.').all(bare) && key.contains('.') && key.len() < 200) {
+            return Err(entry.error("is not a key of a scene, such as \"friction.coulomb.coefficient\""));
+        }
+        let known = schema::keys_of_scene();
+        if !known.iter().any(|it| it == key) {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            return Err(entry.error(format_args!("is not a key of a scene; {}", nearest(key, &known))));
+        }
+        match self.0.insert(key.into()) {
+            true => Ok(key.into()),
+            false => Err(entry.error("is varied twice; name it in one axis only")),
+        }
     }
 }
 
 const MOST_ROWS: usize = MOST_SCENES as usize;
 
-fn axis(section: &Section) -> Result<Axis> {
+fn axis(section: &Section, taken: &mut Keys) -> Result<Axis> {
     section.only(&["key", "keys", "values", "rows", "from", "to", "count", "spacing"], &[])?;
     if let Some(entry) = section.optional("keys") {
         section.only(&["keys", "rows"], &[])?;
-        let keys = entry.array(100)?.iter().map(key).collect::<Result<Vec<_>>>()?;
+        let keys = entry.array(100)?.iter().map(|it| taken.take(it)).collect::<Result<Vec<_>>>()?;
         let rows = section.required("rows", "one list of values for each scene along the axis")?;
         let width = keys.len();
         let row = |row: &Entry| -> Result<Vec<Value>> {
@@ -110,7 +125,7 @@ fn axis(section: &Section) -> Result<Axis> {
         let rows = not_empty(&rows)?.iter().map(row).collect::<Result<_>>()?;
         return Ok(Axis { keys, rows });
     }
-    let keys = vec![key(&section.required("key", "for example \"friction.coulomb.coefficient\"")?)?];
+    let keys = vec![taken.take(&section.required("key", "for example \"friction.coulomb.coefficient\"")?)?];
     if let Some(entry) = section.optional("values") {
         section.only(&["key", "values"], &[])?;
         let rows = not_empty(&entry)?.iter().map(|it| Ok(vec![value(it)?])).collect::<Result<_>>()?;
@@ -163,7 +178,7 @@ fn magnitude(entry: &Entry) -> Result<(f64, String)> {
     }
 }
 
-fn sampling(section: &Section) -> Result<Sampling> {
+fn sampling(section: &Section, taken: &mut Keys) -> Result<Sampling> {
     section.only(&["method", "count", "seed", "variables"], &[])?;
     let entry = section.required("count", "the number of samples")?;
     let count = entry.whole(1..=MOST_SCENES as usize)? as u64;
@@ -177,11 +192,11 @@ fn sampling(section: &Section) -> Result<Sampling> {
     if entries.is_empty() {
         return Err(entry.error("is empty; give at least one variable"));
     }
-    let variables = entries.iter().map(|it| variable(&it.section()?)).collect::<Result<Vec<_>>>()?;
+    let variables = entries.iter().map(|it| variable(&it.section()?, taken)).collect::<Result<Vec<_>>>()?;
     Ok(Sampling { count, cube: UnitCube::new(method, count, variables.len(), seed), variables })
 }
 
-fn variable(section: &Section) -> Result<Variable> {
+fn variable(section: &Section, taken: &mut Keys) -> Result<Variable> {
     const KINDS: [&str; 4] = ["uniform", "log-uniform", "normal", "log-normal"];
     let entry = section.required("distribution", "uniform, log-uniform, normal or log-normal")?;
     let kind = entry.word(&KINDS)?;
@@ -189,7 +204,7 @@ fn variable(section: &Section) -> Result<Variable> {
         [["from", "to"], ["from", "to"], ["mean", "deviation"], ["median", "factor"]][kind];
     let bounds: &[&str] = if kind < 2 { &[] } else { &["minimum", "maximum"] };
     section.only(&[&["key", "distribution"], &parameters[..], bounds].concat(), &[])?;
-    let key = key(&section.required("key", "for example \"wear.archard.coefficient\"")?)?;
+    let key = taken.take(&section.required("key", "for example \"wear.archard.coefficient\"")?)?;
     let cure = format!("a {} distribution has {} and {}", KINDS[kind], parameters[0], parameters[1]);
     let (first, second) = (section.required(parameters[0], &cure)?, section.required(parameters[1], &cure)?);
     let (one, unit) = magnitude(&first)?;

@@ -1,6 +1,7 @@
 //! The tables of a universality study, and the cases that follow from them.
 
 use std::collections::HashSet;
+use std::ops::Range;
 use std::path::PathBuf;
 
 use toml::{Table, Value};
@@ -8,7 +9,7 @@ use toml::{Table, Value};
 use super::cover::{combinations, covering_design};
 use super::{Case, FACTORS, MOST_COMBINATIONS, Prediction, Tolerances};
 use crate::error::{Error, Result};
-use crate::scene::document::{Entry, Section};
+use crate::scene::document::{Entry, Section, Source};
 use crate::scene::patch::{self, Patch};
 use crate::scene::quantity::Dimension;
 use crate::scene::sections;
@@ -17,7 +18,7 @@ use crate::scene::sections;
 const TABLES: [&str; 4] = ["media", "wear", "friction", "modes"];
 
 /// Most levels of a factor, single cases and pairs left out.
-const MOST_ENTRIES: usize = 10_000;
+pub(in crate::scene) const MOST_ENTRIES: usize = 10_000;
 
 /// What the document says, before the base scene is there.
 pub(super) struct Plan {
@@ -41,6 +42,8 @@ pub(super) enum Base {
 /// One of the values of a factor.
 struct Level {
     name: String,
+    /// Where the name stands.
+    place: Range<usize>,
     patch: Patch,
     /// How long a run with it lasts at least.
     tau: Option<f64>,
@@ -79,8 +82,10 @@ pub(super) fn read(root: &Section, values: &Table) -> Result<Plan> {
     }
     let product = factors.iter().map(|levels| levels.len().max(1)).fold(1usize, usize::saturating_mul);
     if product > MOST_COMBINATIONS {
-        let message = format!("has {product} combinations of levels, more than {MOST_COMBINATIONS}");
-        return Err(root.error(message));
+        let message = format!("makes {product} combinations of levels, more than {MOST_COMBINATIONS}");
+        let last =
+            TABLES.iter().rev().find_map(|table| root.optional(table)).expect("levels make combinations");
+        return Err(last.misplaced(message));
     }
     let mut singles = vec![];
     for (section, values) in entries(root, values, "cases")? {
@@ -149,7 +154,7 @@ fn level(section: &Section, values: &Table, names: &mut HashSet<String>) -> Resu
         return Err(section.error(format_args!("{name}: {one} and {two} exclude each other")));
     }
     let tau = section.optional("tau").map(|entry| entry.positive(Dimension::NUMBER)).transpose()?;
-    Ok(Level { name, patch, tau })
+    Ok(Level { name, place: entry.place(), patch, tau })
 }
 
 /// Two levels of different factors.
@@ -172,7 +177,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::Scene`] names two levels that set one key differently.
-    pub(super) fn cases(&self, base: &Table, study: &str) -> Result<Vec<Case>> {
+    pub(super) fn cases(&self, base: &Table, study: Source) -> Result<Vec<Case>> {
         self.check_conflicts(study)?;
         let mut cases = vec![];
         if self.factors.iter().any(|levels| !levels.is_empty()) {
@@ -196,7 +201,7 @@ impl Plan {
             let text = scene.to_string();
             let finer = match finer {
                 true => {
-                    patch::refine(&mut scene).map_err(|why| wrong(study, &level.name, &why))?;
+                    patch::refine(&mut scene).map_err(|why| wrong(study, level, &level.name, &why))?;
                     Some(scene.to_string())
                 }
                 false => None,
@@ -207,7 +212,15 @@ impl Plan {
         }
         let mut names = HashSet::new();
         match cases.iter().find(|case| !names.insert(case.name.as_str())) {
-            Some(twice) => Err(wrong(study, &twice.name, "two cases have this name")),
+            Some(twice) => {
+                // Single cases have the name of their level; one of them it must be, since levels differ.
+                let single = self.singles.iter().find(|single| single.level.name == twice.name);
+                let why = "two cases have this name";
+                Err(single.map_or_else(
+                    || study.unplaced(format_args!("{}: {why}", twice.name)),
+                    |single| wrong(study, &single.level, &twice.name, why),
+                ))
+            }
             None => Ok(cases),
         }
     }
@@ -231,7 +244,7 @@ impl Plan {
     }
 
     /// Refuses levels of different factors that cannot be in one scene.
-    fn check_conflicts(&self, study: &str) -> Result<()> {
+    fn check_conflicts(&self, study: Source) -> Result<()> {
         for (first, factor) in self.factors.iter().enumerate() {
             for (second, other) in self.factors.iter().enumerate().skip(first + 1) {
                 for (one, two) in factor.iter().flat_map(|one| other.iter().map(move |two| (one, two))) {
@@ -241,11 +254,15 @@ impl Plan {
                         continue;
                     };
                     let [a, b] = [first, second].map(|factor| FACTORS[factor]);
-                    return Err(Error::Scene(format!(
-                        "{study}: the {a} {:?} sets {key} and the {b} {:?} sets {rival} otherwise; \
+                    let place = two.place.clone();
+                    return Err(study.error(
+                        place,
+                        format_args!(
+                            "the {a} {:?} sets {key} and the {b} {:?} sets {rival} otherwise; \
                          let one of them set it, or leave the pair out by [[without]]",
-                        one.name, two.name
-                    )));
+                            one.name, two.name
+                        ),
+                    ));
                 }
             }
         }
@@ -254,17 +271,20 @@ impl Plan {
 }
 
 /// The base scene with the patches of some levels, named.
-fn scene(base: &Table, name: &str, levels: &[&Level], study: &str) -> Result<Table> {
+fn scene(base: &Table, name: &str, levels: &[&Level], study: Source) -> Result<Table> {
     let mut scene = base.clone();
     scene.insert("title".into(), Value::String(name.into()));
-    let failed = |why: String| wrong(study, name, &why);
-    levels.iter().try_for_each(|level| level.patch.apply(&mut scene)).map_err(failed)?;
+    for level in levels {
+        level.patch.apply(&mut scene).map_err(|why| wrong(study, level, name, &why))?;
+    }
     if let Some(tau) = levels.iter().filter_map(|level| level.tau).reduce(f64::max) {
-        patch::last_until(&mut scene, tau).map_err(failed)?;
+        let last = levels.last().expect("one of them has a time");
+        patch::last_until(&mut scene, tau).map_err(|why| wrong(study, last, name, &why))?;
     }
     Ok(scene)
 }
 
-fn wrong(study: &str, case: &str, why: &str) -> Error {
-    Error::Scene(format!("{study}: {case}: {why}"))
+/// An error of a case, shown at the name of a level of it.
+fn wrong(study: Source, level: &Level, case: &str, why: &str) -> Error {
+    study.error(level.place.clone(), format_args!("{case}: {why}"))
 }

@@ -1,0 +1,77 @@
+//! `fretwear export`: tables for spreadsheets and pandas, surfaces for ParaView.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use fretwear::export::worn_surface;
+use fretwear::report::TableFile;
+use fretwear::snapshot::ResultTables;
+use fretwear::{Error, Result};
+
+/// Points around the axis.
+const SECTORS: usize = 72;
+
+#[derive(Args)]
+pub struct Export {
+    /// A result file of any kind
+    #[arg(value_name = "FILE.h5")]
+    file: PathBuf,
+    /// A .csv file for a table, or a .vtkhdf file for the worn surface of a run; without it the table goes to stdout
+    #[arg(short, long, value_name = "TABLE.csv|SURFACE.vtkhdf")]
+    output: Option<PathBuf>,
+    /// The table: its dimensions, such as time or time,node, after its group; by default time of a run, scene of a sweep, case, candidate,
+    /// and grading,amplitude_ratio of a map
+    #[arg(long, value_name = "NAME")]
+    table: Option<String>,
+    /// List the tables and their columns
+    #[arg(long, conflicts_with_all = ["output", "table", "force"])]
+    list: bool,
+    /// Overwrite the output if it exists
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+/// Writes what was asked for; what is left to print.
+pub fn export(arguments: &Export) -> Result<String> {
+    if arguments.list {
+        return list(arguments);
+    }
+    let table = arguments.table.as_deref();
+    let Some(output) = &arguments.output else { return ResultTables::csv(&arguments.file, table) };
+    match output.extension().and_then(|it| it.to_str()) {
+        Some("csv") => {
+            let file = TableFile::new(output, arguments.force)?;
+            file.write(&ResultTables::csv(&arguments.file, table)?)?;
+        }
+        Some("vtkhdf") if table.is_none() => {
+            worn_surface(&arguments.file, SECTORS)?.write(output, arguments.force)?;
+        }
+        Some("vtkhdf") => return Err(refused(output, "a surface has no table; leave out --table")),
+        _ => {
+            let why = "what is wanted shows in the name: give one that ends in .csv for a table, or in .vtkhdf for the worn surface of a run";
+            return Err(refused(output, why));
+        }
+    }
+    Ok(String::new())
+}
+
+fn refused(output: &std::path::Path, why: &str) -> Error {
+    Error::File { path: output.to_owned(), why: why.into() }
+}
+
+fn list(arguments: &Export) -> Result<String> {
+    let tables = ResultTables::open(&arguments.file)?;
+    let mut text = String::new();
+    for table in tables.summaries() {
+        let usual = if table.name == tables.usual() { ", the one taken by default" } else { "" };
+        let rows = if table.rows == 1 { "1 row".into() } else { format!("{} rows", table.rows) };
+        text += &format!("{}: {rows}{usual}\n    {}\n", table.name, table.columns.join("  "));
+    }
+    if let [first, .., last] = &tables.runs()[..] {
+        text += &format!(
+            "{} runs are kept, {first} to {last}; those of the others have the same tables\n",
+            tables.runs().len()
+        );
+    }
+    Ok(text)
+}

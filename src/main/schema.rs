@@ -1,0 +1,56 @@
+//! `fretwear schema` and `fretwear init`: what helps to write a scene.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use fretwear::Result;
+use fretwear::report::{self, TableFile};
+use fretwear::scene::schema::FileKind;
+
+/// A scene with its alternatives as comments.
+const TEMPLATE: &str = include_str!("../../data/template/scene.toml");
+
+#[derive(Args)]
+pub struct Schema {
+    /// What kind of file
+    #[arg(value_name = "scene|study|map|universality", default_value = "scene", value_parser = kind)]
+    kind: FileKind,
+    /// File to write instead of stdout
+    #[arg(short, long, value_name = "FILE.json")]
+    output: Option<PathBuf>,
+    /// Overwrite the file if it exists
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+#[derive(Args)]
+pub struct Init {
+    /// The scene to write; without it the text goes to stdout
+    #[arg(short, long, value_name = "SCENE.toml")]
+    output: Option<PathBuf>,
+    /// Overwrite the file if it exists
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+/// The kind of a word.
+fn kind(word: &str) -> std::result::Result<FileKind, String> {
+    let known = FileKind::ALL.into_iter().find(|kind| kind.name() == word);
+    known.ok_or_else(|| format!("give one of {}", FileKind::ALL.map(FileKind::name).join(", ")))
+}
+
+/// Writes the JSON Schema; what is left to print.
+pub fn schema(arguments: &Schema) -> Result<String> {
+    write(report::json(&arguments.kind.schema()), arguments.output.as_deref(), arguments.force)
+}
+
+/// Writes the scene; what is left to print.
+pub fn init(arguments: &Init) -> Result<String> {
+    write(TEMPLATE.into(), arguments.output.as_deref(), arguments.force)
+}
+
+fn write(text: String, output: Option<&Path>, overwrite: bool) -> Result<String> {
+    let Some(path) = output else { return Ok(text) };
+    TableFile::new(path, overwrite)?.write(&text)?;
+    Ok(String::new())
+}
