@@ -17,6 +17,8 @@ use fretwear::submit::{self, Engine, SubmitReport, Wishes};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result, universality};
 
+#[path = "main/plot.rs"]
+mod plot;
 #[path = "main/tradeoff.rs"]
 mod tradeoff;
 
@@ -54,6 +56,8 @@ enum Command {
     Check(Check),
     /// Prepare a study for a cluster: measure, propose shards, write job scripts and hand them to the engine
     Submit(Submit),
+    /// Draw a figure from a result file
+    Plot(plot::Plot),
     /// Show what is in a result file and whether it is complete
     Info(Info),
 }
@@ -271,6 +275,7 @@ fn main() -> ExitCode {
         Command::Tradeoff(arguments) => tradeoff::tradeoff(&arguments),
         Command::Check(arguments) => check(&arguments).map(done),
         Command::Submit(arguments) => submit(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments).map(done),
         Command::Info(arguments) => info(&arguments).map(done),
     };
     match outcome {

@@ -14,6 +14,7 @@ mod labelled;
 pub mod layout;
 mod reader;
 mod shard;
+mod stored;
 mod writer;
 
 pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray, TextColumn};
@@ -21,6 +22,7 @@ pub(crate) use atomic::{AtomicFile, remove_abandoned};
 pub(crate) use folder::{cell, check_folder, make_folder, quoted, table};
 pub use reader::RunFile;
 pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
+pub use stored::{StoredArray, StoredArrays, format_of};
 pub use writer::RunWriter;
 
 use std::sync::Arc;

@@ -6,7 +6,22 @@ use std::path::{Path, PathBuf};
 /// Storeys from the top down; in each, a module may use those to its right. A folder belongs to the module of its name.
 const STOREYS: [(&str, &[&str]); 6] = [
     ("entry", &["main", "lib"]),
-    ("jobs", &["submit", "sweep", "report", "universality", "tradeoff", "progress", "run", "wear_map"]),
+    (
+        "jobs",
+        &[
+            "submit",
+            "sweep",
+            "page",
+            "figures",
+            "report",
+            "universality",
+            "tradeoff",
+            "progress",
+            "run",
+            "wear_map",
+            "drawing",
+        ],
+    ),
     ("files", &["scene", "snapshot"]),
     ("time", &["simulation", "stepper", "model"]),
     (

@@ -7,31 +7,36 @@ use crate::loading::RecordedPath;
 
 /// A kind of quantity and the units it is shown in, by growing size in SI.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale(&'static [(f64, &'static str)]);
+pub(crate) struct Scale(&'static [(f64, &'static str)]);
 
 impl Scale {
-    pub(super) const LENGTH: Self =
+    pub(crate) const LENGTH: Self =
         Self(&[(1e-12, "pm"), (1e-9, "nm"), (1e-6, "µm"), (1e-3, "mm"), (1.0, "m"), (1e3, "km")]);
-    pub(super) const VOLUME: Self =
+    pub(crate) const VOLUME: Self =
         Self(&[(1e-27, "nm³"), (1e-18, "µm³"), (1e-9, "mm³"), (1.0, "m³"), (1e9, "km³")]);
-    pub(super) const FORCE: Self =
+    pub(crate) const FORCE: Self =
         Self(&[(1e-9, "nN"), (1e-6, "µN"), (1e-3, "mN"), (1.0, "N"), (1e3, "kN"), (1e6, "MN")]);
-    pub(super) const PRESSURE: Self =
+    pub(crate) const PRESSURE: Self =
         Self(&[(1.0, "Pa"), (1e3, "kPa"), (1e6, "MPa"), (1e9, "GPa"), (1e12, "TPa")]);
-    pub(super) const ENERGY: Self =
+    pub(crate) const ENERGY: Self =
         Self(&[(1e-9, "nJ"), (1e-6, "µJ"), (1e-3, "mJ"), (1.0, "J"), (1e3, "kJ"), (1e6, "MJ")]);
-    pub(super) const TIME: Self = Self(&[(1e-3, "ms"), (1.0, "s")]);
+    pub(crate) const TIME: Self = Self(&[(1e-3, "ms"), (1.0, "s")]);
 
     /// A value in SI with the largest unit of which there is at least one.
-    pub(super) fn show(self, value: f64) -> String {
+    pub(crate) fn show(self, value: f64) -> String {
+        let (unit, symbol) = self.unit(value);
+        format!("{} {symbol}", number(value / unit))
+    }
+
+    /// That unit, its size in SI and its symbol.
+    pub(crate) fn unit(self, value: f64) -> (f64, &'static str) {
         // The rounding of six digits must not leave 1000 of one unit instead of 1 of the next.
         let size = value.abs() * (1.0 + 5e-7);
         let plain = self.0.iter().find(|(unit, _)| *unit == 1.0).unwrap_or(&self.0[0]);
-        let (unit, symbol) = match value {
+        match value {
             value if value == 0.0 || !value.is_finite() => *plain,
             _ => *self.0.iter().rev().find(|(unit, _)| size >= *unit).unwrap_or(&self.0[0]),
-        };
-        format!("{} {symbol}", number(value / unit))
+        }
     }
 }
 
