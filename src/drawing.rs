@@ -16,7 +16,7 @@ mod ticks;
 
 pub use colour::{Colour, DISTINCT, graded};
 pub use layout::Frame;
-pub use letters::{plain, without_markup};
+pub use letters::{escaped, html, plain, without_markup};
 pub use picture::png;
 pub use svg::Drawing;
 pub use ticks::{Tick, ticks};

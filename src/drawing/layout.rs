@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::letters::Letters;
-use super::{Axis, Figure, Panel, Row, Series, Tick, ticks};
+use super::{Axis, Figure, Panel, Row, Series, Spacing, Tick, ticks};
 
 /// Width of a figure, px; at 96 px an inch, two columns of a journal.
 pub(super) const WIDTH: f64 = 720.0;
@@ -27,7 +27,10 @@ const BETWEEN_ROWS: f64 = 14.0;
 const BETWEEN_PANELS: f64 = 14.0;
 /// A label for so many px of an axis.
 const ROOM_ACROSS: f64 = 58.0;
+const ROOM_OF_POWER: f64 = 44.0;
 const ROOM_UP: f64 = 38.0;
+/// Height of a line of the notes.
+pub(super) const NOTE_LINE: f64 = 15.0;
 
 /// A rectangle, px from the left and the top of the figure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -78,13 +81,15 @@ impl<'a> Layout<'a> {
     pub(super) fn new(figure: &'a Figure, letters: &Letters) -> Self {
         let mut top = MARGIN + if figure.title.is_some() { TITLE + 8.0 } else { 0.0 };
         let mut panels = vec![];
-        let left = figure.rows.iter().map(|row| left_margin(row, letters, 0)).fold(0.0, f64::max);
         for row in &figure.rows {
-            top = place_row(row, letters, left, top, &mut panels) + BETWEEN_ROWS;
+            let left = left_margins(figure, row, letters);
+            top = place_row(row, letters, &left, top, &mut panels) + BETWEEN_ROWS;
         }
-        let notes = top + SMALL_TEXT - 4.0;
-        let height = notes + figure.notes.len() as f64 * (SMALL_TEXT + 4.0) - SMALL_TEXT + MARGIN;
-        Self { panels, notes, height: height.max(top) }
+        let end = top - BETWEEN_ROWS;
+        let notes = end + 6.0 + SMALL_TEXT;
+        let lines = figure.notes.len() as f64;
+        let height = if lines > 0.0 { notes + (lines - 1.0) * NOTE_LINE + 4.0 } else { end } + MARGIN;
+        Self { panels, notes, height }
     }
 }
 
@@ -98,11 +103,21 @@ fn rows_of_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     ticks(axis, (height / ROOM_UP) as usize)
 }
 
+/// Room to the left of the frames of a row; the first frames of all rows begin together, and all those of rows of as many panels.
+fn left_margins(figure: &Figure, row: &Row, letters: &Letters) -> Vec<f64> {
+    let alike = |column: usize| {
+        let same = move |other: &&Row| column == 0 || other.panels.len() == row.panels.len();
+        figure.rows.iter().filter(same)
+    };
+    let margin = |column| alike(column).map(|row| left_margin(row, letters, column)).fold(0.0, f64::max);
+    (0..row.panels.len()).map(margin).collect()
+}
+
 /// Room to the left of the frame of a panel.
 fn left_margin(row: &Row, letters: &Letters, column: usize) -> f64 {
     let Some(panel) = row.panels.get(column) else { return 0.0 };
     let labels = widest(&rows_of_ticks(&panel.y, row.height), letters);
-    let title = if panel.y.quantity.is_empty() { 0.0 } else { TEXT + 6.0 };
+    let title = if panel.y.quantity.is_empty() { 0.0 } else { TEXT + 10.0 };
     title + if labels > 0.0 { labels + TICK + GAP } else { GAP }
 }
 
@@ -122,22 +137,22 @@ fn right_margin(panel: &Panel, height: f64, letters: &Letters) -> f64 {
 fn place_row<'a>(
     row: &'a Row,
     letters: &Letters,
-    first_left: f64,
+    left_margins: &[f64],
     top: f64,
     placed: &mut Vec<Placed<'a>>,
 ) -> f64 {
     let margins: Vec<[f64; 2]> = (0..row.panels.len())
-        .map(|column| {
-            let left = if column == 0 { first_left } else { left_margin(row, letters, column) };
-            [left, right_margin(&row.panels[column], row.height, letters)]
-        })
+        .map(|column| [left_margins[column], right_margin(&row.panels[column], row.height, letters)])
         .collect();
     let between = BETWEEN_PANELS * row.panels.len().saturating_sub(1) as f64;
     let taken: f64 = margins.iter().flatten().sum::<f64>() + between + 2.0 * MARGIN;
     let shares: f64 = row.panels.iter().map(|panel| panel.share).sum();
     let width = |panel: &Panel| ((WIDTH - taken) * panel.share / shares).max(40.0);
-    let legends: Vec<Vec<Vec<&Series>>> =
-        row.panels.iter().map(|panel| legend(panel, width(panel), letters)).collect();
+    let legends: Vec<Vec<Vec<&Series>>> = row
+        .panels
+        .iter()
+        .map(|panel| legend(panel, room_of_legend(row, panel, width(panel)), letters))
+        .collect();
     let above = |panel: &Panel, legend: &Vec<Vec<&Series>>| {
         legend.len() as f64 * LEGEND_LINE + panel.title.as_ref().map_or(0.0, |_| TEXT + 8.0)
     };
@@ -148,7 +163,8 @@ fn place_row<'a>(
         left += before;
         let frame = Frame { left, top: top + head, width: width(panel), height: row.height };
         let bar = panel.bar.as_ref().map(|bar| rows_of_ticks(&bar.axis, row.height)).unwrap_or_default();
-        let x = ticks(&panel.x, (frame.width / ROOM_ACROSS) as usize);
+        let room = if panel.x.spacing == Spacing::Linear { ROOM_ACROSS } else { ROOM_OF_POWER };
+        let x = ticks(&panel.x, (frame.width / room) as usize);
         let ticks = Ticks { x, y: rows_of_ticks(&panel.y, row.height), bar };
         let tick_widths = [widest(&ticks.y, letters), widest(&ticks.bar, letters)];
         placed.push(Placed { panel, frame, ticks, legend, tick_widths });
@@ -157,6 +173,14 @@ fn place_row<'a>(
     let labelled = row.panels.iter().any(|panel| panel.x.ticked);
     let below = if labelled { TICK + GAP + SMALL_TEXT } else { GAP };
     top + head + row.height + below + TEXT + 8.0
+}
+
+/// Width that the legend of a panel may take: that of its frame, or of its row where nothing else is above the other frames.
+fn room_of_legend(row: &Row, panel: &Panel, width: f64) -> f64 {
+    let is_bare =
+        |other: &Panel| other.title.is_none() && other.series.iter().all(|series| !series.in_legend);
+    let is_first = row.panels.first().is_some_and(|first| std::ptr::eq(first, panel));
+    if is_first && row.panels[1..].iter().all(is_bare) { width * row.panels.len() as f64 } else { width }
 }
 
 /// The entries of the legend in lines no wider than the frame.

@@ -39,6 +39,50 @@ pub fn without_markup(text: &str) -> String {
     parse(text).into_iter().map(|letter| letter.letter).collect()
 }
 
+/// A text with its markup as HTML.
+///
+/// ```
+/// use fretwear::drawing::html;
+/// assert_eq!(html("*a*_{0} < 10^{−3}"), "<i>a</i><sub>0</sub> &lt; 10<sup>−3</sup>");
+/// ```
+pub fn html(text: &str) -> String {
+    let tags = |italic: bool, level: i8| {
+        let level = match level {
+            1 => Some("sup"),
+            -1 => Some("sub"),
+            _ => None,
+        };
+        level.into_iter().chain(italic.then_some("i"))
+    };
+    let mut html = String::new();
+    for run in parse(text).chunk_by(|one, other| (one.italic, one.level) == (other.italic, other.level)) {
+        let (italic, level) = (run[0].italic, run[0].level);
+        tags(italic, level).for_each(|tag| html += &format!("<{tag}>"));
+        html += &escaped(&run.iter().map(|letter| letter.letter).collect::<String>());
+        let mut closing: Vec<&str> = tags(italic, level).collect();
+        closing.reverse();
+        closing.into_iter().for_each(|tag| html += &format!("</{tag}>"));
+    }
+    html
+}
+
+/// Text as it stands in XML and HTML, without what both forbid.
+pub fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '"' => escaped += "&quot;",
+            '\n' => escaped.push('\n'),
+            letter if letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}') => escaped.push(' '),
+            letter => escaped.push(letter),
+        }
+    }
+    escaped
+}
+
 /// One letter of a text with markup.
 struct Letter {
     letter: char,

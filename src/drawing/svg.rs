@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 use super::layout::{
-    BAR, BAR_GAP, GAP, LEGEND_GAP, LEGEND_LINE, Layout, MARGIN, Placed, SMALL_TEXT, SWATCH, TEXT, TICK,
-    TITLE, WIDTH, entry_width,
+    BAR, BAR_GAP, GAP, LEGEND_GAP, LEGEND_LINE, Layout, MARGIN, NOTE_LINE, Placed, SMALL_TEXT, SWATCH, TEXT,
+    TICK, TITLE, WIDTH, entry_width,
 };
-use super::letters::{Glyph, Letters, without_markup};
+use super::letters::{Glyph, Letters, escaped, without_markup};
 use super::paths::{number, path_data};
 use super::{Bar, Colour, Dash, Figure, Frame, Label, Series, Style};
 
@@ -42,7 +42,7 @@ impl Drawing {
             page.panel(number, panel);
         }
         for (line, note) in figure.notes.iter().enumerate() {
-            let y = layout.notes + line as f64 * (SMALL_TEXT + 4.0);
+            let y = layout.notes + line as f64 * NOTE_LINE;
             page.text(note, [MARGIN, y], SMALL_TEXT, 0.0, Colour::GREY);
         }
         let title = figure.title.as_deref().unwrap_or("figure");
@@ -207,7 +207,7 @@ impl Page<'_> {
             let labels = if tick_widths[0] > 0.0 { tick_widths[0] + TICK + GAP } else { GAP };
             self.upwards(
                 &panel.y.text(),
-                [left - labels - 5.0, top + 0.5 * height],
+                [left - labels - 9.0, top + 0.5 * height],
                 TEXT,
                 0.5,
                 Colour::BLACK,
@@ -364,20 +364,4 @@ impl Frame {
             height: round(self.height),
         }
     }
-}
-
-fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            '\t' | '\n' | '\r' => escaped.push(' '),
-            letter if letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}') => {}
-            letter => escaped.push(letter),
-        }
-    }
-    escaped
 }

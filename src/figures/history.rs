@@ -30,12 +30,12 @@ pub(super) fn rows(results: &RunResults) -> Vec<Row> {
         limit: |_, limit| Some(limit.wear_depth_max()),
     };
     let contact = Quantity {
-        name: "contact radius *a*",
+        name: "contact *a*",
         of: |it| it.contact_radius,
         limit: |_, limit| Some(limit.contact_radius_limit()),
     };
     let stick = Quantity {
-        name: "stick radius *c*",
+        name: "stick *c*",
         of: |it| it.stick_radius,
         limit: |_, limit| Some(limit.stick_radius()),
     };
@@ -101,11 +101,7 @@ fn panel(results: &RunResults, axis: &str, scale: Scale, quantities: &[Quantity]
             let series =
                 Series::new(format!("{}, limit", quantity.name), LIMIT, Colour::BLACK, ends.to_vec());
             // One entry explains the lines of all.
-            panel.series.push(if number == 0 {
-                Series { name: "limit".into(), ..series }.in_legend()
-            } else {
-                series
-            });
+            panel.series.push(Series { in_legend: several && number == 0, ..series });
         }
     }
     panel

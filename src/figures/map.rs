@@ -15,6 +15,8 @@ const BANDS: usize = 24;
 const RANGE: [f64; 2] = [0.1, 20.0];
 /// Isolines with fewer points have no room for their label.
 const FEW_POINTS: usize = 25;
+/// Room of a label, in parts of the frame.
+const ROOM: [f64; 2] = [0.1, 0.05];
 const LINE: Style = Style::Line { width: 0.8, dash: Dash::Solid };
 const EQUAL: Style = Style::Line { width: 2.0, dash: Dash::Solid };
 
@@ -151,12 +153,31 @@ fn add_isolines(panel: &mut Panel, file: &StoredArrays, form: &Form) -> Result<(
         let style = if level == 1.0 { EQUAL } else { LINE };
         let text = number(level);
         if points.len() >= FEW_POINTS {
-            let label = Label::new(text.clone(), points[points.len() / 2], Colour::BLACK);
-            panel.labels.push(Label { anchor: 0.5, shift: [0.0, 4.0], on_white: true, ..label });
+            add_label(panel, &text, &points);
         }
         panel.series.push(Series::new(format!("Δ*V*(*k*)/Δ*V*(0) = {text}"), style, Colour::BLACK, points));
     }
     Ok(())
+}
+
+/// Writes on a line where there is room, or nowhere.
+fn add_label(panel: &mut Panel, text: &str, points: &[[f64; 2]]) {
+    const PARTS: [f64; 7] = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8];
+    let on_frame = |axes: &Panel, point: [f64; 2]| [axes.x.place(point[0]), axes.y.place(point[1])];
+    let candidates = PARTS.map(|part| points[(part * points.len() as f64) as usize]);
+    let free = candidates.into_iter().find(|point| {
+        let [x, y] = on_frame(panel, *point);
+        let apart = |label: &Label| {
+            let [other_x, other_y] = on_frame(panel, label.at);
+            (x - other_x).abs() > ROOM[0] || (y - other_y).abs() > ROOM[1]
+        };
+        let inside = |place: f64, margin: f64| (margin..1.0 - margin).contains(&place);
+        inside(x, 0.6 * ROOM[0]) && inside(y, ROOM[1]) && panel.labels.iter().all(apart)
+    });
+    if let Some(at) = free {
+        let label = Label::new(text, at, Colour::BLACK);
+        panel.labels.push(Label { anchor: 0.5, shift: [0.0, 4.0], on_white: true, ..label });
+    }
 }
 
 /// What slides altogether is covered in grey.
@@ -176,7 +197,7 @@ fn add_full_sliding(panel: &mut Panel, gradings: &[f64], amplitudes: &[f64]) {
     panel.series.push(Series::new("full sliding", style, Colour::BLACK, line));
     let at = [first[0], top];
     let label = Label::new("full sliding", at, Colour::BLACK);
-    panel.labels.push(Label { shift: [8.0, 16.0], ..label });
+    panel.labels.push(Label { shift: [4.0, 13.0], ..label });
 }
 
 fn bar() -> Bar {

@@ -23,11 +23,14 @@ pub(super) fn rows(results: &RunResults) -> Vec<Row> {
     let curves = Curves::new(results);
     let shown = results.shown();
     let bar = Ages::new(&shown).bar(&shown);
-    let whole = curves.profiles(results, 0.0).titled("whole contact");
+    let mut whole = curves.profiles(results, 0.0).titled("whole contact");
     let mut ring = curves.profiles(results, curves.inner).titled("worn ring");
     ring.y.range = curves.ring_heights(&ring);
     ring.y.quantity = String::new();
     ring.series.iter_mut().for_each(|series| series.in_legend = false);
+    let stick = results.radii().of(results.stick_radius());
+    mark_stick(&mut whole, stick, true);
+    mark_stick(&mut ring, stick, false);
     ring.bar.clone_from(&bar);
     let mut depth = curves.depths(results);
     depth.bar = bar;
@@ -90,7 +93,6 @@ impl Curves {
         if let Some(limit) = &self.limit {
             panel.series.push(Series::new("limit", LIMIT, Colour::BLACK, profile(limit)).in_legend());
         }
-        mark_stick(&mut panel, radii.of(results.stick_radius()), true);
         panel
     }
 

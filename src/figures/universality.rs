@@ -93,14 +93,24 @@ fn outliers(controls: &[Case]) -> Panel {
         let (colour, dash) = look(number);
         let style = Style::Line { width: 1.5, dash };
         panel.series.push(Series::new(plain(case.name), style, colour, case.curve.clone()));
-        let gap = |point: &&[f64; 2]| (point[1] - point[0]).abs();
-        let finite = case.curve.iter().filter(|point| point.iter().all(|value| value.is_finite()));
-        if let Some(farthest) = finite.max_by(|one, other| gap(one).total_cmp(&gap(other))) {
-            let label = Label::new((number + 1).to_string(), *farthest, Colour::BLACK);
+        let gap = |point: &[f64; 2]| (point[1] - point[0]).abs();
+        let mut finite: Vec<&[f64; 2]> =
+            case.curve.iter().filter(|point| point.iter().all(|value| value.is_finite())).collect();
+        finite.sort_by(|one, other| gap(other).total_cmp(&gap(one)));
+        let taken = |point: &[f64; 2]| panel.labels.iter().any(|label| is_near(label.at, *point));
+        // Where it is farthest from the limit, or next to that where another number stands there.
+        let free = finite.iter().find(|point| !taken(point)).or(finite.first());
+        if let Some(at) = free {
+            let label = Label::new((number + 1).to_string(), **at, Colour::BLACK);
             panel.labels.push(Label { anchor: 0.5, shift: [0.0, 4.0], on_white: true, ..label });
         }
     }
     panel
+}
+
+/// Whether two numbers would lie on each other.
+fn is_near(one: [f64; 2], other: [f64; 2]) -> bool {
+    (one[0] - other[0]).abs() < 0.06 && (one[1] - other[1]).abs() < 0.07
 }
 
 /// All distances in their order.
@@ -119,14 +129,15 @@ fn order(inside: &[Case], controls: &[Case], tolerances: [Option<f64>; 2]) -> Pa
         distances,
         0.04,
     );
-    let y = Axis { ticked: false, ..Axis::new("cases in order", "", Spacing::Linear, [0.0, 1.0]) };
+    let y = Axis { ticked: false, ..Axis::new("cases in order", "", Spacing::Linear, [-0.02, 1.02]) };
     let mut panel = Panel::new(x, y);
-    let line = Style::Line { width: 1.0, dash: Dash::Dotted };
-    for (tolerance, word) in tolerances.into_iter().zip(["obeys up to here", "violates from here"]) {
+    let dashes = [Dash::Dotted, Dash::DashDotted];
+    let words = ["obeys up to here", "violates from here"];
+    for ((tolerance, word), dash) in tolerances.into_iter().zip(words).zip(dashes) {
         let Some(tolerance) = tolerance else { continue };
-        panel.series.push(Series::new("", line, Colour::GREY, vec![[tolerance, 0.0], [tolerance, 1.0]]));
-        let label = Label::new(word, [tolerance, 0.0], Colour::GREY);
-        panel.labels.push(Label { upwards: true, shift: [-4.0, -6.0], ..label });
+        let ends = panel.y.range.map(|height| [tolerance, height]);
+        let line = Style::Line { width: 1.2, dash };
+        panel.series.push(Series::new(word, line, Colour::GREY, ends.to_vec()).in_legend());
     }
     let style = Style::Points { shape: Shape::Disc, radius: 2.2 };
     for (case, point) in inside.iter().zip(obeying) {
@@ -136,7 +147,7 @@ fn order(inside: &[Case], controls: &[Case], tolerances: [Option<f64>; 2]) -> Pa
     for (number, (case, point)) in controls.iter().zip(violating).enumerate() {
         panel.series.push(Series::new(plain(case.name), style, look(number).0, vec![point]));
         let label = Label::new(format!("{}  {}", plain(case.name), number + 1), point, Colour::BLACK);
-        panel.labels.push(Label { anchor: 1.0, shift: [-8.0, 4.0], ..label });
+        panel.labels.push(Label { anchor: 1.0, shift: [-8.0, 4.0], on_white: true, ..label });
     }
     panel
 }

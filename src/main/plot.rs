@@ -1,6 +1,6 @@
 //! `fretwear plot`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use fretwear::Result;
@@ -41,4 +41,9 @@ pub fn plot(arguments: &Plot) -> Result<String> {
     let kind = arguments.kind.or_else(|| results.kinds().first().copied()).unwrap_or(Kind::Profile);
     file.write(&results.figure(kind, arguments.quantity.as_deref())?)?;
     Ok(String::new())
+}
+
+/// Draws the worn profile of a run that has been written to `result`.
+pub fn draw_run(result: &Path, picture: FigureFile) -> Result<()> {
+    picture.write(&Results::read(result)?.figure(Kind::Profile, None)?)
 }

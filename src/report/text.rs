@@ -93,6 +93,24 @@ pub(super) fn recorded_path(path: &RecordedPath) -> String {
     format!("path {}, {} rows", path.source, path.x.len())
 }
 
+/// Width of the names in a table.
+const WIDTH: usize = 34;
+
+/// Names and values of a table that [`Rows`] made, without its title; both are empty at a gap.
+pub(crate) fn cells(table: &str) -> Vec<(&str, &str)> {
+    let split = |line: &'_ str| line.char_indices().nth(WIDTH).map_or(line.len(), |(at, _)| at);
+    let rows = table.lines().map(|line| {
+        let (name, value) = line.split_at(split(line));
+        (name.trim_end(), value.trim())
+    });
+    let mut rows: Vec<(&str, &str)> = rows.collect();
+    // A title is a line by itself with a gap below.
+    if rows.get(1) == Some(&("", "")) {
+        rows.drain(..2);
+    }
+    rows
+}
+
 /// Rows of a name and a value.
 #[derive(Debug, Default)]
 pub(crate) struct Rows(String);
@@ -104,7 +122,6 @@ impl Rows {
     }
 
     pub(crate) fn row(&mut self, name: &str, value: impl std::fmt::Display) {
-        const WIDTH: usize = 34;
         // Writing to a string cannot fail.
         let _ = writeln!(self.0, "{name:<WIDTH$} {value}");
     }
@@ -132,6 +149,17 @@ mod tests {
         let shown = [0.0, -0.0, 1.0, 0.1, 0.8235294117647058, 123456.7, 1234567.8, 1e-5, -2.5e-4, 999999.7];
         let expected = ["0", "0", "1", "0.1", "0.823529", "123457", "1.23457e6", "1e-5", "-0.00025", "1e6"];
         assert_eq!(shown.map(number), expected);
+    }
+
+    #[test]
+    fn a_table_is_split_into_the_cells_it_was_made_of() {
+        let mut rows = Rows::titled(Some("A title that is longer than the names of a table may be"));
+        rows.row("dimensionless time τ", 3);
+        rows.gap();
+        rows.row("  worn volume", "1324 µm³ of 1325 µm³");
+        let table = rows.finish();
+        let expected = [("dimensionless time τ", "3"), ("", ""), ("  worn volume", "1324 µm³ of 1325 µm³")];
+        assert_eq!(cells(&table), expected);
     }
 
     #[test]
