@@ -52,7 +52,7 @@ struct Verdict {
 pub fn report(results: &Results, path: &Path) -> Result<String> {
     let content::Content { title, program_version, verdict, above, below } = content::of(results, path)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let from = format!("{name}, written by fretwear {program_version}: {}", results.what());
+    let from = format!("{name}: {} of fretwear {program_version}", results.what());
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\

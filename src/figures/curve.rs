@@ -56,7 +56,7 @@ impl Curve {
             + t * t * (1.0 + 2.0 * s) * after
             + width * s * t * (s * self.slopes[i - 1] - t * self.slopes[i]);
         // But for round-off it is between them already.
-        value.clamp(before.min(after), before.max(after))
+        value.max(before.min(after)).min(before.max(after))
     }
 }
 

@@ -7,7 +7,6 @@ use crate::drawing::{Colour, DISTINCT, Dash, Panel, Row, Series, Spacing, Style}
 use crate::report::Scale;
 use crate::snapshot::{Snapshot, largest};
 
-const OVER_TIME: Style = Style::Line { width: 1.8, dash: Dash::Solid };
 const LIMIT: Style = Style::Line { width: 1.2, dash: Dash::Dashed };
 
 /// A quantity over cycles.
@@ -34,11 +33,8 @@ pub(super) fn rows(results: &RunResults) -> Vec<Row> {
         of: |it| it.contact_radius,
         limit: |_, limit| Some(limit.contact_radius_limit()),
     };
-    let stick = Quantity {
-        name: "stick *c*",
-        of: |it| it.stick_radius,
-        limit: |_, limit| Some(limit.stick_radius()),
-    };
+    // Where there is a limit, the edge of stick is where that begins: one line does.
+    let stick = Quantity { name: "stick *c*", of: |it| it.stick_radius, limit: |_, _| None };
     let force = Quantity {
         name: "normal force",
         of: |it| it.normal_force,
@@ -49,26 +45,21 @@ pub(super) fn rows(results: &RunResults) -> Vec<Row> {
             Some(first.normal_force * limit.load_fraction())
         },
     };
-    let panel = |axis, scale, quantities: &[Quantity]| panel(results, axis, scale, quantities);
+    let pair = |panels: [Panel; 2]| Row { height: 165.0, panels: panels.into() };
     vec![
-        Row {
-            height: 165.0,
-            panels: vec![
-                panel("worn volume Δ*V*", Scale::VOLUME, &[volume]),
-                panel("largest depth max *w*", Scale::LENGTH, &[depth]),
-            ],
-        },
-        Row {
-            height: 165.0,
-            panels: vec![
-                panel("radius", Scale::LENGTH, &[contact, stick]),
-                panel("normal force *F*_{N}", Scale::FORCE, &[force]),
-            ],
-        },
+        pair([
+            panel(results, "worn volume Δ*V*", Scale::VOLUME, &[volume], true),
+            panel(results, "largest depth max *w*", Scale::LENGTH, &[depth], true),
+        ]),
+        pair([
+            panel(results, "radius", Scale::LENGTH, &[contact, stick], false),
+            panel(results, "normal force *F*_{N}", Scale::FORCE, &[force], false),
+        ]),
     ]
 }
 
-fn panel(results: &RunResults, axis: &str, scale: Scale, quantities: &[Quantity]) -> Panel {
+/// Quantities over cycles, on an axis that begins at zero or not.
+fn panel(results: &RunResults, axis: &str, scale: Scale, quantities: &[Quantity], from_zero: bool) -> Panel {
     // The start has no place on a logarithmic axis.
     let later: Vec<&Snapshot> = results.snapshots().iter().filter(|it| it.cycles > 0.0).collect();
     let cycles: Vec<f64> = later.iter().map(|it| it.cycles).collect();
@@ -82,26 +73,20 @@ fn panel(results: &RunResults, axis: &str, scale: Scale, quantities: &[Quantity]
     let all = || rows.iter().flat_map(|(_, values, limit)| values.iter().copied().chain(*limit));
     let unit = Measure::new(scale, all());
     let x = Measure::NUMBER.axis("cycles *N*", Spacing::Logarithmic, cycles.iter().copied(), 0.0);
-    let from_zero = quantities
-        .iter()
-        .all(|quantity| quantity.name.starts_with("worn") || quantity.name.starts_with("largest"));
     let values = all().map(|value| unit.of(value)).chain(from_zero.then_some(0.0));
     let y = unit.axis(axis, Spacing::Linear, values, 0.06);
     let mut panel = Panel::new(x, y);
     let several = quantities.len() > 1;
     for (number, (quantity, values, limit)) in rows.iter().enumerate() {
-        let style = match number {
-            0 => OVER_TIME,
-            _ => Style::Line { width: 1.8, dash: Dash::DashDotted },
-        };
+        let dash = if number == 0 { Dash::Solid } else { Dash::DashDotted };
+        let style = Style::Line { width: 1.8, dash };
         let series = Series::new(quantity.name, style, DISTINCT[number], points(&cycles, &unit.all(values)));
         panel.series.push(if several { series.in_legend() } else { series });
         if let Some(limit) = limit {
             let ends = panel.x.range.map(|cycles| [cycles, unit.of(*limit)]);
-            let series =
-                Series::new(format!("{}, limit", quantity.name), LIMIT, Colour::BLACK, ends.to_vec());
-            // One entry explains the lines of all.
-            panel.series.push(Series { in_legend: several && number == 0, ..series });
+            let series = Series::new("limit", LIMIT, Colour::BLACK, ends.to_vec());
+            // One entry of the figure explains the lines of all.
+            panel.series.push(Series { in_legend: several, ..series });
         }
     }
     panel

@@ -81,8 +81,11 @@ impl RunResults {
 
     /// The snapshots to be drawn as curves: about equal worn volumes apart, the last among them; none before the first wear.
     pub(super) fn shown(&self) -> Vec<&Snapshot> {
-        let worn: Vec<&Snapshot> =
-            self.snapshots().iter().filter(|it| it.cycles > 0.0 && it.wear_volume > 0.0).collect();
+        let worn: Vec<&Snapshot> = self
+            .snapshots()
+            .iter()
+            .filter(|it| is_positive(it.cycles) && is_positive(it.wear_volume))
+            .collect();
         let Some(last) = worn.last() else { return vec![] };
         let mut places: Vec<usize> = (1..=MOST_CURVES)
             .filter_map(|part| {
@@ -145,6 +148,10 @@ impl Ages {
             Bar { axis, colours, marks: shown.iter().map(|it| it.cycles).collect() }
         })
     }
+}
+
+fn is_positive(value: f64) -> bool {
+    value > 0.0 && value.is_finite()
 }
 
 /// A number of cycles, as people say it.

@@ -134,7 +134,12 @@ impl Candidates<'_> {
     /// Uncertainty of the reference in volume and profile.
     fn uncertainty(&self, place: usize) -> Option<f64> {
         let text = self.file.attribute("reference_uncertainty")?;
-        text.split(',').nth(place)?.trim().parse().ok().filter(|value| *value > 0.0)
+        text.split(',')
+            .nth(place)?
+            .trim()
+            .parse()
+            .ok()
+            .filter(|value: &f64| *value > 0.0 && value.is_finite())
     }
 }
 

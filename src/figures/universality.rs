@@ -40,8 +40,11 @@ pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
     let by_distance = |one: &Case, other: &Case| one.distance.total_cmp(&other.distance);
     inside.sort_by(by_distance);
     controls.sort_by(by_distance);
-    let tolerances = ["tolerance_within", "tolerance_outside"]
-        .map(|name| file.attribute(name).and_then(|text| text.parse().ok()).filter(|value| *value > 0.0));
+    let tolerances = ["tolerance_within", "tolerance_outside"].map(|name| {
+        file.attribute(name)
+            .and_then(|text| text.parse().ok())
+            .filter(|value: &f64| *value > 0.0 && value.is_finite())
+    });
     let rows = vec![
         Row { height: 230.0, panels: vec![overlay(&inside), outliers(&controls)] },
         Row { height: 215.0, panels: vec![order(&inside, &controls, tolerances)] },

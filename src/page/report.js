@@ -11,14 +11,16 @@ const valueAt = (axis, part) =>
                                  : axis.range[0] + part * (axis.range[1] - axis.range[0]);
 const shown = value => Number(value.toPrecision(6)).toString().replace("e+", "e").replace(/-/g, "−");
 
+const raised = power => [...String(power)].map(it => "⁰¹²³⁴⁵⁶⁷⁸⁹"[it] ?? "⁻").join("");
+
 // Marks of an axis between two values; at most about `most` of them.
 function marks(axis, low, high, most) {
   const found = [];
   if (axis.spacing === "logarithmic" && high / low > 8) {
     const from = Math.ceil(Math.log10(low) - 1e-9), to = Math.floor(Math.log10(high) + 1e-9);
     const every = Math.max(1, Math.ceil((to - from + 1) / most));
-    for (let power = from; power <= to; power++) if (power % every === 0) found.push([Math.pow(10, power), "1e" + power]);
-    return found.map(([value, label]) => [value, label.replace("-", "−")]);
+    for (let power = from; power <= to; power++) if (power % every === 0) found.push([Math.pow(10, power), "10" + raised(power)]);
+    return found;
   }
   const least = (high - low) / most, power = Math.pow(10, Math.floor(Math.log10(least)));
   const step = [1, 2, 5, 10].map(it => it * power).find(it => it >= 0.999 * least);
