@@ -120,9 +120,9 @@ impl Axis {
         Self { quantity: quantity.into(), unit: unit.into(), spacing, range, ticked: true }
     }
 
-    /// Quantity, symbol and unit, such as `radius *r* (µm)`.
+    /// Quantity, symbol and unit, such as `radius *r* (µm)`; nothing where the quantity is left to the panel beside.
     pub fn text(&self) -> String {
-        if self.unit.is_empty() {
+        if self.unit.is_empty() || self.quantity.is_empty() {
             self.quantity.clone()
         } else {
             format!("{} ({})", self.quantity, self.unit)
@@ -134,7 +134,8 @@ impl Axis {
         let [first, last] = self.range;
         match self.spacing {
             Spacing::Linear => (value - first) / (last - first),
-            Spacing::Logarithmic => (value / first).ln() / (last / first).ln(),
+            // Differences, because a quotient of what a file may hold can overflow.
+            Spacing::Logarithmic => (value.ln() - first.ln()) / (last.ln() - first.ln()),
         }
     }
 }
@@ -160,7 +161,7 @@ pub fn range_of(values: impl IntoIterator<Item = f64>, spacing: Spacing, margin:
             [middle - half, middle + half]
         }
         Spacing::Logarithmic => {
-            let width = (last / first).ln().max(0.1);
+            let width = (last.ln() - first.ln()).max(0.1);
             let factor = (margin * width).exp().max(1.02);
             [(first / factor).max(f64::MIN_POSITIVE), (last * factor).min(f64::MAX)]
         }

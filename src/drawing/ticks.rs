@@ -27,7 +27,7 @@ pub fn ticks(axis: &Axis, most: usize) -> Vec<Tick> {
     }
     let [first, last] = axis.range;
     match axis.spacing {
-        Spacing::Logarithmic if (last / first).log10() >= 0.9 => logarithmic(first, last, most.max(2)),
+        Spacing::Logarithmic if last.log10() - first.log10() >= 0.9 => logarithmic(first, last, most.max(2)),
         // Less than about a decade: ticks as on an even axis.
         _ => linear(first, last, most.max(2)),
     }

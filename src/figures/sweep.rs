@@ -1,5 +1,7 @@
 //! A result of a sweep over what is varied.
 
+use std::collections::HashSet;
+
 use super::measure::Measure;
 use super::rings::Grid;
 use crate::drawing::{
@@ -151,6 +153,12 @@ impl Input<'_> {
         self.measure.of(self.values[row])
     }
 
+    /// Whether whoever knows this one knows the other.
+    fn tells(&self, other: &Self) -> bool {
+        let pairs = self.values.iter().zip(other.values).map(|(one, other)| (one.to_bits(), other.to_bits()));
+        pairs.collect::<HashSet<_>>().len() <= self.different.len()
+    }
+
     /// `key = value unit`.
     fn says(&self, value: f64) -> String {
         let value = format!("{} {}", number(self.measure.of(value)), self.measure.symbol());
@@ -195,9 +203,14 @@ fn curves(over: &Input, each: Option<&Input>, values: &[f64], y: Axis) -> Panel 
     panel
 }
 
-/// Samples over the input with the fewest values: all of them, their median, and the band that nine of ten are in.
+/// Samples over an input that has few values: all of them, their median, and the band that nine of ten are in.
 fn scatter(inputs: &[Input], values: &[f64], y: Axis) -> Panel {
-    let over = inputs.iter().min_by_key(|input| input.different.len()).expect("there are three");
+    // Variables that are sampled together tell each other; what is varied besides them tells none.
+    let tells = |input: &Input| inputs.iter().any(|other| other.key != input.key && input.tells(other));
+    let over = inputs
+        .iter()
+        .min_by_key(|input| (tells(input), input.different.len()))
+        .expect("there are at least two inputs");
     let mut panel = Panel::new(over.axis(0.06), y);
     let mut bands: Vec<[f64; 4]> = vec![];
     for place in &over.different {
