@@ -138,12 +138,24 @@ impl Axis {
             Spacing::Logarithmic => (value.ln() - first.ln()) / (last.ln() - first.ln()),
         }
     }
+
+    /// The value at a place along the axis, which [`Axis::place`] gives back.
+    pub fn value(&self, place: f64) -> f64 {
+        let [first, last] = self.range;
+        match self.spacing {
+            Spacing::Linear => first + place * (last - first),
+            Spacing::Logarithmic => (first.ln() + place * (last.ln() - first.ln())).exp(),
+        }
+    }
 }
+
+/// Ranges that are no wider are of values that have lost their digits.
+const LEAST_WIDTH: f64 = 1e-290;
 
 /// The range of some values with a margin of a part of it at both ends; none if there is no finite value, or no positive one on a
 /// logarithmic axis.
 pub fn range_of(values: impl IntoIterator<Item = f64>, spacing: Spacing, margin: f64) -> Option<[f64; 2]> {
-    let fits = |value: &f64| value.is_finite() && (spacing == Spacing::Linear || *value > 0.0);
+    let fits = |value: &f64| value.is_finite() && (spacing == Spacing::Linear || *value >= f64::MIN_POSITIVE);
     let [first, last] = values
         .into_iter()
         .filter(fits)
@@ -155,7 +167,7 @@ pub fn range_of(values: impl IntoIterator<Item = f64>, spacing: Spacing, margin:
         // A single value, or values that differ by round-off, still need an axis.
         Spacing::Linear => {
             let width = (last - first).max(1e-3 * first.abs().max(last.abs()));
-            let width = if width > 0.0 { width } else { 1.0 };
+            let width = if width > LEAST_WIDTH { width } else { 1.0 };
             let middle = 0.5 * first + 0.5 * last;
             let half = (0.5 + margin) * width;
             [middle - half, middle + half]
@@ -315,4 +327,40 @@ pub struct Bar {
     pub colours: Vec<Colour>,
     /// Values that are drawn, marked on the bar.
     pub marks: Vec<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_places_along_an_axis_are_inverse() {
+        for (spacing, range) in [(Spacing::Linear, [-3.0, 5.0]), (Spacing::Logarithmic, [1e-9, 1e7])] {
+            let axis = Axis::new("x", "", spacing, range);
+            assert_eq!([axis.place(range[0]), axis.place(range[1])], [0.0, 1.0]);
+            for place in [-0.2, 0.0, 0.3, 1.0, 1.4] {
+                assert!((axis.place(axis.value(place)) - place).abs() < 1e-14, "{spacing:?} {place}");
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_are_usable_whatever_the_values() {
+        let hostile = [f64::NAN, f64::INFINITY, -1e308, 1e308, 0.0, 5e-324, 1.0, 1.0 + f64::EPSILON];
+        for one in hostile {
+            for other in hostile {
+                for spacing in [Spacing::Linear, Spacing::Logarithmic] {
+                    let Some(range) = range_of([one, other], spacing, 0.05) else { continue };
+                    let axis = Axis::new("x", "", spacing, range);
+                    assert!(ticks(&axis, 5).len() < 10_000, "{one} {other} {spacing:?}");
+                    let fits = |value: &f64| {
+                        value.is_finite() && (spacing == Spacing::Linear || *value >= f64::MIN_POSITIVE)
+                    };
+                    for value in [one, other].into_iter().filter(fits) {
+                        assert!((0.0..=1.0).contains(&axis.place(value)), "{value} in {range:?}");
+                    }
+                }
+            }
+        }
+    }
 }

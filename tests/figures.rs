@@ -3,7 +3,9 @@
 mod support;
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::LazyLock;
 
 use fretwear::drawing::{Drawing, Figure, Panel, Series, Spacing, Style, ticks, without_markup};
@@ -647,6 +649,54 @@ fn the_data_of_a_page_are_those_of_its_figures() {
                     );
                 }
             }
+        }
+    }
+}
+
+/// A browser, if there is one.
+fn browser() -> Option<&'static str> {
+    let starts = |name: &&str| {
+        Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success())
+    };
+    ["chromium", "chromium-browser", "google-chrome"].into_iter().find(starts)
+}
+
+#[test]
+fn a_browser_shows_values_enlarges_and_goes_back() {
+    let Some(browser) = browser() else {
+        // Past the capture of the test harness, so that it is seen.
+        let _ = std::io::stderr()
+            .write_all(b"SKIPPED: no chromium, so the pages of reports were not opened in a browser\n");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    for (name, panel, expected) in [("run.h5", 2, "wear depth w: "), ("map/map.h5", 1, "amplitude U/(")] {
+        let page = page::report(&results(name), &file(name)).unwrap();
+        let pointer = include_str!("support/pointer.js").replace("PANEL", &panel.to_string());
+        let path = folder.path().join("page.html");
+        fs::write(&path, format!("{page}<script>{pointer}</script>")).unwrap();
+        let profile = format!("--user-data-dir={}", folder.path().join("browser").display());
+        let output = Command::new(browser)
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--window-size=1000,1200",
+                &profile,
+                "--dump-dom",
+            ])
+            .arg(format!("file://{}", path.display()))
+            .output()
+            .unwrap();
+        let page = text(&output.stdout);
+        let found = page
+            .split("<pre id=\"log\">")
+            .nth(1)
+            .unwrap_or_else(|| panic!("{name}: {}", text(&output.stderr)));
+        let found = found.split("</pre>").next().unwrap();
+        assert!(found.contains(expected) && !found.contains("failed"), "{name}: {found}");
+        for step in ["shown: block", "enlarged: true", "wheel: true", "back: true"] {
+            assert!(found.contains(step), "{name}, {step}: {found}");
         }
     }
 }

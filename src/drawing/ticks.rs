@@ -38,7 +38,8 @@ fn linear(first: f64, last: f64, most: usize) -> Vec<Tick> {
     let step = step(last - first, most);
     let slack = 1e-9 * (last - first);
     let [from, to] = [((first - slack) / step).ceil(), ((last + slack) / step).floor()];
-    let values: Vec<f64> = (0..=(to - from).max(0.0) as usize).map(|i| (from + i as f64) * step).collect();
+    let values: Vec<f64> =
+        (0..=((to - from).max(0.0) as usize).min(2 * most)).map(|i| (from + i as f64) * step).collect();
     let size = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     values.into_iter().map(|value| Tick { value, label: Some(label(value, step, size)) }).collect()
 }
@@ -146,7 +147,10 @@ mod tests {
             ["10^{−12}", "10^{−8}", "10^{−4}", "10^{0}"]
         );
         assert_eq!(labels(Spacing::Logarithmic, [0.08, 2.0], 8), ["0.1", "0.2", "0.5", "1", "2"]);
-        assert_eq!(labels(Spacing::Logarithmic, [3e5, 2e6], 4), ["5·10^{5}", "10^{6}", "2·10^{6}"]);
+        assert_eq!(
+            labels(Spacing::Logarithmic, [2e5, 3e6], 4),
+            ["2·10^{5}", "5·10^{5}", "10^{6}", "2·10^{6}"]
+        );
         assert_eq!(
             labels(Spacing::Logarithmic, [60.0, 100.0], 4),
             ["60", "70", "80", "90", "100"][..].to_vec()

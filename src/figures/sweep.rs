@@ -1,12 +1,12 @@
 //! A result of a sweep over what is varied.
 
+mod map;
+
 use std::collections::HashSet;
 
 use super::measure::Measure;
-use super::rings::Grid;
 use crate::drawing::{
-    Axis, Bar, Colour, DISTINCT, Dash, Figure, Panel, Row, Series, Shape, Spacing, Style, graded, plain,
-    range_of,
+    Axis, Colour, DISTINCT, Dash, Figure, Panel, Row, Series, Shape, Spacing, Style, plain,
 };
 use crate::error::{Error, Result};
 use crate::report::{Scale, number};
@@ -16,10 +16,10 @@ use crate::snapshot::{Column, SweepFile, Values};
 const MOST_CURVES: usize = 7;
 /// From so many samples at a place on their band is drawn.
 const MANY_SAMPLES: usize = 5;
-/// Bands of colour of a map.
-const BANDS: usize = 20;
 /// Values further apart than this, from the first to the last, and geometrically spread, ask for a logarithmic axis.
 const WIDE: f64 = 30.0;
+/// Results whose largest is more than so many times their smallest are shown by their logarithms.
+const VERY_WIDE: f64 = 300.0;
 /// Quantities of which the first that is there is drawn.
 const USUAL: [&str; 2] = ["wear_volume", "wear_volume_limit"];
 
@@ -46,7 +46,7 @@ pub(super) fn figure(file: &SweepFile, quantity: Option<&str>) -> Result<Figure>
         if scale(&result.units).is_some() || result.units == "1" { measure.symbol() } else { &result.units };
     let meaning = plain(&result.long_name);
     let wanted = |values: &[f64]| {
-        let axis = measure.axis(&meaning, Spacing::Linear, values.iter().copied(), 0.06);
+        let axis = measure.axis(&meaning, spacing(values), values.iter().copied(), 0.06);
         Axis { unit: unit.to_owned(), ..axis }
     };
     let panel = match &inputs[..] {
@@ -62,7 +62,7 @@ pub(super) fn figure(file: &SweepFile, quantity: Option<&str>) -> Result<Figure>
             if few.different.len() <= MOST_CURVES {
                 curves(many, Some(few), &values, wanted(&values))
             } else {
-                map(one, other, &values, wanted(&values))
+                map::panel(one, other, &values, wanted(&values))
             }
         }
         all => scatter(all, &values, wanted(&values)),
@@ -84,6 +84,13 @@ fn notes(file: &SweepFile, values: &[f64]) -> Vec<String> {
         notes.push(format!("Not complete: {} of {} scenes.", values.len(), file.header.scenes));
     }
     notes
+}
+
+/// Logarithmic where results are positive and of very different sizes.
+fn spacing(values: &[f64]) -> Spacing {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
+    if least > 0.0 && most > VERY_WIDE * least { Spacing::Logarithmic } else { Spacing::Linear }
 }
 
 /// The column that is drawn.
@@ -244,51 +251,4 @@ fn quantile(sorted: &[f64], part: f64) -> f64 {
     let below = place as usize;
     let above = (below + 1).min(sorted.len() - 1);
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
-}
-
-/// A map over two inputs, with the scenes as dots.
-fn map(first: &Input, second: &Input, values: &[f64], result: Axis) -> Panel {
-    let mut grid = vec![f64::NAN; values.len()];
-    let place = |input: &Input, row: usize| {
-        input.different.iter().position(|value| *value == input.values[row]).unwrap_or(0)
-    };
-    for (row, value) in values.iter().enumerate() {
-        grid[place(first, row) * second.different.len() + place(second, row)] = *value;
-    }
-    let range = range_of(values.iter().copied(), Spacing::Linear, 0.0).unwrap_or(result.range);
-    let bar = Axis { range, ..result };
-    let lowest = grid.iter().copied().fold(f64::INFINITY, f64::min);
-    // What failed shows as the lightest colour without a dot.
-    grid.iter_mut().filter(|value| !value.is_finite()).for_each(|value| *value = lowest);
-    let mut panel = Panel::new(first.axis(0.0), second.axis(0.0));
-    let spaced = |input: &Input, axis: &Axis| {
-        input.different.iter().map(|it| axis.place(input.measure.of(*it))).collect::<Vec<_>>()
-    };
-    let places = [spaced(first, &panel.x), spaced(second, &panel.y)];
-    let rings = Grid { first: &places[0], second: &places[1], values: &grid };
-    let back = |axis: &Axis, place: f64| match axis.spacing {
-        Spacing::Linear => axis.range[0] + place * (axis.range[1] - axis.range[0]),
-        Spacing::Logarithmic => axis.range[0] * (axis.range[1] / axis.range[0]).powf(place),
-    };
-    let colour = |band: usize| graded((band as f64 + 0.5) / BANDS as f64).towards_white(0.25);
-    for band in 0..BANDS {
-        let level = range[0] + (range[1] - range[0]) * band as f64 / BANDS as f64;
-        let level = if band == 0 { f64::NEG_INFINITY } else { level };
-        let ring =
-            rings.rings(level).into_iter().map(|[x, y]| [back(&panel.x, x), back(&panel.y, y)]).collect();
-        panel.series.push(Series::new("", Style::Region { opacity: 1.0 }, colour(band), ring));
-    }
-    let there = (0..values.len()).filter(|row| values[*row].is_finite());
-    for row in there {
-        let at = [first.at(row), second.at(row)];
-        let says = format!("{} {}", number(values[row]), bar.unit);
-        panel.series.push(Series::new(
-            says.trim_end(),
-            Style::Points { shape: Shape::Disc, radius: 1.6 },
-            Colour::BLACK,
-            vec![at],
-        ));
-    }
-    panel.bar = Some(Bar { axis: bar, colours: (0..BANDS).map(colour).collect(), marks: vec![] });
-    panel
 }
