@@ -192,12 +192,12 @@ impl Results {
 
     fn misfit(&self, kind: Kind) -> Error {
         let fitting: Vec<&str> = self.kinds().into_iter().map(Kind::name).collect();
+        let give = if fitting.is_empty() { String::new() } else { format!("; give {}", fitting.join(", ")) };
         let why = format!(
-            "{} does not fit, the file is of {}{}; give {}",
+            "{} does not fit, the file is of {}{}{give}",
             kind.name(),
             self.what(),
-            self.why_not(kind),
-            fitting.join(", ")
+            self.why_not(kind)
         );
         Error::Inconsistent { what: "kind", why }
     }

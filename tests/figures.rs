@@ -492,6 +492,10 @@ fn no_number_in_a_file_stops_the_drawing() {
             }
             let Ok(results) = RunResults::new(run, Path::new("edited.h5")) else { continue };
             let results = Results::Run(Box::new(results));
+            if results.kinds().is_empty() {
+                let error = results.figure(Kind::Profile, None).unwrap_err().to_string();
+                assert!(error.ends_with("the file is of a run with too few snapshots"), "{error}");
+            }
             for kind in results.kinds() {
                 let drawing = Drawing::new(&results.figure(kind, None).unwrap(), "t");
                 assert!(

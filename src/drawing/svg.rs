@@ -146,6 +146,7 @@ impl Page<'_> {
         self.put(format_args!("</g>\n<rect class=\"frame\" x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" fill=\"none\" \
              stroke=\"#000\" stroke-width=\"{HAIRLINE}\"/>\n"));
         self.axes(placed);
+        self.axis_titles(placed);
         self.head(placed);
         if let Some(bar) = &panel.bar {
             self.bar(bar, placed);
@@ -170,8 +171,9 @@ impl Page<'_> {
         self.put(format_args!("\"/>\n"));
     }
 
+    /// Ticks and what stands beside them.
     fn axes(&mut self, placed: &Placed) {
-        let Placed { panel, frame, ticks, tick_widths, .. } = placed;
+        let Placed { panel, frame, ticks, .. } = placed;
         let Frame { left, top, width, height } = *frame;
         let bottom = top + height;
         self.put(format_args!(
@@ -187,21 +189,27 @@ impl Page<'_> {
             self.put(format_args!("M{} {}h-{}", number(left), number(y), length(&tick.label)));
         }
         self.put(format_args!("\"/>\n"));
-        for (tick, label) in ticks.x.iter().filter_map(|tick| tick.label.as_ref().map(|label| (tick, label)))
-        {
+        for tick in &ticks.x {
+            let Some(label) = &tick.label else { continue };
             let x = left + width * panel.x.place(tick.value);
             let at = [x, bottom + TICK + GAP + CAPITALS * SMALL_TEXT];
             self.text(label, at, SMALL_TEXT, 0.5, Colour::BLACK);
         }
-        for (tick, label) in ticks.y.iter().filter_map(|tick| tick.label.as_ref().map(|label| (tick, label)))
-        {
+        for tick in &ticks.y {
+            let Some(label) = &tick.label else { continue };
             let y = top + height * (1.0 - panel.y.place(tick.value));
             let at = [left - TICK - GAP, y + 0.5 * CAPITALS * SMALL_TEXT];
             self.text(label, at, SMALL_TEXT, 1.0, Colour::BLACK);
         }
         self.put(format_args!("</g>\n"));
+    }
+
+    /// Quantities and units of the axes.
+    fn axis_titles(&mut self, placed: &Placed) {
+        let Placed { panel, frame, ticks, tick_widths, .. } = placed;
+        let Frame { left, top, width, height } = *frame;
         let below = if ticks.x.is_empty() { GAP } else { TICK + GAP + SMALL_TEXT };
-        let at = [left + 0.5 * width, bottom + below + TEXT + 2.0];
+        let at = [left + 0.5 * width, top + height + below + TEXT + 2.0];
         self.text(&panel.x.text(), at, TEXT, 0.5, Colour::BLACK);
         if !panel.y.quantity.is_empty() {
             let labels = if tick_widths[0] > 0.0 { tick_widths[0] + TICK + GAP } else { GAP };
