@@ -174,7 +174,8 @@ pub fn range_of(values: impl IntoIterator<Item = f64>, spacing: Spacing, margin:
         }
         Spacing::Logarithmic => {
             let width = (last.ln() - first.ln()).max(0.1);
-            let factor = (margin * width).exp().max(1.02);
+            let least = if last > first { 1.0 } else { 1.02 };
+            let factor = (margin * width).exp().max(least);
             [(first / factor).max(f64::MIN_POSITIVE), (last * factor).min(f64::MAX)]
         }
     };

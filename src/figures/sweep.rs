@@ -20,6 +20,8 @@ const MANY_SAMPLES: usize = 5;
 const WIDE: f64 = 30.0;
 /// Results whose largest is more than so many times their smallest are shown by their logarithms.
 const VERY_WIDE: f64 = 300.0;
+/// Dots of scenes, at most.
+const MOST_DOTS: usize = 5000;
 /// Quantities of which the first that is there is drawn.
 const USUAL: [&str; 2] = ["wear_volume", "wear_volume_limit"];
 
@@ -235,7 +237,9 @@ fn scatter(inputs: &[Input], values: &[f64], y: Axis) -> Panel {
         let region = Series::new("9 of 10 samples", Style::Region { opacity: 0.25 }, DISTINCT[0], ring);
         panel.series.push(region.in_legend());
     }
-    let all = (0..values.len()).map(|row| [over.at(row), values[row]]).collect();
+    // Of very many samples some: more are a black bar of many megabytes.
+    let every = values.len().div_ceil(MOST_DOTS).max(1);
+    let all = (0..values.len()).step_by(every).map(|row| [over.at(row), values[row]]).collect();
     let dots = Style::Points { shape: Shape::Circle, radius: 1.8 };
     panel.series.push(Series::new("samples", dots, DISTINCT[0], all).in_legend());
     if bands.len() > 1 {

@@ -1,7 +1,7 @@
 //! A result over two inputs of a sweep as a map.
 
 use super::super::rings::Grid;
-use super::Input;
+use super::{Input, MOST_DOTS};
 use crate::drawing::{Axis, Bar, Colour, Panel, Series, Shape, Style, graded, range_of};
 use crate::report::number;
 
@@ -15,7 +15,9 @@ pub(super) fn panel(first: &Input, second: &Input, values: &[f64], result: Axis)
     let bar = Axis { range, ..result };
     let mut panel = Panel::new(first.axis(0.0), second.axis(0.0));
     add_bands(&mut panel, [first, second], &heights(first, second, values, &bar));
-    for (row, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+    let dotted =
+        values.iter().enumerate().filter(|(_, value)| value.is_finite() && values.len() <= MOST_DOTS);
+    for (row, value) in dotted {
         let says = format!("{} {}", number(*value), bar.unit);
         let at = [first.at(row), second.at(row)];
         panel.series.push(Series::new(says.trim_end(), DOT, Colour::BLACK, vec![at]));
@@ -31,7 +33,9 @@ fn colour(band: usize) -> Colour {
 /// Places of the values along their axis on the grid of the inputs; where a scene failed the least, in the lightest colour without a dot.
 fn heights(first: &Input, second: &Input, values: &[f64], axis: &Axis) -> Vec<f64> {
     let index = |input: &Input, row: usize| {
-        input.different.iter().position(|value| *value == input.values[row]).unwrap_or(0)
+        let found = input.different.binary_search_by(|value| value.total_cmp(&input.values[row]));
+        // Zero may be there with the other sign.
+        found.unwrap_or_else(|next| next.min(input.different.len() - 1))
     };
     let mut heights = vec![0.0; values.len()];
     for (row, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
