@@ -88,7 +88,7 @@
 //! | storey | modules |
 //! |---|---|
 //! | entry | the binary; this page |
-//! | jobs | [`submit`], [`sweep`], [`report`], [`export`], [`universality`], [`tradeoff`], [`progress`], [`run`], [`wear_map`] |
+//! | jobs | [`submit`], [`sweep`], [`page`], [`figures`], [`report`], [`export`], [`universality`], [`tradeoff`], [`progress`], [`run`], [`wear_map`], [`drawing`] |
 //! | files | [`scene`], [`snapshot`] |
 //! | time | [`simulation`], [`stepper`], [`model`] |
 //! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`conditions`], [`wear`], [`spring`], [`path`], [`friction`], [`loading`], [`history`], [`indenter`], [`half_space`] |
@@ -101,8 +101,10 @@ pub mod chebyshev;
 pub mod closed_form;
 pub mod conditions;
 pub mod contact;
+pub mod drawing;
 pub mod error;
 pub mod export;
+pub mod figures;
 pub mod friction;
 pub mod grid;
 pub mod half_space;
@@ -111,6 +113,7 @@ pub mod indenter;
 pub mod linear;
 pub mod loading;
 pub mod model;
+pub mod page;
 pub mod path;
 pub mod progress;
 pub mod quadrature;

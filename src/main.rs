@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
+use fretwear::figures::FigureFile;
 use fretwear::progress::{Progress, SceneProgress};
 use fretwear::report::{
     self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile, UniversalityReport,
@@ -21,6 +22,10 @@ use fretwear::{Error, Result, universality};
 mod completions;
 #[path = "main/export.rs"]
 mod export;
+#[path = "main/report.rs"]
+mod page_report;
+#[path = "main/plot.rs"]
+mod plot;
 #[path = "main/schema.rs"]
 mod schema;
 #[path = "main/tradeoff.rs"]
@@ -60,6 +65,10 @@ enum Command {
     Check(Check),
     /// Prepare a study for a cluster: measure, propose shards, write job scripts and hand them to the engine
     Submit(Submit),
+    /// Draw a figure from a result file
+    Plot(plot::Plot),
+    /// Make a page of a result file: inputs, derived quantities, verdict, and all figures
+    Report(page_report::Report),
     /// Show what is in a result file and whether it is complete
     Info(Info),
     /// Write any table of a result file as CSV, or the worn surface of a run for ParaView
@@ -91,7 +100,10 @@ struct Run {
     /// Show no progress and no summary
     #[arg(long)]
     quiet: bool,
-    /// Overwrite the result file if it exists
+    /// Draw the worn profile when the run has ended, beside the result file as SVG unless another picture is named
+    #[arg(long, value_name = "FIGURE.svg|.png", num_args = 0..=1, require_equals = true)]
+    plot: Option<Option<PathBuf>>,
+    /// Overwrite the result file, and the picture, if they exist
     #[arg(long)]
     force: bool,
 }
@@ -287,6 +299,8 @@ fn main() -> ExitCode {
         Command::Tradeoff(arguments) => tradeoff::tradeoff(&arguments),
         Command::Check(arguments) => check(&arguments).map(done),
         Command::Submit(arguments) => submit(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments).map(done),
+        Command::Report(arguments) => page_report::report(&arguments).map(done),
         Command::Info(arguments) => info(&arguments).map(done),
         Command::Export(arguments) => export::export(&arguments).map(done),
         Command::Init(arguments) => schema::init(&arguments).map(done),
@@ -312,11 +326,15 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
             (false, false) => report.text(),
         }
     };
+    // Before anything runs: a picture that cannot be written is bad input.
+    let picture =
+        arguments.plot.as_ref().map(|named| run_picture(arguments, named.as_deref())).transpose()?;
     let run = match (&arguments.scene, &arguments.resume) {
         (_, Some(file)) => match fretwear::run::Run::resume(file)? {
             Resumed::Run(run) => *run,
             Resumed::Complete(result) => {
                 complain("note", &format!("{} is complete, nothing is left to do", file.display()));
+                picture.map(|picture| plot::draw_run(file, picture)).transpose()?;
                 return Ok((report(&result), ExitCode::SUCCESS));
             }
         },
@@ -341,7 +359,21 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
     };
     result.warning().into_iter().for_each(|warning| complain("warning", &warning));
     let interrupted = result.stop_reason == StopReason::Interrupted;
+    // A run that is stopped goes on later, and is drawn then.
+    if let Some(picture) = picture.filter(|_| !interrupted)
+        && let Err(error) = plot::draw_run(&result.output, picture)
+    {
+        complain("error", &error.to_string());
+        return Ok((report(&result), ExitCode::FAILURE));
+    }
     Ok((report(&result), if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS }))
+}
+
+/// The picture of a run: the one named, or that beside the result file.
+fn run_picture(arguments: &Run, named: Option<&Path>) -> Result<FigureFile> {
+    let result = arguments.resume.clone().or_else(|| arguments.output.clone());
+    let result = result.or_else(|| arguments.scene.as_deref().map(default_output)).unwrap_or_default();
+    FigureFile::new(&named.map_or_else(|| result.with_extension("svg"), Path::to_owned), arguments.force)
 }
 
 /// The scene's name with `.h5`, in the current directory.

@@ -17,7 +17,7 @@ pub use info::{InfoReport, arrays_text};
 pub use limit::{LimitReport, ProfileTable, parse_radii};
 pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;
-pub(crate) use text::{Rows, number};
+pub(crate) use text::{Rows, Scale, cells, number};
 pub use tradeoff::{CandidateReport, Fronts, OverFront, ReferenceReport, SnapshotReport, TradeoffReport};
 pub use universality::{UniversalityReport, UniversalityRow};
 

@@ -7,31 +7,36 @@ use crate::loading::RecordedPath;
 
 /// A kind of quantity and the units it is shown in, by growing size in SI.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale(&'static [(f64, &'static str)]);
+pub(crate) struct Scale(&'static [(f64, &'static str)]);
 
 impl Scale {
-    pub(super) const LENGTH: Self =
+    pub(crate) const LENGTH: Self =
         Self(&[(1e-12, "pm"), (1e-9, "nm"), (1e-6, "µm"), (1e-3, "mm"), (1.0, "m"), (1e3, "km")]);
-    pub(super) const VOLUME: Self =
+    pub(crate) const VOLUME: Self =
         Self(&[(1e-27, "nm³"), (1e-18, "µm³"), (1e-9, "mm³"), (1.0, "m³"), (1e9, "km³")]);
-    pub(super) const FORCE: Self =
+    pub(crate) const FORCE: Self =
         Self(&[(1e-9, "nN"), (1e-6, "µN"), (1e-3, "mN"), (1.0, "N"), (1e3, "kN"), (1e6, "MN")]);
-    pub(super) const PRESSURE: Self =
+    pub(crate) const PRESSURE: Self =
         Self(&[(1.0, "Pa"), (1e3, "kPa"), (1e6, "MPa"), (1e9, "GPa"), (1e12, "TPa")]);
-    pub(super) const ENERGY: Self =
+    pub(crate) const ENERGY: Self =
         Self(&[(1e-9, "nJ"), (1e-6, "µJ"), (1e-3, "mJ"), (1.0, "J"), (1e3, "kJ"), (1e6, "MJ")]);
-    pub(super) const TIME: Self = Self(&[(1e-3, "ms"), (1.0, "s")]);
+    pub(crate) const TIME: Self = Self(&[(1e-3, "ms"), (1.0, "s")]);
 
     /// A value in SI with the largest unit of which there is at least one.
-    pub(super) fn show(self, value: f64) -> String {
+    pub(crate) fn show(self, value: f64) -> String {
+        let (unit, symbol) = self.unit(value);
+        format!("{} {symbol}", number(value / unit))
+    }
+
+    /// That unit, its size in SI and its symbol.
+    pub(crate) fn unit(self, value: f64) -> (f64, &'static str) {
         // The rounding of six digits must not leave 1000 of one unit instead of 1 of the next.
         let size = value.abs() * (1.0 + 5e-7);
         let plain = self.0.iter().find(|(unit, _)| *unit == 1.0).unwrap_or(&self.0[0]);
-        let (unit, symbol) = match value {
+        match value {
             value if value == 0.0 || !value.is_finite() => *plain,
             _ => *self.0.iter().rev().find(|(unit, _)| size >= *unit).unwrap_or(&self.0[0]),
-        };
-        format!("{} {symbol}", number(value / unit))
+        }
     }
 }
 
@@ -88,6 +93,24 @@ pub(super) fn recorded_path(path: &RecordedPath) -> String {
     format!("path {}, {} rows", path.source, path.x.len())
 }
 
+/// Width of the names in a table.
+const WIDTH: usize = 34;
+
+/// Names and values of a table that [`Rows`] made, without its title; both are empty at a gap.
+pub(crate) fn cells(table: &str) -> Vec<(&str, &str)> {
+    let split = |line: &'_ str| line.char_indices().nth(WIDTH).map_or(line.len(), |(at, _)| at);
+    let rows = table.lines().map(|line| {
+        let (name, value) = line.split_at(split(line));
+        (name.trim_end(), value.trim())
+    });
+    let mut rows: Vec<(&str, &str)> = rows.collect();
+    // A title is a line by itself with a gap below.
+    if rows.get(1) == Some(&("", "")) {
+        rows.drain(..2);
+    }
+    rows
+}
+
 /// Rows of a name and a value.
 #[derive(Debug, Default)]
 pub(crate) struct Rows(String);
@@ -99,7 +122,6 @@ impl Rows {
     }
 
     pub(crate) fn row(&mut self, name: &str, value: impl std::fmt::Display) {
-        const WIDTH: usize = 34;
         // Writing to a string cannot fail.
         let _ = writeln!(self.0, "{name:<WIDTH$} {value}");
     }
@@ -127,6 +149,17 @@ mod tests {
         let shown = [0.0, -0.0, 1.0, 0.1, 0.8235294117647058, 123456.7, 1234567.8, 1e-5, -2.5e-4, 999999.7];
         let expected = ["0", "0", "1", "0.1", "0.823529", "123457", "1.23457e6", "1e-5", "-0.00025", "1e6"];
         assert_eq!(shown.map(number), expected);
+    }
+
+    #[test]
+    fn a_table_is_split_into_the_cells_it_was_made_of() {
+        let mut rows = Rows::titled(Some("A title that is longer than the names of a table may be"));
+        rows.row("dimensionless time τ", 3);
+        rows.gap();
+        rows.row("  worn volume", "1324 µm³ of 1325 µm³");
+        let table = rows.finish();
+        let expected = [("dimensionless time τ", "3"), ("", ""), ("  worn volume", "1324 µm³ of 1325 µm³")];
+        assert_eq!(cells(&table), expected);
     }
 
     #[test]

@@ -1,0 +1,29 @@
+//! `fretwear report`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use fretwear::figures::Results;
+use fretwear::report::TableFile;
+use fretwear::{Result, page};
+
+/// The file a page is made of, and where it goes.
+#[derive(Args)]
+pub struct Report {
+    /// A result file that `fretwear run`, `sweep`, `merge`, `map`, `universality` or `tradeoff` wrote
+    #[arg(value_name = "FILE.h5")]
+    file: PathBuf,
+    /// The page, one HTML file that needs nothing else
+    #[arg(short, long, value_name = "REPORT.html")]
+    output: PathBuf,
+    /// Overwrite the page if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+pub fn report(arguments: &Report) -> Result<String> {
+    let file = TableFile::new(&arguments.output, arguments.force)?;
+    let results = Results::read(&arguments.file)?;
+    file.write(&page::report(&results, &arguments.file)?)?;
+    Ok(String::new())
+}
