@@ -139,8 +139,8 @@ impl WearFrom {
     }
 }
 
-/// Finest accuracy that was seen to be reached: finer runs came to no end (docs/accuracy.md).
-pub const FINEST_ACCURACY: f64 = 1e-8;
+/// Finest accuracy that may be asked for: some units of round-off in the depths above what they are good to (docs/accuracy.md).
+pub const FINEST_ACCURACY: f64 = 1e-10;
 
 /// The table `[numerics]`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -351,7 +351,7 @@ fn scenes_that_cannot_be_simulated_are_refused_with_the_key_the_value_and_the_cu
         (with("stick_ratio = 1"), ["loading.stick_ratio", "stuck", "ask for more"]),
         (springs("10000000"), ["numerics.springs", "4000000.0 GB", "ask for at most"]),
         (springs("9223372036854775807"), ["numerics.springs", "GB", "ask for at most"]),
-        (springs("5"), ["numerics.springs", "5", "[8, inf)"]),
+        (springs("5"), ["numerics.springs", "5", "outside [8, inf)"]),
     ] {
         let folder = folder_with(&text);
         refused(folder.path(), &["run", "scene.toml", "--json"], 2, &words);

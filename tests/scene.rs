@@ -197,7 +197,7 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
         (CYCLES, "until_rate = 1.0", "until_rate", &["loading.until_rate = 1.0 is outside (0, 1)"]),
         (ACCURACY, "accuracy = 0", "accuracy = 0", &["numerics.accuracy = 0 is outside"]),
         (ACCURACY, "accuracy = 1", "accuracy = 1", &["numerics.accuracy = 1 is outside"]),
-        (ACCURACY, "springs = 7", "springs = 7", &["numerics.springs = 7 is outside 8 or more"]),
+        (ACCURACY, "springs = 7", "springs = 7", &["numerics.springs = 7 is outside [8, inf)"]),
         (ACCURACY, "springs = -5", "springs = -5", &["numerics.springs = -5 is outside"]),
         (ACCURACY, "springs = 99999999999999999999999", "springs", &["numerics.springs"]),
         (ACCURACY, "springs = 50.5", "springs = 50.5", &["numerics.springs", "whole number"]),

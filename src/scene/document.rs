@@ -420,7 +420,7 @@ impl<'a> Entry<'a> {
         };
         let number = usize::from_str_radix(integer.as_str(), integer.radix()).ok();
         let shown = || match *range.end() {
-            usize::MAX => format!("{} or more", range.start()),
+            usize::MAX => format!("[{}, inf)", range.start()),
             end => format!("{} to {end}", range.start()),
         };
         number.filter(|number| range.contains(number)).ok_or_else(|| self.outside(&shown()))

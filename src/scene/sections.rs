@@ -299,8 +299,7 @@ fn numerics(section: &Section, conditions: &Conditions, warnings: &mut Vec<Strin
     };
     let accuracy = section.optional("accuracy");
     if let Some(entry) = &accuracy {
-        numerics.accuracy =
-            fraction(entry, "[1e-8, 0.1]; 1e-8 is the finest that was seen to be reached", FINEST_ACCURACY)?;
+        numerics.accuracy = fraction(entry, "[1e-10, 0.1]", FINEST_ACCURACY)?;
     }
     if let Some(entry) = section.optional("springs") {
         numerics.springs = Some(entry.whole(FEWEST_SPRINGS..=usize::MAX)?);

@@ -59,7 +59,7 @@ impl Ladders {
             return wrong("--tolerances", format!("{value} is outside (0, 0.1]"));
         }
         if let Some(value) = self.accuracies.iter().find(|it| !(FINEST_ACCURACY..=0.1).contains(*it)) {
-            return wrong("--accuracies", format!("{value} is outside [1e-8, 0.1]"));
+            return wrong("--accuracies", format!("{value} is outside [1e-10, 0.1]"));
         }
         if self.springs.is_empty() || self.tolerances.is_empty() || self.steppers.is_empty() {
             return wrong(
