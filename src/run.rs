@@ -324,7 +324,7 @@ fn asked(scene: &Scene) -> Option<f64> {
     numerics.springs.is_none().then_some(numerics.accuracy)
 }
 
-/// Springs with which a run is to be made anew: where the program chose them, and the run found no end or is off by more than was asked for.
+/// Springs with which a run is to be made anew: where the program chose them, and the run found no end or may be off by more than was asked for.
 fn wanting(
     scene: &Scene,
     simulation: &Simulation,
@@ -338,7 +338,7 @@ fn wanting(
     }
     let error = match outcome {
         Ok(Outcome::Interrupted) => return None,
-        Ok(_) => Some(checkpoint.error_estimate.filter(|error| *error > accuracy)?),
+        Ok(_) => Some(checkpoint.error_estimate.filter(|error| *error > knob::SURE * accuracy)?),
         // More springs may find an end where few do not.
         Err(Error::NotConverged { .. }) => None,
         Err(_) => return None,

@@ -171,7 +171,7 @@ fn a_pressure_that_blows_up_at_the_edge_of_stick_passes_where_stiffness_falls_wi
     let steep =
         |grading: f64, exponent: f64| Extreme { exponent, amplitude: ratio(0.99), ..self::grading(grading) };
     let off = worst([steep(-0.9, 4.0), steep(-0.9, 20.0), steep(-0.6, 20.0)]);
-    assert!(off.within(1e-11, 2e-6, 1e-12), "{off:?}");
+    assert!(off.within(1e-11, 5e-5, 1e-12), "{off:?}");
 }
 
 /// What became of a combination.

@@ -13,8 +13,8 @@ use crate::scene::{Numerics, Stepper};
 /// nothing, and where the pressure at the edge blows up they are unstable (docs/extremes.md).
 const STEEP_SOFTENING: f64 = -0.5;
 
-/// `ln(g(a0)/g(c))` from which on, there, polynomials of high degree do not survive that either.
-const SMALL_STICK: f64 = 3.0;
+/// `ln(g(a0)/g(c))` from which on, there, polynomials of high degree take longer than cubics, if they survive that.
+const SMALL_STICK: f64 = 10.0;
 
 /// Largest error of the unworn compressions, over `q_c`, with springs asked for by number.
 const COARSEST: f64 = 0.05;
