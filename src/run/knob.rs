@@ -24,9 +24,9 @@ const ORDER: [f64; 2] = [4.5, 1.3];
 const FITTED_SPRINGS: f64 = 24.0;
 
 /// Next to the edge of stick the profile is of third order only, `e = A e^(B k) N⁻³` for gradings from the first number on, below which that
-/// is not seen: `A` and `B` through the errors at k = 0.5 and 0.9 on 120 springs.
+/// is not seen: `A` and `B` through the errors at k = 0.5 and 0.9 on 120 springs, with a little to spare.
 const THIRD_ORDER_FROM: f64 = 0.4;
-const THIRD_ORDER: [f64; 2] = [0.25, 4.5];
+const THIRD_ORDER: [f64; 2] = [0.35, 4.5];
 
 /// Part of the accuracy asked for that the fitted error may take up, so that scenes off the fit keep to it too.
 const MARGIN: f64 = 0.35;
@@ -49,8 +49,8 @@ const PILOT_TOLERANCE: f64 = 5.0;
 const FEWEST_OF_PILOT: usize = 10;
 
 /// Error of a run over its difference `δ` from its pilot, `e = C δ/(ρ^p - 1)` with `ρ` the ratio of the springs: `C` and `p` in the middle of the
-/// random scenes, on smooth meshes and on those of cubics.
-const ERROR_PER_DIFFERENCE: [[f64; 2]; 2] = [[1.3, 4.0], [0.4, 3.0]];
+/// random scenes, on smooth meshes, on those where the error next to the edge of stick is the larger one, and on meshes of cubics.
+const ERROR_PER_DIFFERENCE: [[f64; 2]; 3] = [[1.3, 4.0], [1.3, 3.0], [0.4, 3.0]];
 
 /// Part of the tolerance of the time stepping below which an error is not told: as much is of steps, and pilot and run may share it.
 const LEAST_OF_TIME: f64 = 0.15;
@@ -96,21 +96,43 @@ pub(super) fn springs_for(clustering: Clustering, contact: &InitialContact, accu
         // The worn volume is of third order there (docs/numerics.md).
         return (120.0 * (1e-4 / accuracy).cbrt()).ceil() as usize;
     }
-    let grading = contact.half_space().grading().max(0.0);
-    let (exponent, stick) = (exponent(contact).ln(), contact.stick_logarithm().unwrap_or(0.0));
-    let [a, b, c, d, e] = ERROR;
-    let error = (a + b * grading + c * exponent + d * stick + e * exponent * stick).exp();
-    let order = ORDER[0] + ORDER[1] * grading;
+    let [wide, next_to_stick] = Falling::of(contact);
     let fewest = if accuracy < 1e-2 { FEWEST_BELOW_A_HUNDREDTH } else { FEWEST };
     let added = 1.0 + ADDED * (smallness(contact).clamp(SMALLNESS[0], SMALLNESS[1]) - SMALLNESS[0]);
-    let fitted = FITTED_SPRINGS * (error / (MARGIN * accuracy)).powf(order.recip());
-    let [scale, growth] = THIRD_ORDER;
-    let next_to_stick = if grading >= THIRD_ORDER_FROM {
-        (scale * (growth * grading).exp() / (MARGIN * accuracy)).cbrt()
-    } else {
-        0.0
-    };
-    (added * fitted).max(next_to_stick).clamp(fewest, MOST_RAISED as f64).ceil() as usize
+    let wanted = MARGIN * accuracy;
+    let springs = (added * wide.springs(wanted)).max(next_to_stick.springs(wanted));
+    springs.clamp(fewest, MOST_RAISED as f64).ceil() as usize
+}
+
+/// An error that falls with a power of the springs.
+struct Falling {
+    /// On [`FITTED_SPRINGS`].
+    error: f64,
+    order: f64,
+}
+
+impl Falling {
+    /// Errors of the profile on smooth meshes: over the annulus, and next to the edge of stick.
+    fn of(contact: &InitialContact) -> [Self; 2] {
+        let grading = contact.half_space().grading().max(0.0);
+        let (exponent, stick) = (exponent(contact).ln(), contact.stick_logarithm().unwrap_or(0.0));
+        let [a, b, c, d, e] = ERROR;
+        let wide = (a + b * grading + c * exponent + d * stick + e * exponent * stick).exp();
+        let [scale, growth] = THIRD_ORDER;
+        let seen = if grading >= THIRD_ORDER_FROM { scale * (growth * grading).exp() } else { 0.0 };
+        [
+            Self { error: wide, order: ORDER[0] + ORDER[1] * grading },
+            Self { error: seen / FITTED_SPRINGS.powi(3), order: 3.0 },
+        ]
+    }
+
+    fn at(&self, springs: f64) -> f64 {
+        self.error * (FITTED_SPRINGS / springs).powf(self.order)
+    }
+
+    fn springs(&self, error: f64) -> f64 {
+        FITTED_SPRINGS * (self.error / error).powf(self.order.recip())
+    }
 }
 
 /// Tolerance of the time stepping, whose error is about as large, that leaves most of `accuracy` to the springs.
@@ -179,9 +201,13 @@ impl Pilot {
         };
         let worn = snapshots.iter().filter(|snapshot| snapshot.cycles > 0.0);
         let largest = worn.filter_map(difference).reduce(f64::max);
-        let [smooth, cubic] = ERROR_PER_DIFFERENCE;
-        let is_smooth = model.operators().mesh().clustering() == Clustering::Smooth;
-        let [factor, order] = if is_smooth { smooth } else { cubic };
+        let [smooth, next_to_stick, cubic] = ERROR_PER_DIFFERENCE;
+        let errors = Falling::of(model.contact()).map(|error| error.at(model.springs() as f64));
+        let [factor, order] = match model.operators().mesh().clustering() {
+            Clustering::Smooth if errors[1] > errors[0] => next_to_stick,
+            Clustering::Smooth => smooth,
+            _ => cubic,
+        };
         let least = LEAST_OF_TIME * simulation.tolerance();
         largest.map(|largest| (factor * largest / (ratio.powf(order) - 1.0)).max(least))
     }
