@@ -32,7 +32,7 @@ const THIRD_ORDER: [f64; 2] = [0.35, 4.5];
 const MARGIN: f64 = 0.35;
 
 /// Part of the accuracy asked for that the error of the time stepping may take up.
-const OF_TIME: f64 = 0.4;
+const OF_TIME: f64 = 0.3;
 
 /// Springs added, as a part, for every unit of `n ln(a0/c)` beyond the first number, up to the second: with a small stick zone the fit's order sets
 /// in late.
@@ -50,7 +50,7 @@ const FEWEST_OF_PILOT: usize = 10;
 
 /// Error of a run over its difference `δ` from its pilot, `e = C δ/(ρ^p - 1)` with `ρ` the ratio of the springs: `C` and `p` in the middle of the
 /// random scenes, on smooth meshes, on those where the error next to the edge of stick is the larger one, and on meshes of cubics.
-const ERROR_PER_DIFFERENCE: [[f64; 2]; 3] = [[1.3, 4.0], [1.3, 3.0], [0.4, 3.0]];
+const ERROR_PER_DIFFERENCE: [[f64; 2]; 3] = [[1.3, 4.0], [1.0, 3.0], [0.4, 3.0]];
 
 /// Part of the tolerance of the time stepping below which an error is not told: as much is of steps, and pilot and run may share it.
 const LEAST_OF_TIME: f64 = 0.15;

@@ -21,6 +21,9 @@ const SPRINGS: [[f64; 2]; 2] = [[1.5, 1.0], [1.25, 0.8]];
 /// Tolerance of the references over the smallest of the candidates.
 const TOLERANCES: [f64; 2] = [0.25, 0.5];
 
+/// Powers of the number of steps with which the tolerance falls: those of methods of orders 2 to 4.
+const POWERS: [f64; 2] = [3.0, 5.0];
+
 /// The runs that candidates were judged by.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
@@ -45,7 +48,7 @@ pub(super) fn judge(
     most_seconds: f64,
 ) -> Result<Option<(Judge, Reference)>> {
     let unjudged = |why: String| Error::NotConverged { what: "reference of the trade-off", why };
-    let Some((finest, tolerance)) = finest(scene, measured) else {
+    let Some(Finest { cost: finest, tolerance, power }) = finest(scene, measured) else {
         let reasons: BTreeSet<&str> = measured.iter().map(|it| it.1.reason()).collect();
         let reasons: Vec<&str> = reasons.into_iter().filter(|why| !why.is_empty()).take(3).collect();
         return Err(unjudged(format!("no candidate came to its end: {}", reasons.join("; "))));
@@ -55,7 +58,7 @@ pub(super) fn judge(
     for springs in SPRINGS {
         let plan = Plan {
             springs: springs.map(|it| (it * finest.springs as f64).ceil() as usize),
-            tolerance: affordable(finest, springs[0], tolerance, PLANNED * PATIENCE * most_seconds),
+            tolerance: affordable(finest, springs[0], tolerance, power, PLANNED * PATIENCE * most_seconds),
             most_seconds: PATIENCE * most_seconds,
         };
         match plan.run(scene, runs, &times)? {
@@ -67,9 +70,17 @@ pub(super) fn judge(
     Err(unjudged(reason))
 }
 
-/// The candidate by hand with the most springs, and the smallest tolerance of those with at least a quarter of them; of the default method where that
-/// came to an end.
-fn finest<'a>(scene: &Scene, measured: &'a [(Candidate, Measurement)]) -> Option<(&'a Cost, f64)> {
+/// What is known of the candidates by hand, of the default method where that came to an end.
+struct Finest<'a> {
+    /// The one with the most springs.
+    cost: &'a Cost,
+    /// Smallest tolerance of those with at least a quarter of them.
+    tolerance: f64,
+    /// Power of the rate evaluations with which the tolerance falls.
+    power: f64,
+}
+
+fn finest<'a>(scene: &Scene, measured: &'a [(Candidate, Measurement)]) -> Option<Finest<'a>> {
     let way = (Stepper::default(), cycles(scene)[0]);
     let by_hand = measured.iter().filter(|(candidate, _)| candidate.accuracy().is_none());
     let done = || by_hand.clone().filter_map(|(candidate, it)| it.cost().map(|cost| (candidate, cost)));
@@ -84,14 +95,31 @@ fn finest<'a>(scene: &Scene, measured: &'a [(Candidate, Measurement)]) -> Option
         .copied()
         .max_by(|a, b| a.springs.cmp(&b.springs).then(b.tolerance.total_cmp(&a.tolerance)))?;
     let fine = all.iter().filter(|it| 4 * it.springs >= finest.springs);
-    Some((finest, fine.map(|it| it.tolerance).fold(finest.tolerance, f64::min)))
+    let tolerance = fine.map(|it| it.tolerance).fold(finest.tolerance, f64::min);
+    Some(Finest { cost: finest, tolerance, power: power(&all) })
+}
+
+/// Power of the rate evaluations with which the tolerance falls, from the two farthest tolerances on the same springs.
+fn power(all: &[&Cost]) -> f64 {
+    let pairs = all.iter().flat_map(|a| all.iter().map(move |b| (a, b)));
+    let same = pairs.filter(|(a, b)| a.springs == b.springs && a.tolerance > b.tolerance);
+    let farthest = same
+        .max_by(|one, other| {
+            let ratio = |it: &(&&Cost, &&Cost)| it.0.tolerance / it.1.tolerance;
+            ratio(one).total_cmp(&ratio(other))
+        })
+        .map(|(a, b)| {
+            (a.tolerance / b.tolerance).ln() / (b.rate_evaluations as f64 / a.rate_evaluations as f64).ln()
+        });
+    let [least, most] = POWERS;
+    farthest.filter(|power| *power > 0.0).map_or(least, |power| power.clamp(least, most))
 }
 
 /// The tolerance that a reference can be run with in some time, s, at best the smallest and at worst that of the finest candidate: time goes as
-/// the power 2.5 of the number of springs, and steps of second order as the cube root of the tolerance.
-fn affordable(finest: &Cost, springs: f64, smallest: f64, seconds: f64) -> f64 {
+/// the power 2.5 of the number of springs, and with a root of the tolerance.
+fn affordable(finest: &Cost, springs: f64, smallest: f64, power: f64, seconds: f64) -> f64 {
     let same = finest.wall_seconds * springs.powf(2.5);
-    (finest.tolerance * (same / seconds).powi(3))
+    (finest.tolerance * (same / seconds).powf(power))
         .clamp(smallest * TOLERANCES[0], finest.tolerance * TOLERANCES[0])
 }
 
