@@ -7,16 +7,13 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand};
 use fretwear::figures::FigureFile;
 use fretwear::progress::{Progress, SceneProgress};
-use fretwear::report::{
-    self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile, UniversalityReport,
-};
+use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile};
 use fretwear::run::{Resumed, RunResult};
-use fretwear::scene::{MapScene, Scene, Study, UniversalityStudy};
+use fretwear::scene::{MapScene, Scene, Study};
 use fretwear::simulation::Observer;
 use fretwear::snapshot::{ArraySummary, StopReason};
-use fretwear::submit::{self, Engine, SubmitReport, Wishes};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
-use fretwear::{Error, Result, universality};
+use fretwear::{Error, Result};
 
 #[path = "main/completions.rs"]
 mod completions;
@@ -28,8 +25,12 @@ mod page_report;
 mod plot;
 #[path = "main/schema.rs"]
 mod schema;
+#[path = "main/submit.rs"]
+mod submit;
 #[path = "main/tradeoff.rs"]
 mod tradeoff;
+#[path = "main/universality.rs"]
+mod universality;
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
 75 stopped by a signal with a checkpoint written.\nResults go to stdout, everything else to stderr.";
@@ -58,13 +59,13 @@ enum Command {
     /// Compare gradings: wear maps, the optimal grading and worn profiles in closed form
     Map(Map),
     /// Run laws, modes and media against one limit, with cases that are not to reach it
-    Universality(Universality),
+    Universality(universality::Universality),
     /// Measure error against wall time of every stepper, tolerance and number of springs on one scene
     Tradeoff(tradeoff::Tradeoff),
     /// Validate a scene and show what follows from it, without running anything
     Check(Check),
     /// Prepare a study for a cluster: measure, propose shards, write job scripts and hand them to the engine
-    Submit(Submit),
+    Submit(submit::Submit),
     /// Draw a figure from a result file
     Plot(plot::Plot),
     /// Make a page of a result file: inputs, derived quantities, verdict, and all figures
@@ -188,34 +189,6 @@ struct Map {
 }
 
 #[derive(Args)]
-struct Universality {
-    /// The study, a TOML file
-    #[arg(value_name = "STUDY.toml")]
-    study: PathBuf,
-    /// Directory for universality.h5 and universality.csv, made if it is missing
-    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["list", "scene"])]
-    output: Option<PathBuf>,
-    /// Print the names of the cases and what is predicted of them, and run nothing
-    #[arg(long, conflicts_with_all = ["output", "scene"])]
-    list: bool,
-    /// Print the complete scene of a case, and run nothing
-    #[arg(long, value_name = "CASE", conflicts_with = "output")]
-    scene: Option<String>,
-    /// Threads, each of which runs one case at a time; by default all cores
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
-    /// Print one JSON object
-    #[arg(long, conflicts_with_all = ["list", "scene"])]
-    json: bool,
-    /// Show no progress and no summary
-    #[arg(long)]
-    quiet: bool,
-    /// Overwrite files that exist
-    #[arg(long)]
-    force: bool,
-}
-
-#[derive(Args)]
 struct Check {
     /// The scene, a TOML file
     #[arg(value_name = "SCENE.toml")]
@@ -235,59 +208,6 @@ struct Info {
     json: bool,
 }
 
-#[derive(Args)]
-struct Submit {
-    /// The study, a TOML file
-    #[arg(value_name = "STUDY.toml")]
-    study: PathBuf,
-    /// Directory for scripts, logs and results, made if it is missing; the nodes must see it under the same path
-    #[arg(short, long, value_name = "DIR")]
-    output: PathBuf,
-    /// What runs the jobs
-    #[arg(long, value_parser = engine)]
-    #[arg(value_name = "slurm|hyperqueue")]
-    engine: Engine,
-    /// Write the scripts and hand nothing in
-    #[arg(long)]
-    dry_run: bool,
-    /// Number of shards, instead of the one proposed
-    #[arg(long, value_name = "N")]
-    shards: Option<u64>,
-    /// Cores of each shard
-    #[arg(long, value_name = "N", default_value_t = 4)]
-    cpus_per_task: usize,
-    /// Wall time of a scene on one core, instead of measuring a few
-    #[arg(long, value_name = "SECONDS")]
-    seconds_per_scene: Option<f64>,
-    /// Seconds between checkpoints; by default 30, and 10 in HyperQueue, which warns only a second before it kills
-    #[arg(long, value_name = "SECONDS")]
-    checkpoint_interval: Option<f64>,
-    /// How often a shard may be queued again after an interruption
-    #[arg(long, value_name = "N", default_value_t = 20)]
-    max_requeues: u32,
-    /// Time limit of each shard (Slurm), instead of the one proposed
-    #[arg(long, value_name = "MINUTES")]
-    time_limit: Option<u64>,
-    /// Memory of each shard (Slurm), such as 4G, instead of what the measured scenes suggest
-    #[arg(long, value_name = "SIZE")]
-    memory: Option<String>,
-    /// Partition (Slurm)
-    #[arg(long, value_name = "NAME")]
-    partition: Option<String>,
-    /// Account (Slurm)
-    #[arg(long, value_name = "NAME")]
-    account: Option<String>,
-    /// One more option for sbatch or hq submit, such as --engine-option=--qos=long; may be repeated
-    #[arg(long = "engine-option", value_name = "OPTION", allow_hyphen_values = true)]
-    engine_options: Vec<String>,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
-    /// Overwrite scripts that exist
-    #[arg(long)]
-    force: bool,
-}
-
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Run(arguments) => run(&arguments),
@@ -295,10 +215,10 @@ fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep(&arguments),
         Command::Merge(arguments) => merge(&arguments),
         Command::Map(arguments) => map(&arguments).map(done),
-        Command::Universality(arguments) => universality(&arguments),
+        Command::Universality(arguments) => universality::universality(&arguments),
         Command::Tradeoff(arguments) => tradeoff::tradeoff(&arguments),
         Command::Check(arguments) => check(&arguments).map(done),
-        Command::Submit(arguments) => submit(&arguments),
+        Command::Submit(arguments) => submit::submit(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments).map(done),
         Command::Report(arguments) => page_report::report(&arguments).map(done),
         Command::Info(arguments) => info(&arguments).map(done),
@@ -470,96 +390,11 @@ fn map(arguments: &Map) -> Result<String> {
     Ok(if arguments.json { report::json(&report) } else { report.text() })
 }
 
-fn universality(arguments: &Universality) -> Result<(String, ExitCode)> {
-    let study = UniversalityStudy::read(&arguments.study)?;
-    if let Some(name) = &arguments.scene {
-        let case = study.case(name)?;
-        return Ok(done(case.scene.clone()));
-    }
-    let Some(folder) = &arguments.output else {
-        let lines = study.cases().iter().map(|case| format!("{}: {}\n", case.predicted.name(), case.name));
-        return Ok(done(lines.collect()));
-    };
-    let options =
-        universality::Options { threads: arguments.threads.map(usize::from), overwrite: arguments.force };
-    let ready = universality::Universality::new(&study, folder, &options)?;
-    let shown = !arguments.quiet && !arguments.json;
-    if shown {
-        complain("note", &format!("{} cases in {} runs", study.cases().len(), ready.runs()));
-    }
-    let progress = shown.then(SceneProgress::default);
-    let outcome = ready.execute(progress.as_ref());
-    drop(progress);
-    let outcome = match outcome {
-        Ok(Some(outcome)) => outcome,
-        Ok(None) => {
-            complain("note", "stopped; the same command goes on from here");
-            return Ok((String::new(), ExitCode::from(INTERRUPTED)));
-        }
-        // The input was in order: what stops a study that has begun is a failure of the study.
-        Err(error) => {
-            complain("error", &error.to_string());
-            return Ok((String::new(), ExitCode::FAILURE));
-        }
-    };
-    let report = UniversalityReport::new(&study, &outcome);
-    let text = match (arguments.json, arguments.quiet) {
-        (true, _) => report::json(&report),
-        (false, true) => String::new(),
-        (false, false) => report.text(),
-    };
-    if report.agreeing == report.count {
-        return Ok(done(text));
-    }
-    let wrong = report.count - report.agreeing;
-    complain("error", &format!("{wrong} of {} cases are not as predicted", report.count));
-    Ok((text, ExitCode::FAILURE))
-}
-
 fn check(arguments: &Check) -> Result<String> {
     let scene = Scene::read(&arguments.scene)?;
     let report = CheckReport::new(&scene).map_err(at(&scene, &arguments.scene))?;
     report.warnings.iter().for_each(|warning| complain("warning", warning));
     Ok(if arguments.json { report::json(&report) } else { report.text() })
-}
-
-fn submit(arguments: &Submit) -> Result<(String, ExitCode)> {
-    let program = std::env::current_exe().map_err(|error| Error::File {
-        path: "fretwear".into(),
-        why: format!("where this program lies cannot be told: {error}"),
-    })?;
-    let options = submit::Options {
-        engine: arguments.engine,
-        program,
-        dry_run: arguments.dry_run,
-        overwrite: arguments.force,
-        seconds_per_scene: arguments.seconds_per_scene,
-        wishes: Wishes {
-            shards: arguments.shards,
-            cpus_per_task: arguments.cpus_per_task,
-            time_limit: arguments.time_limit,
-        },
-        checkpoint_interval: arguments.checkpoint_interval,
-        most_requeues: arguments.max_requeues,
-        partition: arguments.partition.clone(),
-        account: arguments.account.clone(),
-        memory: arguments.memory.clone(),
-        engine_options: arguments.engine_options.clone(),
-    };
-    let report = SubmitReport::new(&submit::submit(&arguments.study, &arguments.output, &options)?);
-    let text = if arguments.json { report::json(&report) } else { report.text() };
-    let Some(refusal) = &report.refusal else { return Ok(done(text)) };
-    complain(
-        "error",
-        &format!("the scripts are written, but {} did not take them: {refusal}", report.engine),
-    );
-    Ok((text, ExitCode::FAILURE))
-}
-
-/// The engine of a word.
-fn engine(word: &str) -> std::result::Result<Engine, String> {
-    let known = Engine::ALL.into_iter().find(|engine| engine.name() == word);
-    known.ok_or_else(|| format!("give {}", Engine::ALL.map(Engine::name).join(" or ")))
 }
 
 fn info(arguments: &Info) -> Result<String> {
