@@ -63,7 +63,7 @@ pub(super) const REFINEMENTS: usize = 3;
 const RAISES: [f64; 2] = [1.15, 2.0];
 
 /// Part of the accuracy beyond which an estimate makes a run anew: of twenty errors one is 1.7 times its estimate.
-pub(super) const SURE: f64 = 0.7;
+pub(super) const SURE: f64 = 0.6;
 
 /// Most springs of a run that is made anew: beyond, that takes longer than who asked may wait for without having been asked.
 const MOST_REFINED: usize = 400;
