@@ -312,6 +312,17 @@ impl Source {
         if values.len() == count { Ok(values) } else { Err(self.damaged(name, &"has no values")) }
     }
 
+    /// As [`Source::values_of`], of words: the library vouches for no text, so a sign stands for what is not UTF-8.
+    pub(super) fn words_of(
+        &self,
+        dataset: &Dataset,
+        name: &str,
+        shape: &[Option<usize>],
+    ) -> Result<Vec<String>> {
+        let words: Vec<VarLenUnicode> = self.values_of(dataset, name, shape)?;
+        Ok(words.into_iter().map(|word| String::from_utf8_lossy(word.as_bytes()).into_owned()).collect())
+    }
+
     pub(super) fn text(&self, file: &Location, name: &str) -> Result<String> {
         let what = format!("attribute {name}");
         let attribute = file.attr(name).map_err(|error| self.damaged(&what, &error))?;

@@ -239,12 +239,10 @@ impl SweepFile {
         for name in names.into_iter().filter(|name| name != SCENE.name && name != RUNS) {
             let dataset = file.dataset(&name).map_err(|error| source.damaged(&name, &error))?;
             let (units, long_name) = (source.text(&dataset, "units")?, source.text(&dataset, "long_name")?);
-            let label = Label { name: &name, units: &units, long_name: &long_name };
             let values = if dataset.dtype().is_ok_and(|kind| kind.is::<f64>()) {
-                Values::Numbers(source.values(&file, label, &rows)?)
+                Values::Numbers(source.values_of(&dataset, &dataset.name(), &rows)?)
             } else {
-                let texts: Vec<VarLenUnicode> = source.values(&file, label, &rows)?;
-                Values::Texts(texts.iter().map(|text| text.as_str()).collect())
+                Values::Texts(source.words_of(&dataset, &dataset.name(), &rows)?.into_iter().collect())
             };
             columns.push(Column { name, units, long_name, values });
         }

@@ -7,7 +7,7 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File};
 
 use super::arrays::ArrayFile;
-use super::layout::{FORMAT, Label};
+use super::layout::FORMAT;
 use super::reader::{self, Source};
 use crate::error::{Error, Result};
 
@@ -80,26 +80,22 @@ impl StoredArrays {
         };
         for name in file.member_names().map_err(|error| source.damaged("its members", &error))? {
             let dataset = file.dataset(&name).map_err(|error| source.damaged(&name, &error))?;
-            stored.add(&source, &file, name, &dataset)?;
+            stored.add(&source, name, &dataset)?;
         }
         Ok(stored)
     }
 
-    fn add(&mut self, source: &Source, file: &File, name: String, dataset: &Dataset) -> Result<()> {
+    fn add(&mut self, source: &Source, name: String, dataset: &Dataset) -> Result<()> {
         let (units, long_name) = (source.text(dataset, "units")?, source.text(dataset, "long_name")?);
-        let label = Label { name: &name, units: &units, long_name: &long_name };
         let shape = dataset.shape();
         if shape.len() > MOST_DIMENSIONS {
             return Err(source.damaged(&name, &format!("has {} dimensions", shape.len())));
         }
         let any = vec![None; shape.len()];
         if dataset.dtype().is_ok_and(|kind| kind.is::<VarLenUnicode>()) {
-            let words: Vec<VarLenUnicode> = source.values(file, label, &any)?;
-            // As with attributes: the library vouches for no text.
-            let text = |word: &VarLenUnicode| String::from_utf8_lossy(word.as_bytes()).into_owned();
-            self.words.insert(name, words.iter().map(text).collect());
+            self.words.insert(name, source.words_of(dataset, &dataset.name(), &any)?);
         } else {
-            let values = source.values(file, label, &any)?;
+            let values = source.values_of(dataset, &dataset.name(), &any)?;
             self.numbers.insert(name, StoredArray { units, long_name, shape, values });
         }
         Ok(())

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File, Group, IndexType, IterationOrder};
 
 use super::folder::{cell, quoted, table};
@@ -327,8 +326,7 @@ impl Variable {
             let numbers: Vec<u64> = source.values_of(dataset, &self.name, &shape)?;
             Values::Whole(numbers.into_iter().map(u64::cast_signed).collect())
         } else {
-            let texts: Vec<VarLenUnicode> = source.values_of(dataset, &self.name, &shape)?;
-            Values::Words(texts.iter().map(|text| text.as_str().to_owned()).collect())
+            Values::Words(source.words_of(dataset, &self.name, &shape)?)
         };
         Ok(values)
     }
