@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use hdf5::Result as Hdf5Result;
+use hdf5::{File, Result as Hdf5Result};
 use serde::Serialize;
 
 use super::atomic::AtomicFile;
-use super::labelled::{Dimension, bytes_of, file_in_memory, put_array, put_integer, put_text};
+use super::labelled::{Dimension, laid_out, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader;
 use super::shard::{SweepFile, unicode};
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// A coordinate: a dimension and the values along it.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,46 +84,38 @@ impl ArrayFile {
     /// Writes the file, as a whole or not at all.
     ///
     /// # Errors
-    /// [`Error::File`] if the file exists and `overwrite` is not given, or cannot be written.
+    /// [`Error::File`](crate::Error::File) if the file exists and `overwrite` is not given, or cannot be written.
     ///
     /// # Panics
     /// If an array names a coordinate that is not there, or does not have the product of their lengths as its own.
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
         let mut file = AtomicFile::new(path, overwrite)?;
-        let bytes = self.encode().map_err(|error| Error::File {
-            path: path.to_owned(),
-            why: format!("the HDF5 library could not lay out the file: {error}"),
-        })?;
-        file.write(&bytes)
+        file.write(&laid_out(path, |file| self.put_into(file))?)
     }
 
-    fn encode(&self) -> Hdf5Result<Vec<u8>> {
-        // One lock for the whole file, as for that of a run.
-        hdf5::sync::sync(|| {
-            let file = file_in_memory()?;
-            put_text(&file, "format", self.format)?;
-            put_integer(&file, "format_version", Self::FORMAT_VERSION)?;
-            put_text(&file, "program_version", env!("CARGO_PKG_VERSION"))?;
-            for (name, text) in &self.attributes {
-                put_text(&file, name, text)?;
-            }
-            put_integer(&file, "complete", 1)?;
-            let dimensions = self
-                .coordinates
-                .iter()
-                .map(|it| Dimension::coordinate(&file, it.label, &it.values))
-                .collect::<Hdf5Result<Vec<_>>>()?;
-            for array in &self.arrays {
-                let axes: Vec<&Dimension> =
-                    array.axes.iter().map(|axis| &dimensions[self.position(axis)]).collect();
-                put_array(&file, array.label, &axes, &array.values)?;
-            }
-            for array in &self.texts {
-                let texts = array.values.iter().map(|text| unicode(text)).collect::<Hdf5Result<Vec<_>>>()?;
-                put_array(&file, array.label, &[&dimensions[self.position(array.axis)]], &texts)?;
-            }
-            bytes_of(&file)
-        })
+    fn put_into(&self, file: &File) -> Hdf5Result<()> {
+        put_text(file, "format", self.format)?;
+        put_integer(file, "format_version", Self::FORMAT_VERSION)?;
+        put_text(file, "program_version", env!("CARGO_PKG_VERSION"))?;
+        for (name, text) in &self.attributes {
+            put_text(file, name, text)?;
+        }
+        put_integer(file, "complete", 1)?;
+        let dimensions = self
+            .coordinates
+            .iter()
+            .map(|it| Dimension::coordinate(file, it.label, &it.values))
+            .collect::<Hdf5Result<Vec<_>>>()?;
+        for array in &self.arrays {
+            let axes: Vec<&Dimension> =
+                array.axes.iter().map(|axis| &dimensions[self.position(axis)]).collect();
+            put_array(file, array.label, &axes, &array.values)?;
+        }
+        for array in &self.texts {
+            let texts = array.values.iter().map(|text| unicode(text)).collect::<Hdf5Result<Vec<_>>>()?;
+            put_array(file, array.label, &[&dimensions[self.position(array.axis)]], &texts)?;
+        }
+        Ok(())
     }
 
     fn position(&self, axis: &str) -> usize {
@@ -164,7 +156,7 @@ impl ArraySummary {
     /// Reads what is in a file of arrays; none if it is not one of this program's.
     ///
     /// # Errors
-    /// [`Error::File`] if it is no HDF5 file or damaged.
+    /// [`Error::File`](crate::Error::File) if it is no HDF5 file or damaged.
     pub fn read(path: &Path) -> Result<Option<Self>> {
         let (source, file) = reader::open(path)?;
         let format = source.format(&file)?;
