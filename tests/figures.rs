@@ -628,6 +628,26 @@ fn a_page_holds_inputs_verdict_and_figures_and_loads_nothing() {
 }
 
 #[test]
+fn a_page_misses_no_accuracy_where_springs_are_given_by_hand() {
+    let verdict = |numerics: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = include_str!("support/base.toml").replace("springs = 16\ntolerance = 1e-2\n", numerics);
+        fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        done(folder.path(), &["run", "scene.toml", "-o", "run.h5", "--quiet"]);
+        let path = folder.path().join("run.h5");
+        let estimate = RunFile::open(&path).unwrap().checkpoint.unwrap().error_estimate.unwrap();
+        let page = page::report(&Results::read(&path).unwrap(), &path).unwrap();
+        let verdict = page.split("<div class=\"verdict").nth(1).unwrap().split("</div>").next().unwrap();
+        (verdict.to_owned(), estimate)
+    };
+    let (chosen, _) = verdict("accuracy = 1e-2\n");
+    assert!(chosen.contains("; 0.01 was asked for."), "{chosen}");
+    let (by_hand, estimate) = verdict("springs = 12\ntolerance = 1e-2\n");
+    assert!(estimate > 1e-4, "an estimate of {estimate} meets the accuracy by default");
+    assert!(by_hand.starts_with("\">") && by_hand.contains(" of those of the limit.</p>"), "{by_hand}");
+}
+
+#[test]
 fn the_data_of_a_page_are_those_of_its_figures() {
     let results = results("run.h5");
     let page = page::report(&results, &file("run.h5")).unwrap();
