@@ -600,6 +600,8 @@ fn a_page_holds_inputs_verdict_and_figures_and_loads_nothing() {
         for outside in ["src=", "href=\"http", "@import", "fetch(", "<link"] {
             assert!(!page.contains(outside), "{name} holds {outside}");
         }
+        let from = format!("{} of fretwear {}</p>", results.what(), env!("CARGO_PKG_VERSION"));
+        assert!(page.contains(&from), "{name} lacks {from}");
         let drawings = page.matches("<svg").count();
         assert_eq!(drawings, results.kinds().len(), "{name}");
         // No two things on a page have the same name.

@@ -624,9 +624,7 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
         values: Values::Texts([WORD].into_iter().collect()),
     };
     let header = SweepHeader::default();
-    SweepFile { header, complete: true, scenes: vec![0], columns: vec![column], runs: vec![] }
-        .write(&sweep, false)
-        .expect("written");
+    SweepFile::new(header, true, vec![0], vec![column], vec![]).write(&sweep, false).expect("written");
     damage(&sweep);
     let column = SweepFile::read(&sweep).expect("readable").columns.remove(0);
     assert_eq!(column.values, Values::Texts([READ].into_iter().collect()));

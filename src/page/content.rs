@@ -233,7 +233,7 @@ fn of_sweep(file: &SweepFile) -> Content {
     let sentence = format!("{count} of {} scenes, {failed} failed.", header.scenes);
     Content {
         title: titled(&header.title, "A sweep"),
-        program_version: String::new(),
+        program_version: file.program_version.clone(),
         verdict: Verdict {
             sentences: vec![sentence],
             doubtful: failed > 0 || (count as u64) < header.scenes,

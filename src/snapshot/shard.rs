@@ -121,6 +121,8 @@ impl<T: AsRef<str>> FromIterator<T> for Words {
 pub struct SweepFile {
     /// What the sweep is about.
     pub header: SweepHeader,
+    /// Version of the program that wrote the file.
+    pub program_version: String,
     /// Whether all rows are there that the file is to have.
     pub complete: bool,
     /// Numbers of the scenes, shape `(scene,)`.
@@ -135,6 +137,24 @@ impl SweepFile {
     /// Value of the root attribute `format`.
     pub const FORMAT: &'static str = "fretwear-sweep";
     const FORMAT_VERSION: i32 = 1;
+
+    /// A file as this program writes it.
+    ///
+    /// # Arguments
+    /// * `complete` -- whether all rows are there that the file is to have
+    /// * `scenes` -- their numbers, shape `(scene,)`
+    /// * `columns` -- everything about them, each of shape `(scene,)`
+    /// * `runs` -- those of scenes whose snapshots are kept
+    pub fn new(
+        header: SweepHeader,
+        complete: bool,
+        scenes: Vec<u64>,
+        columns: Vec<Column>,
+        runs: Vec<(u64, RunFile)>,
+    ) -> Self {
+        let program_version = env!("CARGO_PKG_VERSION").into();
+        Self { header, program_version, complete, scenes, columns, runs }
+    }
 
     /// Writes the file, as a whole or not at all, over one that exists only if `overwrite` is given.
     ///
@@ -178,7 +198,7 @@ impl SweepFile {
         put_text(&file, "title", &header.title)?;
         put_text(&file, "format", Self::FORMAT)?;
         put_integer(&file, "format_version", Self::FORMAT_VERSION)?;
-        put_text(&file, "program_version", env!("CARGO_PKG_VERSION"))?;
+        put_text(&file, "program_version", &self.program_version)?;
         for (name, text) in [
             ("task", &header.task),
             ("study", &header.study),
@@ -230,6 +250,7 @@ impl SweepFile {
     pub fn read(path: &Path) -> Result<Self> {
         let (source, file) = reader::open(path)?;
         let header = header(&source, &file)?;
+        let program_version = source.text(&file, "program_version")?;
         let complete = source.integer(&file, "complete")? != 0;
         let ids: Vec<i64> = source.values(&file, SCENE, &[None])?;
         let rows = [Some(ids.len())];
@@ -259,7 +280,7 @@ impl SweepFile {
             }
         }
         let scenes = ids.into_iter().map(i64::cast_unsigned).collect();
-        Ok(Self { header, complete, scenes, columns, runs })
+        Ok(Self { header, program_version, complete, scenes, columns, runs })
     }
 
     /// Reads only what a file of a sweep is about.
