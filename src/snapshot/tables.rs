@@ -10,7 +10,7 @@ use super::layout::{self, FLAG_MEANINGS};
 use super::reader::{self, Source};
 use super::shard::RUNS;
 use super::{ArrayFile, SweepFile};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, most_alike};
 
 const NOT_OURS: &str =
     "give a file that `fretwear run`, `sweep`, `merge`, `map`, `universality` or `tradeoff` wrote";
@@ -132,8 +132,7 @@ impl ResultTables {
 
     fn no_such_table(&self, name: &str) -> Error {
         let names: Vec<&str> = self.tables.iter().map(|table| table.name.as_str()).collect();
-        let likeness = |other: &&&str| (1e9 * strsim::jaro_winkler(name, other)) as u64;
-        let near = names.iter().max_by_key(likeness).map_or("", |near| near);
+        let near = most_alike(name, &names).map_or("", |(_, near)| near);
         self.source
             .error(format!("has no table {name:?}; did you mean {near:?}? There are: {}", names.join("  ")))
     }
