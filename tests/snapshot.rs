@@ -15,8 +15,8 @@ use fretwear::model::{Past, PastPoint, State, StickEdge};
 use fretwear::simulation::Progress;
 use fretwear::snapshot::layout::label;
 use fretwear::snapshot::{
-    ArrayFile, Checkpoint, Column, Coordinate, LimitCurves, ResultTables, RunFile, RunHeader, RunWriter,
-    Snapshot, StopReason, StoredArrays, SweepFile, SweepHeader, TextArray, Values,
+    ArrayFile, Checkpoint, Column, Coordinate, Format, LimitCurves, ResultTables, RunFile, RunHeader,
+    RunWriter, Snapshot, StopReason, StoredArrays, SweepFile, SweepHeader, TextArray, Values,
 };
 use fretwear::stick_slip::Regime;
 use hdf5::types::VarLenUnicode;
@@ -631,7 +631,7 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
 
     let study = folder.path().join("study.h5");
     let file = ArrayFile {
-        format: "fretwear-universality",
+        format: Format::Universality,
         attributes: vec![("title", String::new())],
         coordinates: vec![Coordinate { label: label("case", "1", "a number"), values: vec![0.0] }],
         arrays: vec![],

@@ -5,11 +5,12 @@ use std::path::Path;
 use hdf5::{File, Result as Hdf5Result};
 use serde::Serialize;
 
+use super::Format;
 use super::atomic::AtomicFile;
 use super::labelled::{Dimension, laid_out, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader;
-use super::shard::{SweepFile, unicode};
+use super::shard::unicode;
 use crate::error::Result;
 
 /// A coordinate: a dimension and the values along it.
@@ -59,10 +60,10 @@ impl TextArray {
 }
 
 /// Everything that a file of arrays holds; valid netCDF-4 in which every array names its coordinates.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ArrayFile {
-    /// Value of the root attribute `format`.
-    pub format: &'static str,
+    /// What it is of.
+    pub format: Format,
     /// Further root attributes, all text.
     pub attributes: Vec<(&'static str, String)>,
     /// The dimensions.
@@ -74,10 +75,6 @@ pub struct ArrayFile {
 }
 
 impl ArrayFile {
-    /// The formats there are.
-    pub const FORMATS: [&str; 4] =
-        ["fretwear-map", "fretwear-universality", "fretwear-tradeoff", SweepFile::FORMAT];
-
     /// Version of the layout, the root attribute `format_version`.
     pub const FORMAT_VERSION: i32 = 1;
 
@@ -94,7 +91,7 @@ impl ArrayFile {
     }
 
     fn put_into(&self, file: &File) -> Hdf5Result<()> {
-        put_text(file, "format", self.format)?;
+        put_text(file, "format", self.format.name())?;
         put_integer(file, "format_version", Self::FORMAT_VERSION)?;
         put_text(file, "program_version", env!("CARGO_PKG_VERSION"))?;
         for (name, text) in &self.attributes {
@@ -153,16 +150,15 @@ pub struct ArrayShape {
 }
 
 impl ArraySummary {
-    /// Reads what is in a file of arrays; none if it is not one of this program's.
+    /// Reads what is in a file of arrays; none if it is of a run or not one of this program's.
     ///
     /// # Errors
     /// [`Error::File`](crate::Error::File) if it is no HDF5 file or damaged.
     pub fn read(path: &Path) -> Result<Option<Self>> {
         let (source, file) = reader::open(path)?;
-        let format = source.format(&file)?;
-        if !ArrayFile::FORMATS.contains(&format.as_str()) {
+        let Some(format) = source.format(&file)?.filter(|format| *format != Format::Run) else {
             return Ok(None);
-        }
+        };
         let mut names = file.member_names().map_err(|error| source.damaged("its members", &error))?;
         names.sort();
         let shape = |name: String| {
@@ -184,7 +180,7 @@ impl ArraySummary {
             })
         };
         Ok(Some(Self {
-            format,
+            format: format.name().into(),
             title: source.text(&file, "title")?,
             program_version: source.text(&file, "program_version")?,
             complete: source.integer(&file, "complete")? != 0,

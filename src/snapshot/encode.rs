@@ -4,7 +4,7 @@ use hdf5::{Group, Result};
 
 use super::labelled::{Dimension, create_group, put_array, put_integer, put_integers, put_text};
 use super::layout::*;
-use super::{Checkpoint, RunHeader, Snapshot, StopReason};
+use super::{Checkpoint, Format, RunHeader, Snapshot, StopReason};
 use crate::model::Past;
 use crate::stick_slip::Regime;
 
@@ -35,7 +35,7 @@ impl Run<'_> {
 
     fn put_attributes(&self, file: &Group) -> Result<()> {
         put_text(file, "title", self.header.title.as_deref().unwrap_or_default())?;
-        put_text(file, "format", FORMAT)?;
+        put_text(file, "format", Format::Run.name())?;
         put_integer(file, "format_version", FORMAT_VERSION)?;
         put_text(file, "program_version", env!("CARGO_PKG_VERSION"))?;
         put_text(file, "scene", &self.header.scene)?;

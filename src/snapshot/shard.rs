@@ -12,7 +12,7 @@ use super::encode::Run;
 use super::labelled::{Dimension, create_group, file_on_disk, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader::{self, Source};
-use super::{RunFile, StopReason};
+use super::{Format, RunFile, StopReason};
 use crate::error::{Error, Result};
 
 /// Coordinate of the rows.
@@ -134,8 +134,6 @@ pub struct SweepFile {
 }
 
 impl SweepFile {
-    /// Value of the root attribute `format`.
-    pub const FORMAT: &'static str = "fretwear-sweep";
     const FORMAT_VERSION: i32 = 1;
 
     /// A file as this program writes it.
@@ -196,7 +194,7 @@ impl SweepFile {
         let file = file_on_disk(path)?;
         let header = &self.header;
         put_text(&file, "title", &header.title)?;
-        put_text(&file, "format", Self::FORMAT)?;
+        put_text(&file, "format", Format::Sweep.name())?;
         put_integer(&file, "format_version", Self::FORMAT_VERSION)?;
         put_text(&file, "program_version", &self.program_version)?;
         for (name, text) in [
@@ -310,7 +308,7 @@ impl RunFile {
 fn header(source: &Source, file: &File) -> Result<SweepHeader> {
     let group: &Group = file;
     const CURE: &str = "give the directory of a `fretwear sweep` only";
-    source.check_format(group, SweepFile::FORMAT, SweepFile::FORMAT_VERSION, CURE)?;
+    source.check_format(group, Format::Sweep, SweepFile::FORMAT_VERSION, CURE)?;
     let whole = |name: &str| -> Result<u64> {
         let attribute = group.attr(name).and_then(|attribute| attribute.read_scalar::<u64>());
         attribute.map_err(|error| source.damaged(&format!("attribute {name}"), &error))

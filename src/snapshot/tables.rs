@@ -4,12 +4,12 @@ use std::path::Path;
 
 use hdf5::{Dataset, File, Group, IndexType, IterationOrder};
 
+use super::Format;
 use super::folder::{cell, quoted, table};
 use super::labelled::{is_dimension, runs_along};
-use super::layout::{self, FLAG_MEANINGS};
+use super::layout::FLAG_MEANINGS;
 use super::reader::{self, Source};
 use super::shard::RUNS;
-use super::{ArrayFile, SweepFile};
 use crate::error::{Error, Result, most_alike};
 
 const NOT_OURS: &str =
@@ -71,16 +71,14 @@ impl ResultTables {
     /// [`Error::File`] if it is no HDF5 file, not one of this program's, or damaged.
     pub fn open(path: &Path) -> Result<Self> {
         let (source, file) = reader::open(path)?;
-        let format = source.format(&file)?;
-        let usual = match format.as_str() {
-            layout::FORMAT => "time",
-            SweepFile::FORMAT => "scene",
-            "fretwear-map" => "grading,amplitude_ratio",
-            "fretwear-universality" => "case",
-            "fretwear-tradeoff" => "candidate",
-            _ => return Err(source.error(format!("is no result of this program; {NOT_OURS}"))),
+        let usual = match source.format(&file)? {
+            Some(Format::Run) => "time",
+            Some(Format::Sweep) => "scene",
+            Some(Format::Map) => "grading,amplitude_ratio",
+            Some(Format::Universality) => "case",
+            Some(Format::Tradeoff) => "candidate",
+            None => return Err(source.error(format!("is no result of this program; {NOT_OURS}"))),
         };
-        debug_assert!(format == layout::FORMAT || ArrayFile::FORMATS.contains(&format.as_str()));
         let mut this = Self { source, tables: vec![], usual, runs: vec![] };
         this.walk(&file, "", &[])?;
         if let Some(first) = this.list_runs(&file)? {
