@@ -46,3 +46,11 @@ pub enum Error {
 
 /// Result of a fallible function of this library.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// The known word that was probably meant by another, and how alike the two are, from 0 to 1.
+pub(crate) fn most_alike<'a>(word: &str, known: &[&'a str]) -> Option<(f64, &'a str)> {
+    let folded = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let target = folded(word);
+    let near = known.iter().map(|known| (strsim::jaro_winkler(&target, &folded(known)), *known));
+    near.max_by(|a, b| a.0.total_cmp(&b.0))
+}

@@ -45,8 +45,7 @@ use std::path::Path;
 
 use crate::drawing::Figure;
 use crate::error::{Error, Result};
-use crate::snapshot::layout::FORMAT;
-use crate::snapshot::{RunFile, StoredArrays, SweepFile, format_of};
+use crate::snapshot::{Format, RunFile, StoredArrays, SweepFile, format_of};
 
 /// What a figure shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,13 +130,13 @@ impl Results {
     /// [`Error::File`] names the file, what in it cannot be used, and the cure; [`Error::Scene`] if the scene in it is not valid.
     pub fn read(path: &Path) -> Result<Self> {
         let format = format_of(path)?;
-        let arrays = |kind: fn(StoredArrays) -> Self| StoredArrays::read(path, &format).map(kind);
-        match format.as_str() {
-            FORMAT => RunResults::new(RunFile::open(path)?, path).map(Box::new).map(Self::Run),
-            "fretwear-map" => arrays(Self::Map),
-            "fretwear-universality" => arrays(Self::Universality),
-            "fretwear-tradeoff" => arrays(Self::Tradeoff),
-            _ => SweepFile::read(path).map(Box::new).map(Self::Sweep),
+        let arrays = |kind: fn(StoredArrays) -> Self| StoredArrays::read(path, format).map(kind);
+        match format {
+            Format::Run => RunResults::new(RunFile::open(path)?, path).map(Box::new).map(Self::Run),
+            Format::Map => arrays(Self::Map),
+            Format::Universality => arrays(Self::Universality),
+            Format::Tradeoff => arrays(Self::Tradeoff),
+            Format::Sweep => SweepFile::read(path).map(Box::new).map(Self::Sweep),
         }
     }
 

@@ -59,7 +59,7 @@ pub fn report(results: &Results, path: &Path) -> Result<String> {
          <meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
          <h1>{0}</h1>\n<p class=\"from\">{1}</p>\n",
         escaped(&title),
-        escaped(from.trim_end())
+        escaped(&from)
     );
     let class = if verdict.doubtful { "verdict doubt" } else { "verdict" };
     let sentences: String = verdict.sentences.iter().map(|it| format!("<p>{}</p>\n", escaped(it))).collect();

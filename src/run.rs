@@ -230,7 +230,7 @@ impl Run {
                 last,
                 checkpoint,
                 limit: parts.limit,
-                accuracy: asked(&scene),
+                accuracy: scene.numerics().accuracy_asked(),
             })));
         }
         let Checkpoint { state, progress, wall_seconds, .. } = checkpoint;
@@ -313,15 +313,9 @@ impl Run {
         let output = recorder.writer.path().to_owned();
         let (header, snapshots) = recorder.writer.into_parts();
         let file = RunFile::finished(header, snapshots, checkpoint.clone(), stop_reason);
-        let accuracy = asked(&scene);
+        let accuracy = scene.numerics().accuracy_asked();
         Ok((RunResult { output, stop_reason, last, checkpoint, limit, distance, indenter, accuracy }, file))
     }
-}
-
-/// The accuracy asked for, where the program chooses the springs.
-fn asked(scene: &Scene) -> Option<f64> {
-    let numerics = scene.numerics();
-    numerics.springs.is_none().then_some(numerics.accuracy)
 }
 
 /// Springs with which a run is to be made anew: where the program chose them, and the run found no end or may be off by more than was asked for.

@@ -163,6 +163,13 @@ pub struct Numerics {
     pub checkpoint_interval: f64,
 }
 
+impl Numerics {
+    /// The accuracy asked for, where the program chooses the springs.
+    pub fn accuracy_asked(&self) -> Option<f64> {
+        self.springs.is_none().then_some(self.accuracy)
+    }
+}
+
 impl Default for Numerics {
     /// Accuracy 1e-4, implicit, a checkpoint every 30 s.
     fn default() -> Self {

@@ -600,6 +600,8 @@ fn a_page_holds_inputs_verdict_and_figures_and_loads_nothing() {
         for outside in ["src=", "href=\"http", "@import", "fetch(", "<link"] {
             assert!(!page.contains(outside), "{name} holds {outside}");
         }
+        let from = format!("{} of fretwear {}</p>", results.what(), env!("CARGO_PKG_VERSION"));
+        assert!(page.contains(&from), "{name} lacks {from}");
         let drawings = page.matches("<svg").count();
         assert_eq!(drawings, results.kinds().len(), "{name}");
         // No two things on a page have the same name.
@@ -625,6 +627,26 @@ fn a_page_holds_inputs_verdict_and_figures_and_loads_nothing() {
     // What a file says is text, whatever it says.
     let sweep = page::report(&results("one.h5"), &file("one.h5")).unwrap();
     assert!(sweep.contains("<h1>a &lt;study&gt; &amp; its *title*</h1>") && !sweep.contains("<study>"));
+}
+
+#[test]
+fn a_page_misses_no_accuracy_where_springs_are_given_by_hand() {
+    let verdict = |numerics: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = include_str!("support/base.toml").replace("springs = 16\ntolerance = 1e-2\n", numerics);
+        fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        done(folder.path(), &["run", "scene.toml", "-o", "run.h5", "--quiet"]);
+        let path = folder.path().join("run.h5");
+        let estimate = RunFile::open(&path).unwrap().checkpoint.unwrap().error_estimate.unwrap();
+        let page = page::report(&Results::read(&path).unwrap(), &path).unwrap();
+        let verdict = page.split("<div class=\"verdict").nth(1).unwrap().split("</div>").next().unwrap();
+        (verdict.to_owned(), estimate)
+    };
+    let (chosen, _) = verdict("accuracy = 1e-2\n");
+    assert!(chosen.contains("; 0.01 was asked for."), "{chosen}");
+    let (by_hand, estimate) = verdict("springs = 12\ntolerance = 1e-2\n");
+    assert!(estimate > 1e-4, "an estimate of {estimate} meets the accuracy by default");
+    assert!(by_hand.starts_with("\">") && by_hand.contains(" of those of the limit.</p>"), "{by_hand}");
 }
 
 #[test]

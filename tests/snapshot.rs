@@ -13,7 +13,11 @@ use std::time::Duration;
 use fretwear::loading::RecordedPath;
 use fretwear::model::{Past, PastPoint, State, StickEdge};
 use fretwear::simulation::Progress;
-use fretwear::snapshot::{Checkpoint, LimitCurves, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
+use fretwear::snapshot::layout::label;
+use fretwear::snapshot::{
+    ArrayFile, Checkpoint, Column, Coordinate, Format, LimitCurves, ResultTables, RunFile, RunHeader,
+    RunWriter, Snapshot, StopReason, StoredArrays, SweepFile, SweepHeader, TextArray, Values,
+};
 use fretwear::stick_slip::Regime;
 use hdf5::types::VarLenUnicode;
 use support::command::names;
@@ -594,6 +598,53 @@ fn edited_files_are_refused_by_the_name_of_what_is_wrong() {
             "{found}\nlacks {words}"
         );
     }
+}
+
+#[test]
+fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
+    const WORD: &str = "obeys";
+    const READ: &str = "ob\u{fffd}ys";
+    let folder = tempfile::tempdir().expect("a folder");
+    // Words stand in the file as they are, without a checksum.
+    let damage = |path: &Path| {
+        let mut bytes = fs::read(path).expect("the file");
+        let place = bytes.windows(WORD.len()).position(|it| it == WORD.as_bytes()).expect("the word");
+        bytes[place + 2] = 0xff;
+        fs::write(path, bytes).expect("a file");
+        let _guard = EDITING.lock().unwrap_or_else(PoisonError::into_inner);
+        let table = ResultTables::csv(path, None).expect("a table");
+        assert!(table.trim_end().ends_with(&format!(",{READ}")), "{table}");
+    };
+
+    let sweep = folder.path().join("sweep.h5");
+    let column = Column {
+        name: "verdict".into(),
+        units: "1".into(),
+        long_name: "a word".into(),
+        values: Values::Texts([WORD].into_iter().collect()),
+    };
+    let header = SweepHeader::default();
+    SweepFile::new(header, true, vec![0], vec![column], vec![]).write(&sweep, false).expect("written");
+    damage(&sweep);
+    let column = SweepFile::read(&sweep).expect("readable").columns.remove(0);
+    assert_eq!(column.values, Values::Texts([READ].into_iter().collect()));
+
+    let study = folder.path().join("study.h5");
+    let file = ArrayFile {
+        format: Format::Universality,
+        attributes: vec![("title", String::new())],
+        coordinates: vec![Coordinate { label: label("case", "1", "a number"), values: vec![0.0] }],
+        arrays: vec![],
+        texts: vec![TextArray {
+            label: label("verdict", "1", "a word"),
+            axis: "case",
+            values: vec![WORD.into()],
+        }],
+    };
+    file.write(&study, false).expect("written");
+    damage(&study);
+    let stored = StoredArrays::read(&study, file.format).expect("readable");
+    assert_eq!(stored.words("verdict", 1).expect("one"), [READ]);
 }
 
 const SAVE_LOOP: &str = "FRETWEAR_TEST_SAVE_LOOP";

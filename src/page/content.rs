@@ -63,14 +63,14 @@ fn verdict(results: &RunResults) -> Verdict {
     let Some(last) = run.snapshots.last() else {
         return Verdict { sentences: vec!["The file holds no snapshot.".into()], doubtful: true };
     };
-    let asked = results.scene.numerics().accuracy;
+    let numerics = results.scene.numerics();
     let estimate = run.checkpoint.as_ref().and_then(|checkpoint| checkpoint.error_estimate);
     let distance =
         run.header.limit.as_ref().and_then(|limit| LimitDistance::new(limit, last).distance_relative);
     let mut sentences = vec![];
     sentences.push(match (distance, run.complete) {
         (_, false) => format!("Not complete: stopped after {} cycles; fretwear run --resume goes on.", number(last.cycles)),
-        (Some(distance), _) if distance <= estimate.unwrap_or(0.0).max(asked) => {
+        (Some(distance), _) if distance <= estimate.unwrap_or(0.0).max(numerics.accuracy) => {
             "The worn profile has reached its limit, within the accuracy of the run.".into()
         }
         (Some(_), _) if results.scene.conditions().is_plain() => "The worn profile is on its way to the limit.".into(),
@@ -92,13 +92,15 @@ fn verdict(results: &RunResults) -> Verdict {
         let part = last.wear_volume / limit.wear_volume();
         sentences.push(format!("The worn volume is {} of that of the limit.", number(part)));
     }
-    let missed = estimate.is_some_and(|estimate| estimate > asked);
+    let asked = numerics.accuracy_asked();
+    let missed = estimate.zip(asked).is_some_and(|(estimate, asked)| estimate > asked);
+    let wish = asked.map_or(String::new(), |asked| {
+        format!("; {} was asked for{}", number(asked), if missed { ", which is missed" } else { "" })
+    });
     sentences.push(match estimate {
         Some(estimate) => format!(
-            "Estimated error of worn volume and profile: {} of those of the limit; {} was asked for{}.",
-            number(estimate),
-            number(asked),
-            if missed { ", which is missed" } else { "" }
+            "Estimated error of worn volume and profile: {} of those of the limit{wish}.",
+            number(estimate)
         ),
         None => "There is no estimate of the error.".into(),
     });
@@ -231,7 +233,7 @@ fn of_sweep(file: &SweepFile) -> Content {
     let sentence = format!("{count} of {} scenes, {failed} failed.", header.scenes);
     Content {
         title: titled(&header.title, "A sweep"),
-        program_version: String::new(),
+        program_version: file.program_version.clone(),
         verdict: Verdict {
             sentences: vec![sentence],
             doubtful: failed > 0 || (count as u64) < header.scenes,

@@ -8,7 +8,7 @@ use serde_spanned::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::quantity::{self, Dimension};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, most_alike};
 
 /// The text of a document and its name in messages.
 #[derive(Debug, Clone, Copy)]
@@ -281,7 +281,7 @@ fn listed(names: impl Iterator<Item = String>) -> String {
 
 /// The nearest of the known words, or all of them.
 fn suggestion(word: &str, known: &[&str]) -> String {
-    match most_alike(word, known) {
+    match nearest_key(word, known) {
         Some((likeness, candidate)) if likeness > 0.8 => format!("did you mean {candidate}?"),
         _ if known.len() == 1 => format!("this version offers {} only", known[0]),
         _ => format!("this version offers {}", listed(known.iter().map(|key| key.to_string()))),
@@ -290,19 +290,12 @@ fn suggestion(word: &str, known: &[&str]) -> String {
 
 /// The nearest of words that are too many to be listed.
 pub(super) fn nearest(word: &str, known: &[&str]) -> String {
-    most_alike(word, known).map_or(String::new(), |(_, candidate)| format!("did you mean {candidate}?"))
+    nearest_key(word, known).map_or(String::new(), |(_, candidate)| format!("did you mean {candidate}?"))
 }
 
-/// How alike the most alike word is, from 0 to 1, and the word.
-fn most_alike<'a>(word: &str, known: &[&'a str]) -> Option<(f64, &'a str)> {
-    let folded = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
-    let target = folded(word);
-    // A long key would cost the square of its length, and is near to nothing.
-    let near = known.iter().filter(|_| target.len() <= 60).map(|candidate| {
-        let candidate_folded = folded(candidate);
-        (strsim::jaro_winkler(&target, &candidate_folded), *candidate)
-    });
-    near.max_by(|a, b| a.0.total_cmp(&b.0))
+/// As [`most_alike`]; none for a long word, which would cost the square of its length and is near to nothing.
+fn nearest_key<'a>(word: &str, known: &[&'a str]) -> Option<(f64, &'a str)> {
+    if word.len() <= 60 { most_alike(word, known) } else { None }
 }
 
 /// A key and its value.

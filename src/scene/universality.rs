@@ -44,7 +44,7 @@ use std::path::{Path, PathBuf};
 use super::document::{Section, Source};
 use super::study::base_table;
 use super::{LARGEST, Rows, Scene, read_text};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, most_alike};
 
 /// Most combinations of the levels of a study, before a covering design is chosen among them.
 pub const MOST_COMBINATIONS: usize = 100_000;
@@ -190,8 +190,8 @@ impl UniversalityStudy {
     /// [`Error::Scene`] names the one that is most alike.
     pub fn case(&self, name: &str) -> Result<&Case> {
         self.cases.iter().find(|case| case.name == name).ok_or_else(|| {
-            let likeness = |case: &&Case| (1e9 * strsim::jaro_winkler(name, &case.name)) as u64;
-            let near = self.cases.iter().max_by_key(likeness).map_or("", |case| case.name.as_str());
+            let names: Vec<&str> = self.cases.iter().map(|case| case.name.as_str()).collect();
+            let near = most_alike(name, &names).map_or("", |(_, near)| near);
             Error::Scene(format!("{}: no case has the name {name:?}; did you mean {near:?}?", self.name))
         })
     }

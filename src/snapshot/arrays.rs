@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
-use hdf5::Result as Hdf5Result;
+use hdf5::{File, Result as Hdf5Result};
 use serde::Serialize;
 
+use super::Format;
 use super::atomic::AtomicFile;
-use super::labelled::{Dimension, bytes_of, file_in_memory, put_array, put_integer, put_text};
+use super::labelled::{Dimension, laid_out, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader;
-use super::shard::{SweepFile, unicode};
-use crate::error::{Error, Result};
+use super::shard::unicode;
+use crate::error::Result;
 
 /// A coordinate: a dimension and the values along it.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,10 +60,10 @@ impl TextArray {
 }
 
 /// Everything that a file of arrays holds; valid netCDF-4 in which every array names its coordinates.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ArrayFile {
-    /// Value of the root attribute `format`.
-    pub format: &'static str,
+    /// What it is of.
+    pub format: Format,
     /// Further root attributes, all text.
     pub attributes: Vec<(&'static str, String)>,
     /// The dimensions.
@@ -74,56 +75,44 @@ pub struct ArrayFile {
 }
 
 impl ArrayFile {
-    /// The formats there are.
-    pub const FORMATS: [&str; 4] =
-        ["fretwear-map", "fretwear-universality", "fretwear-tradeoff", SweepFile::FORMAT];
-
     /// Version of the layout, the root attribute `format_version`.
     pub const FORMAT_VERSION: i32 = 1;
 
     /// Writes the file, as a whole or not at all.
     ///
     /// # Errors
-    /// [`Error::File`] if the file exists and `overwrite` is not given, or cannot be written.
+    /// [`Error::File`](crate::Error::File) if the file exists and `overwrite` is not given, or cannot be written.
     ///
     /// # Panics
     /// If an array names a coordinate that is not there, or does not have the product of their lengths as its own.
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
         let mut file = AtomicFile::new(path, overwrite)?;
-        let bytes = self.encode().map_err(|error| Error::File {
-            path: path.to_owned(),
-            why: format!("the HDF5 library could not lay out the file: {error}"),
-        })?;
-        file.write(&bytes)
+        file.write(&laid_out(path, |file| self.put_into(file))?)
     }
 
-    fn encode(&self) -> Hdf5Result<Vec<u8>> {
-        // One lock for the whole file, as for that of a run.
-        hdf5::sync::sync(|| {
-            let file = file_in_memory()?;
-            put_text(&file, "format", self.format)?;
-            put_integer(&file, "format_version", Self::FORMAT_VERSION)?;
-            put_text(&file, "program_version", env!("CARGO_PKG_VERSION"))?;
-            for (name, text) in &self.attributes {
-                put_text(&file, name, text)?;
-            }
-            put_integer(&file, "complete", 1)?;
-            let dimensions = self
-                .coordinates
-                .iter()
-                .map(|it| Dimension::coordinate(&file, it.label, &it.values))
-                .collect::<Hdf5Result<Vec<_>>>()?;
-            for array in &self.arrays {
-                let axes: Vec<&Dimension> =
-                    array.axes.iter().map(|axis| &dimensions[self.position(axis)]).collect();
-                put_array(&file, array.label, &axes, &array.values)?;
-            }
-            for array in &self.texts {
-                let texts = array.values.iter().map(|text| unicode(text)).collect::<Hdf5Result<Vec<_>>>()?;
-                put_array(&file, array.label, &[&dimensions[self.position(array.axis)]], &texts)?;
-            }
-            bytes_of(&file)
-        })
+    fn put_into(&self, file: &File) -> Hdf5Result<()> {
+        put_text(file, "format", self.format.name())?;
+        put_integer(file, "format_version", Self::FORMAT_VERSION)?;
+        put_text(file, "program_version", env!("CARGO_PKG_VERSION"))?;
+        for (name, text) in &self.attributes {
+            put_text(file, name, text)?;
+        }
+        put_integer(file, "complete", 1)?;
+        let dimensions = self
+            .coordinates
+            .iter()
+            .map(|it| Dimension::coordinate(file, it.label, &it.values))
+            .collect::<Hdf5Result<Vec<_>>>()?;
+        for array in &self.arrays {
+            let axes: Vec<&Dimension> =
+                array.axes.iter().map(|axis| &dimensions[self.position(axis)]).collect();
+            put_array(file, array.label, &axes, &array.values)?;
+        }
+        for array in &self.texts {
+            let texts = array.values.iter().map(|text| unicode(text)).collect::<Hdf5Result<Vec<_>>>()?;
+            put_array(file, array.label, &[&dimensions[self.position(array.axis)]], &texts)?;
+        }
+        Ok(())
     }
 
     fn position(&self, axis: &str) -> usize {
@@ -161,16 +150,15 @@ pub struct ArrayShape {
 }
 
 impl ArraySummary {
-    /// Reads what is in a file of arrays; none if it is not one of this program's.
+    /// Reads what is in a file of arrays; none if it is of a run or not one of this program's.
     ///
     /// # Errors
-    /// [`Error::File`] if it is no HDF5 file or damaged.
+    /// [`Error::File`](crate::Error::File) if it is no HDF5 file or damaged.
     pub fn read(path: &Path) -> Result<Option<Self>> {
         let (source, file) = reader::open(path)?;
-        let format = source.format(&file)?;
-        if !ArrayFile::FORMATS.contains(&format.as_str()) {
+        let Some(format) = source.format(&file)?.filter(|format| *format != Format::Run) else {
             return Ok(None);
-        }
+        };
         let mut names = file.member_names().map_err(|error| source.damaged("its members", &error))?;
         names.sort();
         let shape = |name: String| {
@@ -192,7 +180,7 @@ impl ArraySummary {
             })
         };
         Ok(Some(Self {
-            format,
+            format: format.name().into(),
             title: source.text(&file, "title")?,
             program_version: source.text(&file, "program_version")?,
             complete: source.integer(&file, "complete")? != 0,

@@ -2,11 +2,9 @@
 
 use hdf5::{Group, Result};
 
-use super::labelled::{
-    Dimension, bytes_of, create_group, file_in_memory, put_array, put_integer, put_integers, put_text,
-};
+use super::labelled::{Dimension, create_group, put_array, put_integer, put_integers, put_text};
 use super::layout::*;
-use super::{Checkpoint, RunHeader, Snapshot, StopReason};
+use super::{Checkpoint, Format, RunHeader, Snapshot, StopReason};
 use crate::model::Past;
 use crate::stick_slip::Regime;
 
@@ -20,17 +18,8 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The file of this run. The same run gives the same bytes: no times of creation are stored.
-    pub(super) fn encode(&self) -> Result<Vec<u8>> {
-        // One lock for the whole file: files in memory of two threads must not exist side by side under one name.
-        hdf5::sync::sync(|| {
-            let file = file_in_memory()?;
-            self.put_into(&file)?;
-            bytes_of(&file)
-        })
-    }
-
-    /// Writes the run into a group, for the root of a file of its own or one of many in a file.
+    /// Writes the run into a group, for the root of a file of its own or one of many in a file. The same run gives the same bytes: no times
+    /// of creation are stored.
     pub(super) fn put_into(&self, group: &Group) -> Result<()> {
         self.put_attributes(group)?;
         let time = Dimension::create(group, TIME, self.snapshots.len(), true)?;
@@ -46,7 +35,7 @@ impl Run<'_> {
 
     fn put_attributes(&self, file: &Group) -> Result<()> {
         put_text(file, "title", self.header.title.as_deref().unwrap_or_default())?;
-        put_text(file, "format", FORMAT)?;
+        put_text(file, "format", Format::Run.name())?;
         put_integer(file, "format_version", FORMAT_VERSION)?;
         put_text(file, "program_version", env!("CARGO_PKG_VERSION"))?;
         put_text(file, "scene", &self.header.scene)?;

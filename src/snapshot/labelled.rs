@@ -10,6 +10,7 @@ use hdf5::{Dataset, Extent, File, FileBuilder, Group, H5Type, Location, Result};
 use hdf5_sys::h5i::hid_t;
 
 use super::layout::Label;
+use crate::error::Error;
 
 /// Chunks hold at most this many values (1 MiB), the size of HDF5's chunk cache.
 const CHUNK_VALUES: usize = 1 << 17;
@@ -42,13 +43,30 @@ pub(super) struct Dimension {
     resizable: bool,
 }
 
+/// The bytes of a file that is laid out in memory.
+///
+/// # Errors
+/// [`Error::File`] names `path`, where they are to be written.
+pub(super) fn laid_out(path: &Path, put: impl FnOnce(&File) -> Result<()>) -> crate::error::Result<Vec<u8>> {
+    // One lock for the whole file: files in memory of two threads must not exist side by side under one name.
+    let bytes = hdf5::sync::sync(|| {
+        let file = file_in_memory()?;
+        put(&file)?;
+        bytes_of(&file)
+    });
+    bytes.map_err(|error| Error::File {
+        path: path.to_owned(),
+        why: format!("the HDF5 library could not lay out the file: {error}"),
+    })
+}
+
 /// A new file in memory; nothing is on disk until its bytes are written.
 ///
 /// The format is the earliest one that serves, which every reader in use knows: HDF5 1.8, with the order of creation
 /// kept, as netCDF-4 asks. The superblock of later formats has a checksum that HDF5 1.10 gets wrong in the image of a
 /// file. Small nodes of the chunk index take 25 kB off a run, whose datasets mostly are one chunk each; deflate was
 /// left out because it saved no more than a fifth of the size and took as long as the rest of a save.
-pub(super) fn file_in_memory() -> Result<File> {
+fn file_in_memory() -> Result<File> {
     options()
         .with_fapl(|access| access.core_options(1 << 16, false))
         // The library looks for a file of this name before it starts a new one: there can be none below a device.
@@ -76,7 +94,7 @@ fn options() -> FileBuilder {
 }
 
 /// The bytes of a file, as they belong on disk.
-pub(super) fn bytes_of(file: &File) -> Result<Vec<u8>> {
+fn bytes_of(file: &File) -> Result<Vec<u8>> {
     use hdf5_sys::h5f::H5Fget_file_image;
     file.flush()?;
     hdf5::sync::sync(|| {

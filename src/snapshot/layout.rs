@@ -3,8 +3,6 @@
 use super::{Checkpoint, Snapshot};
 use crate::model::{PastPoint, StickEdge};
 
-/// Value of the root attribute `format`.
-pub const FORMAT: &str = "fretwear-run";
 /// Value of the root attribute `format_version` that this program writes and reads.
 pub const FORMAT_VERSION: i32 = 3;
 /// Group that holds what a restart needs.

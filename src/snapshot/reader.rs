@@ -10,7 +10,7 @@ use hdf5::{Dataset, File, Group, H5Type, Location};
 
 use super::atomic::failure;
 use super::layout::*;
-use super::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
+use super::{Checkpoint, Format, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::indenter::TabulatedProfile;
 use crate::loading::RecordedPath;
@@ -53,7 +53,7 @@ impl RunFile {
 
     /// Reads a run from a group of a file.
     pub(super) fn from_group(source: &Source, file: &Group) -> Result<Self> {
-        source.check_format(file, FORMAT, FORMAT_VERSION, NOT_A_RUN)?;
+        source.check_format(file, Format::Run, FORMAT_VERSION, NOT_A_RUN)?;
         let header = source.header(file)?;
         let snapshots = source.snapshots(file, header.radius.len())?;
         let checkpoint = if file.link_exists(CHECKPOINT) { Some(source.checkpoint(file)?) } else { None };
@@ -127,15 +127,19 @@ impl Source {
         self.error(format!("{what}: {why}; {WRITE_AGAIN}"))
     }
 
-    /// The root attribute `format`; empty if there is none.
-    pub(super) fn format(&self, file: &Group) -> Result<String> {
-        if file.attr("format").is_ok() { self.text(file, "format") } else { Ok(String::new()) }
+    /// What the root attribute `format` tells; none if there is none, or one of another program.
+    pub(super) fn format(&self, file: &Group) -> Result<Option<Format>> {
+        match file.attr("format") {
+            Ok(_) => self.text(file, "format").map(|name| Format::from_name(&name)),
+            Err(_) => Ok(None),
+        }
     }
 
     /// Refuses a file of another format or version; the cure says what to give instead.
-    pub(super) fn check_format(&self, file: &Group, format: &str, version: i32, cure: &str) -> Result<()> {
-        if self.format(file)? != format {
-            let why = format!("is an HDF5 file, but has no attribute format = \"{format}\"; {cure}");
+    pub(super) fn check_format(&self, file: &Group, format: Format, version: i32, cure: &str) -> Result<()> {
+        if self.format(file)? != Some(format) {
+            let name = format.name();
+            let why = format!("is an HDF5 file, but has no attribute format = \"{name}\"; {cure}");
             return Err(self.error(why));
         }
         match self.integer(file, "format_version")? {
@@ -310,6 +314,17 @@ impl Source {
         let count = check_shape::<T>(dataset, shape).map_err(|why| self.damaged(name, &why))?;
         let values = dataset.read_raw().map_err(|error| self.damaged(name, &error))?;
         if values.len() == count { Ok(values) } else { Err(self.damaged(name, &"has no values")) }
+    }
+
+    /// As [`Source::values_of`], of words: the library vouches for no text, so a sign stands for what is not UTF-8.
+    pub(super) fn words_of(
+        &self,
+        dataset: &Dataset,
+        name: &str,
+        shape: &[Option<usize>],
+    ) -> Result<Vec<String>> {
+        let words: Vec<VarLenUnicode> = self.values_of(dataset, name, shape)?;
+        Ok(words.into_iter().map(|word| String::from_utf8_lossy(word.as_bytes()).into_owned()).collect())
     }
 
     pub(super) fn text(&self, file: &Location, name: &str) -> Result<String> {

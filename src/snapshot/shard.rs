@@ -12,7 +12,7 @@ use super::encode::Run;
 use super::labelled::{Dimension, create_group, file_on_disk, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader::{self, Source};
-use super::{RunFile, StopReason};
+use super::{Format, RunFile, StopReason};
 use crate::error::{Error, Result};
 
 /// Coordinate of the rows.
@@ -121,6 +121,8 @@ impl<T: AsRef<str>> FromIterator<T> for Words {
 pub struct SweepFile {
     /// What the sweep is about.
     pub header: SweepHeader,
+    /// Version of the program that wrote the file.
+    pub program_version: String,
     /// Whether all rows are there that the file is to have.
     pub complete: bool,
     /// Numbers of the scenes, shape `(scene,)`.
@@ -132,9 +134,25 @@ pub struct SweepFile {
 }
 
 impl SweepFile {
-    /// Value of the root attribute `format`.
-    pub const FORMAT: &'static str = "fretwear-sweep";
     const FORMAT_VERSION: i32 = 1;
+
+    /// A file as this program writes it.
+    ///
+    /// # Arguments
+    /// * `complete` -- whether all rows are there that the file is to have
+    /// * `scenes` -- their numbers, shape `(scene,)`
+    /// * `columns` -- everything about them, each of shape `(scene,)`
+    /// * `runs` -- those of scenes whose snapshots are kept
+    pub fn new(
+        header: SweepHeader,
+        complete: bool,
+        scenes: Vec<u64>,
+        columns: Vec<Column>,
+        runs: Vec<(u64, RunFile)>,
+    ) -> Self {
+        let program_version = env!("CARGO_PKG_VERSION").into();
+        Self { header, program_version, complete, scenes, columns, runs }
+    }
 
     /// Writes the file, as a whole or not at all, over one that exists only if `overwrite` is given.
     ///
@@ -176,9 +194,9 @@ impl SweepFile {
         let file = file_on_disk(path)?;
         let header = &self.header;
         put_text(&file, "title", &header.title)?;
-        put_text(&file, "format", Self::FORMAT)?;
+        put_text(&file, "format", Format::Sweep.name())?;
         put_integer(&file, "format_version", Self::FORMAT_VERSION)?;
-        put_text(&file, "program_version", env!("CARGO_PKG_VERSION"))?;
+        put_text(&file, "program_version", &self.program_version)?;
         for (name, text) in [
             ("task", &header.task),
             ("study", &header.study),
@@ -230,6 +248,7 @@ impl SweepFile {
     pub fn read(path: &Path) -> Result<Self> {
         let (source, file) = reader::open(path)?;
         let header = header(&source, &file)?;
+        let program_version = source.text(&file, "program_version")?;
         let complete = source.integer(&file, "complete")? != 0;
         let ids: Vec<i64> = source.values(&file, SCENE, &[None])?;
         let rows = [Some(ids.len())];
@@ -239,12 +258,10 @@ impl SweepFile {
         for name in names.into_iter().filter(|name| name != SCENE.name && name != RUNS) {
             let dataset = file.dataset(&name).map_err(|error| source.damaged(&name, &error))?;
             let (units, long_name) = (source.text(&dataset, "units")?, source.text(&dataset, "long_name")?);
-            let label = Label { name: &name, units: &units, long_name: &long_name };
             let values = if dataset.dtype().is_ok_and(|kind| kind.is::<f64>()) {
-                Values::Numbers(source.values(&file, label, &rows)?)
+                Values::Numbers(source.values_of(&dataset, &dataset.name(), &rows)?)
             } else {
-                let texts: Vec<VarLenUnicode> = source.values(&file, label, &rows)?;
-                Values::Texts(texts.iter().map(|text| text.as_str()).collect())
+                Values::Texts(source.words_of(&dataset, &dataset.name(), &rows)?.into_iter().collect())
             };
             columns.push(Column { name, units, long_name, values });
         }
@@ -261,7 +278,7 @@ impl SweepFile {
             }
         }
         let scenes = ids.into_iter().map(i64::cast_unsigned).collect();
-        Ok(Self { header, complete, scenes, columns, runs })
+        Ok(Self { header, program_version, complete, scenes, columns, runs })
     }
 
     /// Reads only what a file of a sweep is about.
@@ -291,7 +308,7 @@ impl RunFile {
 fn header(source: &Source, file: &File) -> Result<SweepHeader> {
     let group: &Group = file;
     const CURE: &str = "give the directory of a `fretwear sweep` only";
-    source.check_format(group, SweepFile::FORMAT, SweepFile::FORMAT_VERSION, CURE)?;
+    source.check_format(group, Format::Sweep, SweepFile::FORMAT_VERSION, CURE)?;
     let whole = |name: &str| -> Result<u64> {
         let attribute = group.attr(name).and_then(|attribute| attribute.read_scalar::<u64>());
         attribute.map_err(|error| source.damaged(&format!("attribute {name}"), &error))

@@ -6,26 +6,24 @@ use std::path::{Path, PathBuf};
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File};
 
+use super::Format;
 use super::arrays::ArrayFile;
-use super::layout::{FORMAT, Label};
 use super::reader::{self, Source};
 use crate::error::{Error, Result};
 
 /// Most dimensions that an array of this program has.
 const MOST_DIMENSIONS: usize = 2;
 
-/// The root attribute `format` of a result file of any kind.
+/// What a result file of any kind is of.
 ///
 /// # Errors
 /// [`Error::File`] if it is no HDF5 file, is damaged or was not written by this program.
-pub fn format_of(path: &Path) -> Result<String> {
+pub fn format_of(path: &Path) -> Result<Format> {
     let (source, file) = reader::open(path)?;
-    let format = source.format(&file)?;
-    if format != FORMAT && !ArrayFile::FORMATS.contains(&format.as_str()) {
+    source.format(&file)?.ok_or_else(|| {
         let why = "is an HDF5 file, but not one of this program; give a result file that fretwear wrote";
-        return Err(source.error(why.into()));
-    }
-    Ok(format)
+        source.error(why.into())
+    })
 }
 
 /// An array as it is stored.
@@ -45,8 +43,8 @@ pub struct StoredArray {
 #[derive(Debug, Clone, PartialEq)]
 pub struct StoredArrays {
     path: PathBuf,
-    /// The root attribute `format`.
-    pub format: String,
+    /// What it is of.
+    pub format: Format,
     /// The root attribute `title`.
     pub title: String,
     /// Version of the program that wrote the file.
@@ -61,7 +59,7 @@ impl StoredArrays {
     ///
     /// # Errors
     /// [`Error::File`] names the file, what in it cannot be used, and the cure.
-    pub fn read(path: &Path, format: &str) -> Result<Self> {
+    pub fn read(path: &Path, format: Format) -> Result<Self> {
         let (source, file) = reader::open(path)?;
         source.check_format(
             &file,
@@ -71,7 +69,7 @@ impl StoredArrays {
         )?;
         let mut stored = Self {
             path: path.to_owned(),
-            format: format.into(),
+            format,
             title: source.text(&file, "title")?,
             program_version: source.text(&file, "program_version")?,
             attributes: attributes(&source, &file)?,
@@ -80,26 +78,22 @@ impl StoredArrays {
         };
         for name in file.member_names().map_err(|error| source.damaged("its members", &error))? {
             let dataset = file.dataset(&name).map_err(|error| source.damaged(&name, &error))?;
-            stored.add(&source, &file, name, &dataset)?;
+            stored.add(&source, name, &dataset)?;
         }
         Ok(stored)
     }
 
-    fn add(&mut self, source: &Source, file: &File, name: String, dataset: &Dataset) -> Result<()> {
+    fn add(&mut self, source: &Source, name: String, dataset: &Dataset) -> Result<()> {
         let (units, long_name) = (source.text(dataset, "units")?, source.text(dataset, "long_name")?);
-        let label = Label { name: &name, units: &units, long_name: &long_name };
         let shape = dataset.shape();
         if shape.len() > MOST_DIMENSIONS {
             return Err(source.damaged(&name, &format!("has {} dimensions", shape.len())));
         }
         let any = vec![None; shape.len()];
         if dataset.dtype().is_ok_and(|kind| kind.is::<VarLenUnicode>()) {
-            let words: Vec<VarLenUnicode> = source.values(file, label, &any)?;
-            // As with attributes: the library vouches for no text.
-            let text = |word: &VarLenUnicode| String::from_utf8_lossy(word.as_bytes()).into_owned();
-            self.words.insert(name, words.iter().map(text).collect());
+            self.words.insert(name, source.words_of(dataset, &dataset.name(), &any)?);
         } else {
-            let values = source.values(file, label, &any)?;
+            let values = source.values_of(dataset, &dataset.name(), &any)?;
             self.numbers.insert(name, StoredArray { units, long_name, shape, values });
         }
         Ok(())

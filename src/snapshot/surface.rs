@@ -6,8 +6,8 @@ use hdf5::types::FixedAscii;
 use hdf5::{File, Group, H5Type, Result as Hdf5Result};
 
 use super::atomic::AtomicFile;
-use super::labelled::{bytes_of, create_group, file_in_memory};
-use crate::error::{Error, Result};
+use super::labelled::{create_group, laid_out};
+use crate::error::Result;
 
 /// Points that move, polygons between them that stay, and values at the points.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,7 +33,7 @@ impl SurfaceSeries {
     /// Writes the file, as a whole or not at all.
     ///
     /// # Errors
-    /// [`Error::File`] if the file exists and `overwrite` is not given, or cannot be written.
+    /// [`Error::File`](crate::Error::File) if the file exists and `overwrite` is not given, or cannot be written.
     ///
     /// # Panics
     /// If lengths of points and values do not fit the number of times.
@@ -44,36 +44,27 @@ impl SurfaceSeries {
             assert_eq!(values.len(), count, "values of {name}");
         }
         let mut file = AtomicFile::new(path, overwrite)?;
-        let bytes = self.encode().map_err(|error| Error::File {
-            path: path.to_owned(),
-            why: format!("the HDF5 library could not lay out the file: {error}"),
-        })?;
-        file.write(&bytes)
+        file.write(&laid_out(path, |file| self.put_into(file))?)
     }
 
-    fn encode(&self) -> Hdf5Result<Vec<u8>> {
-        // One lock for the whole file, as for that of a run.
-        hdf5::sync::sync(|| {
-            let file: File = file_in_memory()?;
-            let root = create_group(&file, "VTKHDF")?;
-            root.new_attr::<i64>().shape(2).create("Version")?.write_raw(&[2i64, 0])?;
-            // VTK reads a string of fixed length only.
-            let kind = FixedAscii::<8>::from_ascii("PolyData").map_err(|error| error.to_string())?;
-            root.new_attr::<FixedAscii<8>>().create("Type")?.write_scalar(&kind)?;
-            let (steps, points) = (self.times.len(), self.points_per_step());
-            put(&root, "NumberOfPoints", &[1], &[points as i64])?;
-            put(&root, "Points", &[steps * points, 3], &self.points)?;
-            put_cells(&root, "Polygons", &self.connectivity, &self.offsets)?;
-            for name in ["Vertices", "Lines", "Strips"] {
-                put_cells(&root, name, &[], &[0])?;
-            }
-            let data = create_group(&root, "PointData")?;
-            for (name, values) in &self.values {
-                put(&data, name, &[steps * points], values)?;
-            }
-            self.put_steps(&root)?;
-            bytes_of(&file)
-        })
+    fn put_into(&self, file: &File) -> Hdf5Result<()> {
+        let root = create_group(file, "VTKHDF")?;
+        root.new_attr::<i64>().shape(2).create("Version")?.write_raw(&[2i64, 0])?;
+        // VTK reads a string of fixed length only.
+        let kind = FixedAscii::<8>::from_ascii("PolyData").map_err(|error| error.to_string())?;
+        root.new_attr::<FixedAscii<8>>().create("Type")?.write_scalar(&kind)?;
+        let (steps, points) = (self.times.len(), self.points_per_step());
+        put(&root, "NumberOfPoints", &[1], &[points as i64])?;
+        put(&root, "Points", &[steps * points, 3], &self.points)?;
+        put_cells(&root, "Polygons", &self.connectivity, &self.offsets)?;
+        for name in ["Vertices", "Lines", "Strips"] {
+            put_cells(&root, name, &[], &[0])?;
+        }
+        let data = create_group(&root, "PointData")?;
+        for (name, values) in &self.values {
+            put(&data, name, &[steps * points], values)?;
+        }
+        self.put_steps(&root)
     }
 
     /// Where the points and values of each step begin; the polygons are those of the one part that there is.

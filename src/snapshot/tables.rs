@@ -2,16 +2,15 @@
 
 use std::path::Path;
 
-use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File, Group, IndexType, IterationOrder};
 
+use super::Format;
 use super::folder::{cell, quoted, table};
 use super::labelled::{is_dimension, runs_along};
-use super::layout::{self, FLAG_MEANINGS};
+use super::layout::FLAG_MEANINGS;
 use super::reader::{self, Source};
 use super::shard::RUNS;
-use super::{ArrayFile, SweepFile};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, most_alike};
 
 const NOT_OURS: &str =
     "give a file that `fretwear run`, `sweep`, `merge`, `map`, `universality` or `tradeoff` wrote";
@@ -72,16 +71,14 @@ impl ResultTables {
     /// [`Error::File`] if it is no HDF5 file, not one of this program's, or damaged.
     pub fn open(path: &Path) -> Result<Self> {
         let (source, file) = reader::open(path)?;
-        let format = source.format(&file)?;
-        let usual = match format.as_str() {
-            layout::FORMAT => "time",
-            SweepFile::FORMAT => "scene",
-            "fretwear-map" => "grading,amplitude_ratio",
-            "fretwear-universality" => "case",
-            "fretwear-tradeoff" => "candidate",
-            _ => return Err(source.error(format!("is no result of this program; {NOT_OURS}"))),
+        let usual = match source.format(&file)? {
+            Some(Format::Run) => "time",
+            Some(Format::Sweep) => "scene",
+            Some(Format::Map) => "grading,amplitude_ratio",
+            Some(Format::Universality) => "case",
+            Some(Format::Tradeoff) => "candidate",
+            None => return Err(source.error(format!("is no result of this program; {NOT_OURS}"))),
         };
-        debug_assert!(format == layout::FORMAT || ArrayFile::FORMATS.contains(&format.as_str()));
         let mut this = Self { source, tables: vec![], usual, runs: vec![] };
         this.walk(&file, "", &[])?;
         if let Some(first) = this.list_runs(&file)? {
@@ -133,8 +130,7 @@ impl ResultTables {
 
     fn no_such_table(&self, name: &str) -> Error {
         let names: Vec<&str> = self.tables.iter().map(|table| table.name.as_str()).collect();
-        let likeness = |other: &&&str| (1e9 * strsim::jaro_winkler(name, other)) as u64;
-        let near = names.iter().max_by_key(likeness).map_or("", |near| near);
+        let near = most_alike(name, &names).map_or("", |(_, near)| near);
         self.source
             .error(format!("has no table {name:?}; did you mean {near:?}? There are: {}", names.join("  ")))
     }
@@ -327,8 +323,7 @@ impl Variable {
             let numbers: Vec<u64> = source.values_of(dataset, &self.name, &shape)?;
             Values::Whole(numbers.into_iter().map(u64::cast_signed).collect())
         } else {
-            let texts: Vec<VarLenUnicode> = source.values_of(dataset, &self.name, &shape)?;
-            Values::Words(texts.iter().map(|text| text.as_str().to_owned()).collect())
+            Values::Words(source.words_of(dataset, &self.name, &shape)?)
         };
         Ok(values)
     }

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::atomic::AtomicFile;
 use super::encode::Run;
+use super::labelled::laid_out;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// Collects the snapshots of a run and saves them, each time as one whole file.
 ///
@@ -57,7 +58,7 @@ impl RunWriter {
     /// * `overwrite` -- whether a file that exists may be replaced (at the first save, not before)
     ///
     /// # Errors
-    /// [`Error::File`] if the file exists and may not be replaced, or its directory is missing or cannot be written.
+    /// [`Error::File`](crate::Error::File) if the file exists and may not be replaced, or its directory is missing or cannot be written.
     ///
     /// # Panics
     /// If there are no nodes, or a curve of the limit does not have one value per node.
@@ -139,13 +140,10 @@ impl RunWriter {
     /// * `complete` -- whether the run reached its end
     ///
     /// # Errors
-    /// [`Error::File`] names the file and the cure; the previous save is then still there.
+    /// [`Error::File`](crate::Error::File) names the file and the cure; the previous save is then still there.
     pub fn save(&mut self, checkpoint: &Checkpoint, stop_reason: StopReason, complete: bool) -> Result<()> {
         let run = Run { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
-        let bytes = run.encode().map_err(|error| Error::File {
-            path: self.path().to_owned(),
-            why: format!("the HDF5 library could not lay out the file: {error}"),
-        })?;
+        let bytes = laid_out(self.path(), |file| run.put_into(file))?;
         if let Target::Later(path) = &self.file {
             self.file = Target::Ready(AtomicFile::new(path, true)?);
         }

@@ -150,6 +150,6 @@ impl Gathering {
             };
         }
         let scenes = order.iter().map(|&row| self.scenes[row]).collect();
-        SweepFile { header, complete, scenes, columns: self.columns, runs: self.runs.into_iter().collect() }
+        SweepFile::new(header, complete, scenes, self.columns, self.runs.into_iter().collect())
     }
 }

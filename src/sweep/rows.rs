@@ -142,7 +142,7 @@ impl Schema {
         }
         let scenes = rows.iter().map(|row| row.scene).collect();
         let runs = rows.into_iter().filter_map(|row| row.run.map(|run| (row.scene, run))).collect();
-        SweepFile { header, complete, scenes, columns, runs }
+        SweepFile::new(header, complete, scenes, columns, runs)
     }
 }
 

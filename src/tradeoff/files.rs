@@ -6,7 +6,7 @@ use super::{Cost, Errors, FRONTS, Measured, Outcome, Row, Source, Worst};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, TextArray, TextColumn};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, TextArray, TextColumn};
 
 const ARRAYS: &str = "tradeoff.h5";
 const TABLE: &str = "tradeoff.csv";
@@ -248,7 +248,7 @@ fn array_file(scene: &Scene, outcome: &Outcome) -> ArrayFile {
     let reference = &outcome.reference;
     let pair = |values: [f64; 2]| format!("{:e}, {:e}", values[0], values[1]);
     ArrayFile {
-        format: "fretwear-tradeoff",
+        format: Format::Tradeoff,
         attributes: vec![
             ("title", scene.title().unwrap_or_default().into()),
             ("scene", scene.text().into()),

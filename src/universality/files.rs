@@ -6,7 +6,7 @@ use super::{CURVE_POINTS, Judgement, Row};
 use crate::error::Result;
 use crate::scene::UniversalityStudy;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, TextArray, TextColumn};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, TextArray, TextColumn};
 
 const ARRAYS: &str = "universality.h5";
 const TABLE: &str = "universality.csv";
@@ -137,7 +137,7 @@ fn array_file(study: &UniversalityStudy, rows: &[Row]) -> ArrayFile {
     ];
     let tolerances = study.tolerances();
     ArrayFile {
-        format: "fretwear-universality",
+        format: Format::Universality,
         attributes: vec![
             ("title", study.title().unwrap_or_default().into()),
             ("study", study.text().into()),

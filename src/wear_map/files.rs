@@ -7,7 +7,7 @@ use super::{Control, Isoline, MapStudy, OptimumCurve};
 use crate::error::Result;
 use crate::scene::MapScene;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, cell};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, cell};
 
 const GRADING: Label<'static> = label("grading", "1", "grading k of E = E0 (z/z0)^k");
 const AMPLITUDE: Label<'static> =
@@ -66,13 +66,15 @@ pub fn write(scene: &MapScene, study: &MapStudy, folder: &Path, overwrite: bool)
 fn array_file(scene: &MapScene, study: &MapStudy) -> ArrayFile {
     let (map, profiles) = (&study.map, &study.profiles);
     let mut file = ArrayFile {
-        format: "fretwear-map",
+        format: Format::Map,
         attributes: vec![
             ("title", scene.title.clone().unwrap_or_default()),
             ("map", scene.text.clone()),
             ("indenter_exponent", scene.exponent.to_string()),
         ],
-        ..ArrayFile::default()
+        coordinates: vec![],
+        arrays: vec![],
+        texts: vec![],
     };
     let mut coordinate = |label: Label<'static>, values: &[f64]| {
         file.coordinates.push(Coordinate { label, values: values.to_vec() })
