@@ -11,6 +11,13 @@ const NO_STRETCH: f64 = 1e-8;
 /// Least stretch of a smooth mesh.
 const SMOOTH_STRETCH: f64 = 10.0;
 
+/// Springs up to which the ends of a smooth mesh are as fine as its exponents make them, and by how much of the mesh they are cut short for each
+/// spring more, and for the third root of it: next to the edge of stick slip, a difference of what springs would do without pressure and with
+/// it, and at the contact edge compressions would have no digits left in cells finer than those of that many.
+const FINEST_ENDS: usize = 1000;
+const CUT_AT_STICK: f64 = 5e-9;
+const CUT_AT_CONTACT: f64 = 6e-5;
+
 /// How nodes cluster at the two ends of the slip annulus, and the degree of the polynomials between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clustering {
@@ -45,6 +52,15 @@ impl Clustering {
         if self == Self::Smooth { 5 } else { 3 }
     }
 
+    /// What is cut off at the ends of a mesh.
+    fn cut(self, cells: usize) -> [f64; 2] {
+        let more = cells.saturating_sub(FINEST_ENDS) as f64;
+        match self {
+            Self::Smooth => [CUT_AT_STICK * more, CUT_AT_CONTACT * more.cbrt()],
+            _ => [0.0; 2],
+        }
+    }
+
     /// Stretch `Λ` of the mesh at a grading where the limit's area is `e^natural` times that of the stick zone.
     ///
     /// On a smooth mesh the front next to the edge of stick is followed to far within what the output shows; as `k → 1` it is as high there as
@@ -66,15 +82,20 @@ impl Clustering {
 ///
 /// `ξ = (s - c²)/(a² - c²)` with `s = x²` is the fraction of the annulus' area, from 0 at the edge of stick to 1 at the contact edge. Both
 /// ends carry singularities of the worn solution, powers of the distance, which are smooth in `y` as the nodes cluster there: the local
-/// polynomials of [`Clustering::Smooth`] are polynomials in `y`, but for straight lines. Those of the other meshes are polynomials in `ξ`: over
+/// polynomials of [`Clustering::Smooth`] are polynomials in `y`, but for straight lines. With more than a thousand cells `t` runs over a little less
+/// than (0, 1) on such a mesh, so that the last cells keep widths that numbers can tell apart. Those of the other meshes are polynomials in `ξ`: over
 /// kinks, and over ground that passes through the springs, they have proved the steadier ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     clustering: Clustering,
     stretch: f64,
-    /// `g` from either end as polynomials, lowest power first, after `x^(a+1)` and `(1-x)^(b+1)`.
-    rising: Vec<f64>,
-    falling: Vec<f64>,
+    /// What is cut off the range of `t` at either end.
+    cut: [f64; 2],
+    /// `g` from either end as polynomials in the distance of `t` from it.
+    rising: Polynomial,
+    falling: Polynomial,
+    /// `dg/dt` over `t^a (1-t)^b`.
+    steepness: f64,
     ends: Vec<MeshPoint>,
     nodes: Vec<f64>,
 }
@@ -114,11 +135,18 @@ impl Mesh {
             clustering.degree()
         );
         let (low, high) = clustering.exponents();
+        let cut = clustering.cut(cells);
+        let [rising, falling] =
+            [Polynomial::incomplete_beta(low, high), Polynomial::incomplete_beta(high, low)];
+        let steepness = rising.coefficients[0] * f64::from(low + 1);
+        let whole = if cut == [0.0; 2] { 1.0 } else { rising.value(1.0 - cut[1]) - rising.value(cut[0]) };
         let mut mesh = Self {
             clustering,
             stretch,
-            rising: incomplete_beta(low, high),
-            falling: incomplete_beta(high, low),
+            rising: rising.from(cut[0]).over(whole),
+            falling: falling.from(cut[1]).over(whole),
+            steepness: steepness / whole,
+            cut,
             ends: Vec::new(),
             nodes: vec![0.0; cells + 1],
         };
@@ -170,15 +198,18 @@ impl Mesh {
     fn unstretched(&self, y: f64) -> (f64, f64, f64) {
         let cells = self.cells() as f64;
         let (low, high) = self.clustering.exponents();
-        let (x, left) = (y / cells, (cells - y) / cells);
-        let (part, rest) = if x < 0.5 {
-            let part = x.powi(low + 1) * polynomial(&self.rising, x);
+        let [at_stick, at_contact] = self.cut;
+        let span = 1.0 - at_stick - at_contact;
+        let (x, left) = (span * (y / cells), span * ((cells - y) / cells));
+        let (part, rest) = if y < 0.5 * cells {
+            let part = self.rising.value(x);
             (part, 1.0 - part)
         } else {
-            let rest = left.powi(high + 1) * polynomial(&self.falling, left);
+            let rest = self.falling.value(left);
             (1.0 - rest, rest)
         };
-        (part, rest, self.rising[0] * f64::from(low + 1) * x.powi(low) * left.powi(high) / cells)
+        let steepness = self.steepness * (at_stick + x).powi(low) * (at_contact + left).powi(high);
+        (part, rest, steepness * span / cells)
     }
 
     /// The cell in which `ξ` in [0, 1) lies.
@@ -300,20 +331,52 @@ impl Local {
     }
 }
 
-/// Coefficients of `∫_0^x t^a (1-t)^b dt / (B(a+1, b+1) x^(a+1))`, lowest power first.
-fn incomplete_beta(a: i32, b: i32) -> Vec<f64> {
-    let beta = (1..=b).map(|j| f64::from(j) / f64::from(a + j)).product::<f64>() / f64::from(a + b + 1);
-    let mut binomial = 1.0;
-    let coefficient = |j: i32| {
-        let found = binomial / f64::from(a + 1 + j) / beta;
-        binomial *= -f64::from(b - j) / f64::from(j + 1);
-        found
-    };
-    (0..=b).map(coefficient).collect()
+/// A polynomial without its lowest powers.
+#[derive(Debug, Clone, PartialEq)]
+struct Polynomial {
+    /// The lowest power.
+    lowest: i32,
+    /// From that power on.
+    coefficients: Vec<f64>,
 }
 
-fn polynomial(coefficients: &[f64], x: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+impl Polynomial {
+    /// `∫_0^x t^a (1-t)^b dt / B(a+1, b+1)`.
+    fn incomplete_beta(a: i32, b: i32) -> Self {
+        let beta = (1..=b).map(|j| f64::from(j) / f64::from(a + j)).product::<f64>() / f64::from(a + b + 1);
+        let mut binomial = 1.0;
+        let coefficient = |j: i32| {
+            let found = binomial / f64::from(a + 1 + j) / beta;
+            binomial *= -f64::from(b - j) / f64::from(j + 1);
+            found
+        };
+        Self { lowest: a + 1, coefficients: (0..=b).map(coefficient).collect() }
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        x.powi(self.lowest) * self.coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+    }
+
+    /// What it grows by from `start` on, as a polynomial in the distance.
+    fn from(self, start: f64) -> Self {
+        if start == 0.0 {
+            return self;
+        }
+        let mut all = vec![0.0; self.lowest as usize];
+        all.extend(self.coefficients);
+        // Synthetic division again and again (Horner).
+        for first in 0..all.len() {
+            for j in (first..all.len() - 1).rev() {
+                all[j] += start * all[j + 1];
+            }
+        }
+        Self { lowest: 1, coefficients: all.split_off(1) }
+    }
+
+    fn over(mut self, divisor: f64) -> Self {
+        self.coefficients.iter_mut().for_each(|c| *c /= divisor);
+        self
+    }
 }
 
 /// Lagrange polynomials on a few neighbouring nodes.

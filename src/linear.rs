@@ -1,10 +1,18 @@
-//! Dense linear algebra on one thread, so that results do not depend on the number of threads.
+//! Linear algebra whose results do not depend on the number of threads.
+
+mod cross;
+mod hodlr;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::linalg::matmul::matmul;
 use faer::perm::PermRef;
+use faer::traits::ComplexField;
 use faer::{Accum, ColMut, ColRef, Mat, MatMut, MatRef, Par};
+use rayon::prelude::*;
+
+pub use cross::LowRank;
+pub use hodlr::{Halves, HodlrFactors, OffDiagonal, Split};
 
 /// `y = A x` for the leading columns of `A`, as many as `x` is long.
 pub fn multiply(matrix: MatRef<'_, f64>, x: &[f64], y: &mut [f64]) {
@@ -19,6 +27,16 @@ pub fn multiply(matrix: MatRef<'_, f64>, x: &[f64], y: &mut [f64]) {
     );
 }
 
+/// Values of a vector that one task takes, in whole units, an even number of them.
+const TASK: usize = 2048;
+
+/// Fills a vector of units of `unit` values, many units at a time and always the same ones together, so that how many threads share the work
+/// does not matter; `fill` is told the first unit.
+pub fn in_parallel<T: Send>(values: &mut [T], unit: usize, fill: impl Fn(usize, &mut [T]) + Sync) {
+    let units = (TASK / unit).next_multiple_of(2);
+    values.par_chunks_mut(units * unit).enumerate().for_each(|(task, part)| fill(task * units, part));
+}
+
 /// Sum of products, in the order of the slices.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
@@ -26,18 +44,18 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// LU factors with partial pivoting of a square matrix.
 #[derive(Debug, Clone)]
-pub struct Factors {
-    lu: Mat<f64>,
+pub struct Factors<T = f64> {
+    lu: Mat<T>,
     forward: Vec<usize>,
     inverse: Vec<usize>,
 }
 
-impl Factors {
+impl<T: ComplexField> Factors<T> {
     /// Factorises the matrix.
-    pub fn new(mut matrix: Mat<f64>) -> Self {
+    pub fn new(mut matrix: Mat<T>) -> Self {
         let n = matrix.nrows();
         let (mut forward, mut inverse) = (vec![0; n], vec![0; n]);
-        let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
+        let scratch = factor::lu_in_place_scratch::<usize, T>(n, n, Par::Seq, Default::default());
         factor::lu_in_place(
             matrix.as_mut(),
             &mut forward,
@@ -50,31 +68,41 @@ impl Factors {
     }
 
     /// Replaces the right-hand side by the solution.
-    pub fn solve(&self, rhs: &mut [f64]) {
-        let (lu, permutation, rhs) = self.parts(rhs);
-        let scratch = solve::solve_in_place_scratch::<usize, f64>(lu.nrows(), 1, Par::Seq);
-        solve::solve_in_place(
-            lu,
-            lu,
-            permutation,
-            rhs,
-            Par::Seq,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-        );
+    pub fn solve(&self, rhs: &mut [T]) {
+        let n = rhs.len();
+        self.solve_columns(MatMut::from_column_major_slice_mut(rhs, n, 1));
+    }
+
+    /// Replaces right-hand sides, a column each, by their solutions.
+    pub fn solve_columns(&self, rhs: MatMut<'_, T>) {
+        let (lu, permutation) = self.parts();
+        let scratch = solve::solve_in_place_scratch::<usize, T>(lu.nrows(), rhs.ncols(), Par::Seq);
+        let stack = &mut MemBuffer::new(scratch);
+        solve::solve_in_place(lu, lu, permutation, rhs, Par::Seq, MemStack::new(stack));
     }
 
     /// Replaces the right-hand side by the solution with the transposed matrix.
-    pub fn solve_transposed(&self, rhs: &mut [f64]) {
-        let (lu, permutation, rhs) = self.parts(rhs);
-        let scratch = solve::solve_transpose_in_place_scratch::<usize, f64>(lu.nrows(), 1, Par::Seq);
+    pub fn solve_transposed(&self, rhs: &mut [T]) {
+        let (lu, permutation) = self.parts();
+        let rhs = MatMut::from_column_major_slice_mut(rhs, lu.nrows(), 1);
+        let scratch = solve::solve_transpose_in_place_scratch::<usize, T>(lu.nrows(), 1, Par::Seq);
         let stack = &mut MemBuffer::new(scratch);
         solve::solve_transpose_in_place(lu, lu, permutation, rhs, Par::Seq, MemStack::new(stack));
     }
 
-    fn parts<'a>(&'a self, rhs: &'a mut [f64]) -> (MatRef<'a, f64>, PermRef<'a, usize>, MatMut<'a, f64>) {
+    fn parts(&self) -> (MatRef<'_, T>, PermRef<'_, usize>) {
         let n = self.lu.nrows();
-        let permutation = PermRef::new_checked(&self.forward, &self.inverse, n);
-        (self.lu.as_ref(), permutation, MatMut::from_column_major_slice_mut(rhs, n, 1))
+        (self.lu.as_ref(), PermRef::new_checked(&self.forward, &self.inverse, n))
+    }
+
+    /// The memory of the factors, for another matrix.
+    pub fn into_matrix(self) -> Mat<T> {
+        self.lu
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.lu.nrows() * (size_of::<T>() * self.lu.ncols() + 2 * size_of::<usize>())
     }
 }
 

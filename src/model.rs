@@ -12,6 +12,7 @@
 
 mod cycle;
 mod derivatives;
+mod jacobian;
 mod loops;
 mod motion;
 mod moving;
@@ -24,16 +25,17 @@ mod schedule;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::abel::AbelOperators;
+use crate::abel::{AbelOperators, Backend};
 use crate::conditions::Conditions;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
-use crate::linear::multiply;
-use crate::roots::bracketed;
+use crate::linear::in_parallel;
+use crate::roots::{bracketed, next_to};
 use crate::slip_depth::{UnwornSlip, UnwornValues};
 use crate::stick_slip::Regime;
 pub use cycle::CycleFields;
+pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
 pub use moving::{MovingStick, StickEdge, StickTarget, StickTrial};
 pub use operators::OperatorStore;
@@ -47,6 +49,9 @@ pub use schedule::{Demand, Drive, Resolution, Schedule};
 /// Part of the annulus, next to the edge of stick, of which the springs of a [`Clustering::Smooth`] mesh are not shown: the front in which wear
 /// proceeds towards the edge is followed well as long as some springs are left before it.
 const HIDDEN: f64 = 3e-5;
+
+/// Springs from which on hierarchical operators serve wear without kinks.
+const HIERARCHICAL: usize = 1000;
 
 /// Fewest springs on which the local polynomials fit.
 pub const FEWEST_SPRINGS: usize = 8;
@@ -199,7 +204,8 @@ impl Model {
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
         let natural = (unworn.limit_edge() / stick_radius_squared).ln_1p();
         let stretch = clustering.stretch(natural, grading);
-        let operators = store.get(grading, stretch, springs, clustering)?;
+        let backend = Self::backend(springs, schedule.wears_smoothly() && moving.is_none() && !slides);
+        let operators = store.get(grading, stretch, springs, clustering, backend)?;
         let radial_unworn: Vec<_> =
             operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
         let compression = contact.slip_compression();
@@ -227,6 +233,12 @@ impl Model {
             depth_scale,
             slides,
         })
+    }
+
+    /// The operators that serve a number of springs: hierarchical ones where they are many and wear has no kinks, see
+    /// [`Model::wears_smoothly`].
+    pub fn backend(springs: usize, smooth: bool) -> Backend {
+        if smooth && springs >= HIERARCHICAL { Backend::Hierarchical } else { Backend::Dense }
     }
 
     /// The unworn contact.
@@ -305,15 +317,21 @@ impl Model {
         let guess = self.contact.contact_radius().powi(2) - place.stick_area;
         let guess = if stick.is_some() { guess } else { self.contact.slip_area_offset() };
         let limit = self.unworn.limit_edge() + self.place.stick_area - place.stick_area;
-        let (mut low, mut high) = (0.98 * guess, (1.02 * guess).min(limit));
         let mismatch = |edge: f64| self.mismatch_at(&place, edge, |_, values| values.slip);
-        while mismatch(low) < 0.0 && low > 0.5 * guess {
-            low *= 0.98;
-        }
-        while mismatch(high) > 0.0 && high < limit {
-            high = (1.02 * high).min(limit);
-        }
-        let edge = bracketed(mismatch, low, high, 0.0)?;
+        let edge = match self.operators.abel.backend() {
+            Backend::Dense => {
+                let (mut low, mut high) = (0.98 * guess, (1.02 * guess).min(limit));
+                while mismatch(low) < 0.0 && low > 0.5 * guess {
+                    low *= 0.98;
+                }
+                while mismatch(high) > 0.0 && high < limit {
+                    high = (1.02 * high).min(limit);
+                }
+                bracketed(mismatch, low, high, 0.0)?
+            }
+            // On so many springs the guess is nearly right, and an evaluation takes long.
+            Backend::Hierarchical => next_to(mismatch, guess),
+        };
         let compression = self.compression_at(&place, edge, |_, values| values.slip);
         Ok(self.close_force(State {
             cycles: 0.0,
@@ -343,10 +361,8 @@ impl Model {
     ) -> f64 {
         let inner = self.springs() - 1;
         let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
-        let elastic = |(i, values): (usize, &UnwornValues)| {
-            self.operators.edge_row[i] * (values.limit_slip - slip(i, values))
-        };
-        let carried: f64 = values.iter().take(inner).enumerate().map(elastic).sum();
+        let elastic = |(i, values): (usize, &UnwornValues)| values.limit_slip - slip(i, values);
+        let carried = self.operators.depth_at_edge(values.iter().take(inner).enumerate().map(elastic));
         values[inner].limit_slip - values[inner].slip - carried
     }
 
@@ -365,7 +381,7 @@ impl Model {
         let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
         let depth = |(i, v): (usize, &UnwornValues)| v.limit_slip - slip(i, v);
         let mut solution: Vec<f64> = values.iter().take(inner).enumerate().map(depth).collect();
-        self.operators.factors().solve(&mut solution);
+        self.operators.solve_profile(&mut solution);
         let (scale, at_stick) = (edge.powf(-self.mu()), self.density_factor_at_stick(place));
         for (q, v) in solution.iter_mut().zip(&values) {
             *q *= scale / (at_stick * self.density_ratio(v));
@@ -394,23 +410,36 @@ impl Model {
         ] {
             part.resize(n, 0.0);
         }
-        fields.unworn.clear();
-        fields.unworn.extend(self.unworn_on_springs(place, edge));
+        let nodes = &self.operators.abel.nodes()[1..];
+        fields.unworn.resize(n, UnwornValues::default());
+        self.on_springs(&mut fields.unworn, |i| self.unworn_at(place, edge * nodes[i]));
         let at_stick = self.density_factor_at_stick(place);
-        for (factor, values) in fields.density_factor.iter_mut().zip(&fields.unworn) {
-            *factor = at_stick * self.density_ratio(values);
-        }
+        let unworn = &fields.unworn;
+        self.on_springs(&mut fields.density_factor, |i| at_stick * self.density_ratio(&unworn[i]));
         fields.density.clear();
         fields.density.extend(compression.iter().zip(&fields.density_factor).map(|(q, factor)| q * factor));
-        multiply(self.operators.abel.profile().as_ref(), &fields.density, &mut fields.elastic_depth);
-        multiply(self.operators.abel.pressure().as_ref(), compression, &mut fields.pressure);
+        let [profile, pressure] = self.operators.abel.transforms();
+        profile.apply(&fields.density, &mut fields.elastic_depth);
+        pressure.apply(compression, &mut fields.pressure);
         let (profile_scale, pressure_scale) = (edge.powf(mu), stiffness / PI * edge.powf(-mu));
         for (i, values) in fields.unworn.iter().enumerate() {
             fields.elastic_depth[i] *= profile_scale;
             fields.pressure[i] *= pressure_scale;
             fields.slip_depth[i] = values.limit_slip - fields.elastic_depth[i];
-            fields.log_slip[i] = (fields.slip_depth[i] / values.slip).ln();
             fields.wear_depth[i] = fields.slip_depth[i] - values.slip;
+        }
+        let slip = &fields.slip_depth;
+        self.on_springs(&mut fields.log_slip, |i| (slip[i] / unworn[i].slip).ln());
+    }
+
+    /// Computes something at every spring, side by side where they are many.
+    fn on_springs<T: Send>(&self, values: &mut [T], value: impl Fn(usize) -> T + Sync) {
+        let fill = |first: usize, part: &mut [T]| {
+            part.iter_mut().enumerate().for_each(|(i, to)| *to = value(first + i));
+        };
+        match self.operators.abel.backend() {
+            Backend::Dense => fill(0, values),
+            Backend::Hierarchical => in_parallel(values, 1, fill),
         }
     }
 

@@ -5,6 +5,32 @@ use crate::error::{Error, Result};
 /// Evaluations after which a search is given up: bisection alone needs no more for any bracket that is not absurd.
 const MAX_EVALUATIONS: usize = 200;
 
+/// Root of `function` next to a guess that is right but for roundings and what a discretisation leaves, by the secant method.
+///
+/// Steps are taken as long as they shrink; whether the root is one is for the caller to see. For functions that take long and are smooth.
+///
+/// # Arguments
+/// * `function` -- of which a root is near
+/// * `guess` -- not zero
+pub fn next_to(mut function: impl FnMut(f64) -> f64, guess: f64) -> f64 {
+    const FIRST_STEP: f64 = 1e-6;
+    let (mut x, mut value) = (guess, function(guess));
+    let mut step = FIRST_STEP * guess;
+    while value != 0.0 {
+        let next = x + step;
+        let next_value = function(next);
+        let change = -next_value * step / (next_value - value);
+        (x, value) = (next, next_value);
+        // The first step is none towards the root.
+        let before = if step == FIRST_STEP * guess { f64::INFINITY } else { step.abs() };
+        if !(change.abs() < 0.5 * before && change.abs() > f64::EPSILON * x.abs()) {
+            break;
+        }
+        step = change;
+    }
+    x
+}
+
 /// Root of `function` between `low` and `high`, by Brent's method.
 ///
 /// Inverse quadratic interpolation guarded by bisection; one evaluation a step. (The `roots` crate evaluates twice a step and multiplies

@@ -42,6 +42,9 @@ const QUICKLY_TRIED: usize = 400;
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
 pub(crate) const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
+/// Bytes held per spring where operators are hierarchical.
+const BYTES_PER_SPRING: f64 = 12e3;
+
 /// What a finished or interrupted run comes to; SI.
 #[derive(Debug, Clone)]
 pub struct RunResult {
@@ -250,10 +253,10 @@ impl Run {
     /// As [`Run::new`].
     pub fn check_mesh(scene: &Scene) -> Result<()> {
         let (contact, numerics) = (scene.contact()?, scene.numerics());
-        if numerics.springs.is_some_and(|springs| springs > QUICKLY_TRIED) {
-            return mesh::check_memory(numerics);
-        }
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
+        if numerics.springs.is_some_and(|springs| springs > QUICKLY_TRIED) {
+            return mesh::check_memory(numerics, &schedule);
+        }
         mesh::model(&contact, &schedule, numerics, None, &OperatorStore::default()).map(|_| ())
     }
 

@@ -49,7 +49,7 @@ pub struct UnwornSlip {
 }
 
 /// Slip depths at one radius.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct UnwornValues {
     /// `ln(r²/c²)`.
     pub logarithm: f64,

@@ -55,6 +55,15 @@ pub struct CycleFields {
     pub stick_radius: f64,
 }
 
+/// Derivatives of the growth in a plain cycle, which are in proportion to the transform of Eq. (21).
+#[derive(Debug)]
+pub struct PlainSlopes {
+    /// By `P` of the compressions.
+    pub by_pressure: f64,
+    /// By the edge, 1/m², shape `(springs,)`.
+    pub by_edge: Vec<f64>,
+}
+
 /// Wear of the surface, from pressures and paths of slip: shape `(springs, steps)` each, one column of pressures if they are all the same.
 struct Worn {
     /// Depth worn in a period, m.
@@ -169,12 +178,7 @@ impl Model {
         let columns = steps * components;
         let mut pressure = Mat::zeros(n, motion.load.ncols());
         let pressure_scale = self.pressure_scale(fields);
-        product(
-            &mut pressure,
-            self.operators.abel.pressure().subcols(0, inner),
-            motion.load.as_ref(),
-            pressure_scale,
-        );
+        self.pressures(&mut pressure, &motion.load, pressure_scale);
         if let WearLaw::NonLocal { length, .. } = drive.wear {
             // Debris passes pressure on, not tension, and into gaps that it can fill.
             let least = LEAST_DEBRIS * self.contact.mean_pressure();
@@ -269,6 +273,21 @@ impl Model {
         worn
     }
 
+    /// `factor` times the derivatives of the growth in a cycle that is plain.
+    pub fn plain_growth_slopes(
+        &self,
+        drive: &Drive,
+        fields: &Fields,
+        cycle: &CycleFields,
+        factor: f64,
+    ) -> Option<PlainSlopes> {
+        let per_pressure = factor * 4.0 * self.slip_per_depth(drive, fields)? * self.archard(drive)?;
+        Some(PlainSlopes {
+            by_pressure: per_pressure * self.pressure_scale(fields),
+            by_edge: cycle.growth.iter().map(|growth| -factor * self.mu() / fields.edge * growth).collect(),
+        })
+    }
+
     /// Adds `factor` times the derivatives of the growth in a cycle by compressions and edge to a matrix with these columns.
     pub fn add_growth_slopes(
         &self,
@@ -281,16 +300,16 @@ impl Model {
     ) {
         let (n, inner) = (self.springs(), self.springs() - 1);
         let pressure_scale = self.pressure_scale(fields);
-        let pressure = self.operators.abel.pressure();
-        if let (Some(slip), Some(wear)) = (self.slip_per_depth(drive, fields), self.archard(drive)) {
-            let per_compression = factor * 4.0 * slip * wear * pressure_scale;
+        if let Some(PlainSlopes { by_pressure, by_edge }) =
+            self.plain_growth_slopes(drive, fields, cycle, factor)
+        {
             for j in 0..inner {
                 for i in 0..n {
-                    matrix[(i, j)] += per_compression * pressure[(i, j)];
+                    matrix[(i, j)] += by_pressure * self.operators.abel.pressure(i, j);
                 }
             }
-            for i in 0..n {
-                matrix[(i, inner)] -= factor * self.mu() / fields.edge * cycle.growth[i];
+            for (i, by_edge) in by_edge.into_iter().enumerate() {
+                matrix[(i, inner)] += by_edge;
             }
             return;
         }
@@ -303,12 +322,15 @@ impl Model {
             let slips = surface.path[(i, step)] > 0.0;
             if slips { worn.by_path[(i, step)] * surface.direction[(i, c)] } else { 0.0 }
         });
-        let smeared;
-        let pressure = if let WearLaw::NonLocal { length, .. } = drive.wear {
-            smeared = self.smeared_pressure(drive, &motion, compression, fields, length);
-            &smeared
-        } else {
-            pressure
+        let smeared = match drive.wear {
+            WearLaw::NonLocal { length, .. } => {
+                Some(self.smeared_pressure(drive, &motion, compression, fields, length))
+            }
+            _ => None,
+        };
+        let pressure = |i: usize, j: usize| match &smeared {
+            Some(smeared) => smeared[(i, j)],
+            None => self.operators.abel.pressure(i, j),
         };
         let per_cycle = factor / drive.cycles_per_period;
         let scale = fields.edge.powf(self.mu());
@@ -328,7 +350,7 @@ impl Model {
             for j in columns {
                 for i in 0..n {
                     let carried = scale * profile[(i, j)] * fields.density_factor[j];
-                    let worn = by_pressure[(i, j - first)] * pressure_scale * pressure[(i, j)]
+                    let worn = by_pressure[(i, j - first)] * pressure_scale * pressure(i, j)
                         + by_slip[(i, j - first)] * carried;
                     matrix[(i, j)] +=
                         (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
@@ -369,6 +391,15 @@ impl Model {
         }
     }
 
+    /// Pressures over `scale`, shape `(springs, steps)`, of loads of the springs inside the edge, shape `(springs - 1, steps)`.
+    fn pressures(&self, to: &mut Mat<f64>, load: &Mat<f64>, scale: f64) {
+        let inner = load.nrows();
+        let next = |j: usize, m: usize| if j + 1 < inner { load[(j + 1, m)] } else { 0.0 };
+        let differences = Mat::from_fn(inner, load.ncols(), |j, m| next(j, m) - load[(j, m)]);
+        let weights = self.operators.abel.pressure_by_differences().subcols(0, inner);
+        product(to, weights, differences.as_ref(), scale);
+    }
+
     /// `c_N/π Z^(-μ)`, the factor of Eq. (21).
     pub(super) fn pressure_scale(&self, fields: &Fields) -> f64 {
         self.contact.half_space().normal_stiffness() / std::f64::consts::PI * fields.edge.powf(-self.mu())
@@ -384,7 +415,7 @@ impl Model {
         let density: Vec<f64> =
             values.zip(&fields.density_factor).map(|(value, factor)| value * factor).collect();
         let mut depth = vec![0.0; self.springs()];
-        crate::linear::multiply(self.operators.abel.profile().as_ref(), &density, &mut depth);
+        self.operators.abel.transforms()[0].apply(&density, &mut depth);
         let scale = fields.edge.powf(self.mu());
         depth.iter_mut().for_each(|value| *value *= scale);
         depth
@@ -422,14 +453,13 @@ impl Model {
         length: f64,
     ) -> Mat<f64> {
         let (n, inner) = (self.springs(), self.springs() - 1);
-        let pressure = self.operators.abel.pressure().subcols(0, inner);
         let steps = motion.load.ncols();
         let mut pressed = Mat::zeros(n, steps);
-        product(&mut pressed, pressure, motion.load.as_ref(), self.pressure_scale(fields));
+        self.pressures(&mut pressed, &motion.load, self.pressure_scale(fields));
         let least = LEAST_DEBRIS * self.contact.mean_pressure();
         let mean = |i: usize| pressed.row(i).iter().sum::<f64>() / steps as f64;
         let slopes: Vec<f64> = (0..n).map(|i| pressing(mean(i), least).1).collect();
-        let touching = Mat::from_fn(n, inner, |i, j| slopes[i] * pressure[(i, j)]);
+        let touching = Mat::from_fn(n, inner, |i, j| slopes[i] * self.operators.abel.pressure(i, j));
         let mut smeared = Mat::zeros(n, inner);
         product(&mut smeared, self.smearing(fields, length).as_ref(), touching.as_ref(), 1.0);
         for i in 0..n {

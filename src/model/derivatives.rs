@@ -5,7 +5,7 @@ use faer::Mat;
 use super::{CycleFields, Fields, Model};
 use crate::error::{Error, Result};
 use crate::grid::{Clustering, MOST_POINTS, Mesh};
-use crate::linear::{dot, multiply};
+use crate::linear::dot;
 
 /// Weights of a derivative `ξ d/dξ` at one spring.
 #[derive(Debug, Clone, Copy)]
@@ -16,6 +16,11 @@ pub(super) struct Stencil {
 }
 
 impl Stencil {
+    /// The first spring, and the weights of it and the next ones.
+    pub(super) fn parts(&self) -> (usize, &[f64]) {
+        (self.first, &self.weights[..self.count])
+    }
+
     fn apply(&self, values: &[f64]) -> f64 {
         dot(&self.weights[..self.count], &values[self.first..self.first + self.count])
     }
@@ -57,7 +62,7 @@ impl Model {
             .map(|(u, x)| -mu * u * x / (fields.place.stick_area + fields.edge * x))
             .collect();
         let mut change = vec![0.0; self.springs()];
-        multiply(self.operators.abel.profile().as_ref(), &moved, &mut change);
+        self.operators.abel.transforms()[0].apply(&moved, &mut change);
         let scale = fields.edge.powf(mu);
         change
             .iter()
@@ -94,11 +99,8 @@ impl Model {
             (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
         // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.
         let edge_slope = slip[inner] * by_edge[inner];
-        let edge_rate =
-            -dot(&self.operators.edge_row, &worn) / (dot(&self.operators.edge_row, &moved) - edge_slope);
-        let factors = self.operators.factors();
-        factors.solve(&mut worn);
-        factors.solve(&mut moved);
+        let at_edge = [&mut worn, &mut moved].map(|depth| self.operators.solve_profile(depth));
+        let edge_rate = -at_edge[0] / (at_edge[1] - edge_slope);
         let scale = fields.edge.powf(-self.mu());
         let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * edge_rate);
         (edge_rate, (0..inner).map(rate).collect())

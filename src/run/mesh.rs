@@ -1,7 +1,8 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
 use super::knob::{smallness, springs_for};
-use super::{BYTES_PER_PAIR, memory_figure};
+use super::{BYTES_PER_PAIR, BYTES_PER_SPRING, memory_figure};
+use crate::abel::Backend;
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -73,7 +74,7 @@ pub(super) fn model(
     let chosen = || springs_for(clusterings[0], contact, numerics.accuracy);
     let mut springs = given.or(wanted).unwrap_or_else(chosen);
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
-    check_memory_of(key, springs)?;
+    check_memory_of(key, springs, schedule.wears_smoothly())?;
     let allowed = match given {
         Some(_) => Quality { compression: COARSEST, volume: COARSEST_VOLUME, round_off: ROUND_OFF },
         None => Quality { compression: COARSE, volume: numerics.accuracy, round_off: ROUND_OFF },
@@ -163,24 +164,32 @@ fn too_coarse(contact: &InitialContact, springs: usize, by_hand: bool, quality: 
 ///
 /// # Errors
 /// [`Error::Inconsistent`] with the figures.
-pub(super) fn check_memory(numerics: &Numerics) -> Result<()> {
-    numerics.springs.map_or(Ok(()), |springs| check_memory_of("numerics.springs", springs))
+pub(super) fn check_memory(numerics: &Numerics, schedule: &Schedule) -> Result<()> {
+    let smooth = schedule.wears_smoothly();
+    numerics.springs.map_or(Ok(()), |springs| check_memory_of("numerics.springs", springs, smooth))
 }
 
-/// Refuses springs for which the dense operators do not fit into the memory that is free.
-fn check_memory_of(key: &'static str, springs: usize) -> Result<()> {
-    let needed = BYTES_PER_PAIR * (springs as f64).powi(2);
+/// Refuses springs for which the operators do not fit into the memory that is free.
+fn check_memory_of(key: &'static str, springs: usize, smooth: bool) -> Result<()> {
+    let needed = |springs: usize| match Model::backend(springs, smooth) {
+        Backend::Dense => BYTES_PER_PAIR * (springs as f64).powi(2),
+        Backend::Hierarchical => BYTES_PER_SPRING * springs as f64,
+    };
     let Some(free) = free_memory() else { return Ok(()) };
-    if needed < free {
+    if needed(springs) < free {
         return Ok(());
     }
+    let most = match Model::backend(springs, smooth) {
+        Backend::Dense => (free / BYTES_PER_PAIR).sqrt(),
+        Backend::Hierarchical => free / BYTES_PER_SPRING,
+    };
     Err(Error::Inconsistent {
         what: key,
         why: format!(
             "{springs} springs need {:.1} GB for their operators and {:.1} GB are free; ask for at most {} (numerics.springs)",
-            needed * 1e-9,
+            needed(springs) * 1e-9,
             free * 1e-9,
-            (free / BYTES_PER_PAIR).sqrt().floor()
+            most.floor()
         ),
     })
 }

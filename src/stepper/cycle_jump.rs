@@ -2,7 +2,6 @@
 
 use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
-use crate::linear::multiply;
 use crate::model::{Fields, Model, State};
 
 /// Bogacki and Shampine's explicit Runge-Kutta method of order 3 with an embedded one of order 2 (Appl. Math. Lett. 2:321, 1989).
@@ -64,7 +63,7 @@ impl CycleJump {
         let density: Vec<f64> =
             difference.iter().zip(&self.fields.density_factor).map(|(q, factor)| q * factor).collect();
         let mut depth = vec![0.0; model.springs()];
-        multiply(model.operators().profile().as_ref(), &density, &mut depth);
+        model.operators().transforms()[0].apply(&density, &mut depth);
         let scale = self.fields.edge.powf(model.mu());
         relative_depth_error(model, depth.into_iter().map(|value| scale * value))
     }

@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::linear::Factors;
-use crate::model::{CycleFields, Drive, Fields, Model, State};
+use crate::model::{CycleFields, Drive, Fields, Model, StageFactors, State};
 
 /// Newton iterations before the matrix is renewed, and renewals before the step is given up.
 pub(super) const ITERATIONS: usize = 8;
@@ -14,6 +14,9 @@ pub(super) const ROUND_OFF: f64 = 1e-14;
 
 /// Units of round-off in a slip depth of the unworn contact, by a series, and in what springs take away from it, by a sum over all of them.
 const RESIDUAL_ROUND_OFF: f64 = 64.0;
+
+/// What a correction by factors of compressed matrices may leave of itself: measured 1e-4 to 0.04, the most at the contact edge.
+const NEARLY: f64 = 0.05;
 
 /// Slowest contraction of Newton's corrections that is waited for.
 pub(super) const SLOWEST: f64 = 0.5;
@@ -39,6 +42,30 @@ pub(super) struct Target {
     pub drive: Drive,
 }
 
+/// Factors of Newton's matrix.
+#[derive(Debug)]
+pub(super) enum Factorised {
+    Dense(Factors),
+    Hierarchical(StageFactors),
+}
+
+impl Factorised {
+    /// What a correction leaves of itself because factors are near the matrix only.
+    fn slack(&self) -> f64 {
+        match self {
+            Self::Dense(_) => 0.0,
+            Self::Hierarchical(_) => NEARLY,
+        }
+    }
+
+    fn solve(&self, rhs: &mut [f64]) {
+        match self {
+            Self::Dense(factors) => factors.solve(rhs),
+            Self::Hierarchical(factors) => factors.solve(rhs),
+        }
+    }
+}
+
 /// Newton's method and what it left: the fields and the cycle of the last state tried.
 #[derive(Debug)]
 pub(super) struct Newton {
@@ -61,7 +88,7 @@ impl Newton {
         model: &Model,
         target: &Target,
         at: &mut State,
-        factors: &mut Option<Factors>,
+        factors: &mut Option<Factorised>,
         evaluations: &mut u64,
     ) -> bool {
         let inner = at.compression.len();
@@ -71,7 +98,7 @@ impl Newton {
         }
         for _ in 0..=RENEWALS {
             let fresh = factors.is_none();
-            let lu = factors.get_or_insert_with(|| Factors::new(self.matrix(model, target, &at.compression)));
+            let lu = factors.get_or_insert_with(|| self.factorise(model, target, &at.compression));
             let mut before = f64::INFINITY;
             for _ in 0..ITERATIONS {
                 let mut change = residual(model, target, &self.fields, &self.cycle.growth);
@@ -88,7 +115,7 @@ impl Newton {
                 let size = largest.max(change[inner].abs() / at.edge);
                 let left = at.compression.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
                 // What is left falls as the corrections do, and the first one with a matrix of its own leaves its square.
-                let first = if fresh { size / left } else { SLOWEST };
+                let first = if fresh { (size / left).max(lu.slack()) } else { SLOWEST };
                 let part = if before.is_finite() { size / before } else { first }.min(SLOWEST);
                 if size * part / (1.0 - part) <= self.tolerance * left || size <= ROUND_OFF {
                     return true;
@@ -130,24 +157,48 @@ impl Newton {
         true
     }
 
-    /// Newton's matrix at the current fields, columns the compressions and then the edge.
-    fn matrix(&self, model: &Model, target: &Target, compression: &[f64]) -> Mat<f64> {
+    fn factorise(&self, model: &Model, target: &Target, compression: &[f64]) -> Factorised {
+        let theta = 1.0 - target.edge / self.fields.edge;
+        let by_edge = self.by_edge(model, target, theta);
+        let slopes = model.plain_growth_slopes(&target.drive, &self.fields, &self.cycle, -target.step);
+        match slopes.and_then(|slopes| model.stage_factors(&self.fields, theta, slopes, &by_edge)) {
+            Some(factors) => Factorised::Hierarchical(factors),
+            None => Factorised::Dense(Factors::new(self.matrix(model, target, compression, theta, &by_edge))),
+        }
+    }
+
+    /// Derivatives of the stage's equations but for the growth by the edge, shape `(springs,)`.
+    fn by_edge(&self, model: &Model, target: &Target, theta: f64) -> Vec<f64> {
         let fields = &self.fields;
-        let n = model.springs();
-        let inner = n - 1;
-        let theta = 1.0 - target.edge / fields.edge;
-        let mu = model.mu();
-        let mut matrix = Mat::zeros(n, n);
-        model.add_growth_slopes(&target.drive, compression, fields, &self.cycle, -target.step, &mut matrix);
-        model.add_log_slip_by_compression(fields, theta, &mut matrix);
-        let by_edge = model.log_slip_by_edge(fields);
+        let inner = model.springs() - 1;
+        let mut by_edge = model.log_slip_by_edge(fields);
         let carried = model.along_annulus(&by_edge);
         let along = model.along_annulus(&fields.log_slip);
         for i in 0..inner {
-            matrix[(i, inner)] +=
-                by_edge[i] - theta * carried[i] - along[i] * target.edge / (fields.edge * fields.edge);
+            by_edge[i] -= theta * carried[i] + along[i] * target.edge / (fields.edge * fields.edge);
         }
-        let scale = fields.edge.powf(mu) / fields.slip_depth[inner];
+        by_edge
+    }
+
+    /// Newton's matrix at the current fields, columns the compressions and then the edge.
+    fn matrix(
+        &self,
+        model: &Model,
+        target: &Target,
+        compression: &[f64],
+        theta: f64,
+        by_edge: &[f64],
+    ) -> Mat<f64> {
+        let fields = &self.fields;
+        let n = model.springs();
+        let inner = n - 1;
+        let mut matrix = Mat::zeros(n, n);
+        model.add_growth_slopes(&target.drive, compression, fields, &self.cycle, -target.step, &mut matrix);
+        model.add_log_slip_by_compression(fields, theta, &mut matrix);
+        for i in 0..inner {
+            matrix[(i, inner)] += by_edge[i];
+        }
+        let scale = fields.edge.powf(model.mu()) / fields.slip_depth[inner];
         for j in 0..inner {
             matrix[(inner, j)] = -scale * model.elastic_depth_by_compression(fields, inner, j);
         }
