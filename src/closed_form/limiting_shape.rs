@@ -5,7 +5,6 @@ use super::{Regime, relative_slip_width, small_amplitude_wear_volume};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::indenter::{EquivalentProfile, Indenter};
-use crate::roots;
 use crate::stick_slip;
 use std::f64::consts::PI;
 
@@ -140,7 +139,8 @@ impl LimitingShape {
         let outermost = indenter.radius_at_height(indentation).min(profile.largest_radius());
         let largest_growth = (outermost / contact_radius).ln().max(0.0);
         let rules = WearIntegral::rules(profile.grading())?;
-        let mut integral = WearIntegral::new(profile, indentation, contact_radius, rules);
+        let mut integral =
+            WearIntegral::new(profile, indentation, contact_radius, rules).at_stick(stick_logarithm)?;
         let growth_logarithm = match slip_compression > 0.0 {
             true => integral.limiting_growth(stick_logarithm, largest_growth)?,
             false => 0.0,
@@ -187,8 +187,7 @@ impl LimitingShape {
 
     /// Radius and depth of the deepest wear.
     fn find_deepest(&self) -> Result<(f64, f64)> {
-        let slope = |span: f64| self.integral.depth_slope(span, span - self.stick_logarithm);
-        let span = roots::bracketed(slope, 0.0, self.limiting_span(), 0.0)?;
+        let span = self.integral.deepest(self.limiting_span(), self.stick_logarithm)?;
         let depth = self.integral.indentation * self.integral.depth(span, span - self.stick_logarithm);
         Ok((self.stick_radius() * span.exp(), depth))
     }
