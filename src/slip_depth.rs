@@ -135,15 +135,17 @@ impl UnwornSlip {
         let mut high = low;
         while depth_left(high) > 0.0 {
             if high >= largest {
-                let cure = profile.end_of_table();
-                return Err(Error::Inconsistent {
-                    what: "limiting contact radius",
-                    why: format!(
-                        "none below {} m; {}",
-                        stick_radius * (0.5 * high).exp(),
-                        cure.as_deref().unwrap_or("reduce the indentation or the amplitude")
+                let radius = stick_radius * (0.5 * high).exp();
+                let (what, why) = match profile.end_of_table() {
+                    Some(end) => {
+                        ("indenter.table", format!("no limiting contact radius below {radius} m: {end}"))
+                    }
+                    None => (
+                        "limiting contact radius",
+                        format!("none below {radius} m; reduce the indentation or the amplitude"),
                     ),
-                });
+                };
+                return Err(Error::Inconsistent { what, why });
             }
             high = (1.5 * high).min(largest);
         }

@@ -179,7 +179,7 @@ impl LimitingShape {
                      contact would split into rings; smooth the profile there, or press less deep",
                     self.indentation()
                 );
-                return Err(Error::Inconsistent { what: "limiting shape", why });
+                return Err(Error::Inconsistent { what: "indenter.table", why });
             }
         }
         Ok(())

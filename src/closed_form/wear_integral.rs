@@ -114,15 +114,18 @@ impl WearIntegral {
         let high = [small, bound].into_iter().find(|&growth| growth <= bound && mean(growth) < 0.0);
         match high {
             Some(high) => roots::bracketed(mean, 0.0, high, 0.0),
-            None => Err(Error::Inconsistent {
-                what: "limiting shape",
-                why: format!(
-                    "at an indentation of {} m the worn indenter would touch beyond {} m{}",
-                    self.indentation,
-                    self.contact_radius * largest.exp(),
-                    self.profile.end_of_table().map_or(String::new(), |end| format!(": {end}"))
-                ),
-            }),
+            None => {
+                let table = self.profile.end_of_table();
+                Err(Error::Inconsistent {
+                    what: if table.is_some() { "indenter.table" } else { "limiting shape" },
+                    why: format!(
+                        "at an indentation of {} m the worn indenter would touch beyond {} m{}",
+                        self.indentation,
+                        self.contact_radius * largest.exp(),
+                        table.map_or(String::new(), |end| format!(": {end}"))
+                    ),
+                })
+            }
         }
     }
 

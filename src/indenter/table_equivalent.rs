@@ -11,6 +11,9 @@ use crate::error::{Error, Result};
 use crate::quadrature::Rule;
 use crate::roots;
 
+/// Fall of `g` from one knot to the next, relative, that is rounding: where a wave is flat, a million rows rise by less.
+const ROUNDING: f64 = 1e-13;
+
 /// Pieces of `g` to one of `f`.
 const DIVISIONS: usize = 2;
 
@@ -64,6 +67,7 @@ impl TabulatedEquivalent {
                 }
             }
         }
+        even_out(&mut values);
         let curve = Cubic::new(knots, &values, slopes);
         let last = values.len() - 1;
         if !(0..=last).all(|i| curve.piece(i).iter().all(|it| it.is_finite())) {
@@ -253,5 +257,15 @@ impl TabulatedEquivalent {
 
     fn unreachable(&self, what: &str) -> Error {
         Error::Inconsistent { what: "contact radius", why: format!("{what} is too much: {}", self.end()) }
+    }
+}
+
+/// Takes falls that are rounding out of values that rise.
+fn even_out(values: &mut [f64]) {
+    for i in 1..values.len() {
+        let before = values[i - 1];
+        if values[i] <= before && before > 0.0 && before - values[i] <= ROUNDING * before {
+            values[i] = before.next_up();
+        }
     }
 }
