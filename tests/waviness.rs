@@ -323,6 +323,21 @@ fn waves_that_are_too_high_are_refused_by_check_and_run_wherever_they_are() {
 }
 
 #[test]
+fn a_contact_under_a_held_force_is_refused_too_where_it_would_touch_farther_out() {
+    let loading = "normal_force = \"13.3 N\"\nstick_ratio = 0.7\ntau = 1";
+    for (part, code) in [(-20_000.0, 2), (-20.0, 0)] {
+        let folder = folder(windowed(part, 1.3, 1.45), loading, "[numerics]\nsprings = 40");
+        for command in ["check", "run"] {
+            let output = run(folder.path(), &[command, "scene.toml"]);
+            let message = text(&output.stderr);
+            assert_eq!(output.status.code(), Some(code), "{command}, part {part}: {message}");
+            let refused = message.contains("indenter.table: ") && message.contains("touch");
+            assert_eq!(refused, code == 2, "{command}, part {part}: {message}");
+        }
+    }
+}
+
+#[test]
 fn a_wave_with_a_flat_spot_is_still_a_contact() {
     // The highest waves whose g does not fall, to the last digits: there g has a flat spot.
     let reaches =
