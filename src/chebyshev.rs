@@ -1,6 +1,10 @@
-//! Chebyshev series of a smooth function on an interval.
+//! Chebyshev series of a smooth function on an interval, and of others on pieces of it.
+
+mod piecewise;
 
 use std::f64::consts::PI;
+
+pub use piecewise::PiecewiseChebyshev;
 
 /// Largest number of terms tried.
 const MOST_TERMS: usize = 256;

@@ -32,6 +32,7 @@ mod hypergeometric;
 mod limiting_shape;
 mod paraboloid;
 mod power_law;
+mod table_wear;
 mod wear_integral;
 mod wear_volume;
 

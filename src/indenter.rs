@@ -5,12 +5,14 @@ mod equivalent;
 mod sphere;
 mod table;
 mod table_equivalent;
+mod table_rise;
 mod table_transform;
 
 use std::sync::Arc;
 
 pub use equivalent::{EquivalentProfile, power_law_factor};
 pub use table::TabulatedProfile;
+pub(crate) use table_rise::RiseTransform;
 
 use crate::error::{Error, Result};
 

@@ -26,6 +26,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::abel::{AbelOperators, Backend};
+use crate::closed_form::LimitingShape;
 use crate::conditions::Conditions;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -196,6 +197,10 @@ impl Model {
             Some(moving) => moving.farthest(contact)?,
             None => contact.clone(),
         };
+        if moving.is_some() && profile.end_of_table().is_some() {
+            // Where there is a closed form, that looks for rings.
+            LimitingShape::from_contact(&farthest)?;
+        }
         let unworn =
             UnwornSlip::new(profile, stick_radius, farthest.slip_compression(), farthest.slip_area_offset())?;
         let stick_radius_squared = stick_radius * stick_radius;

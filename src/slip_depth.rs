@@ -9,23 +9,21 @@
 //!
 //! As wear changes nothing inside `c`, the depth worn away is the growth of the slip depth, `w = S - S_0`.
 
+use std::sync::Arc;
+
 use crate::abel::profile_factor;
-use crate::chebyshev::Chebyshev;
+use crate::chebyshev::{Chebyshev, PiecewiseChebyshev};
 use crate::error::{Error, Result};
-use crate::indenter::EquivalentProfile;
-use crate::quadrature::{MAX_NODES, Rule};
+use crate::indenter::{EquivalentProfile, RiseTransform};
+use crate::quadrature::Rule;
 use crate::roots::bracketed;
 
 /// Nodes of the Gauss-Jacobi rule for `F`; in the variable used, the integrand is entire for a power law but for the kernel's
 /// own singularity at `ℓ v = 2πi`.
 const NODES: usize = 40;
 
-/// To what the slip depth is resolved where the profile is a table, whose kinks leave no series that ends at round-off. Against 1e-4 of the
-/// default accuracy of a run it is nothing; a smooth table takes some 60 to 130 terms, a rough one all there can be.
-const TABLE_ACCURACY: f64 = 1e-9;
-
 /// How far beyond the limiting contact edge the slip is tabulated, as a factor of `Z`.
-const MARGIN: f64 = 1.1;
+const MARGIN: f64 = RiseTransform::MARGIN;
 
 /// Where slip next to the edge of stick is taken, over the logarithm at the end.
 const AT_STICK: f64 = 1e-6;
@@ -39,13 +37,42 @@ pub struct UnwornSlip {
     mu: f64,
     /// `(F 1)/ℓ^μ` over `ℓ = ln(r²/c²)`, with `μ = (1-k)/2`.
     uniform: Chebyshev,
-    /// `(F(q_c - q_0))/ℓ^(1+μ) e^(-λℓ)` with [`UnwornSlip::growth`] as `λ`.
-    slip: Chebyshev,
-    /// By how much `ln((F(q_c - q_0))/ℓ^(1+μ))` grows on average: where the stick zone is small, slip next to it is orders of magnitude below
-    /// that at the contact edge, and a series without that growth would keep as many digits fewer of it.
-    growth: f64,
+    slip: SlipSeries,
     rule: Rule,
+    table: Option<Arc<RiseTransform>>,
     limit_edge: f64,
+}
+
+/// `(F(q_c - q_0))/ℓ^(1+μ)`.
+#[derive(Debug, Clone)]
+enum SlipSeries {
+    Smooth {
+        /// Of that times `e^(-λℓ)` with the growth as `λ`.
+        series: Chebyshev,
+        /// By how much its logarithm grows on average: where the stick zone is small, slip next to it is orders of magnitude below that at the
+        /// contact edge, and a series without that growth would keep as many digits fewer of it.
+        growth: f64,
+    },
+    /// Of a table, whose waves and kinks take a series each, over the factor given.
+    Table { series: Arc<PiecewiseChebyshev>, factor: f64 },
+}
+
+impl SlipSeries {
+    fn value(&self, logarithm: f64) -> f64 {
+        match self {
+            Self::Smooth { series, growth } => series.value(logarithm) * (growth * logarithm).exp(),
+            Self::Table { series, factor } => factor * series.value(logarithm),
+        }
+    }
+
+    /// Derivative of its logarithm.
+    fn log_slope(&self, logarithm: f64) -> f64 {
+        let ((value, slope), growth) = match self {
+            Self::Smooth { series, growth } => (series.value_and_derivative(logarithm), *growth),
+            Self::Table { series, .. } => (series.value_and_derivative(logarithm), 0.0),
+        };
+        slope / value + growth
+    }
 }
 
 /// Slip depths at one radius.
@@ -81,7 +108,8 @@ impl UnwornValues {
 }
 
 impl UnwornSlip {
-    /// Tabulates the slip depth by the quadrature of `F`.
+    /// Tabulates the slip depth by the quadrature of `F`: to round-off; for a table to some 1e-11 of itself, where its rows are rough to what a series
+    /// between two knots resolves.
     ///
     /// # Arguments
     /// * `profile` -- the unworn equivalent profile
@@ -107,39 +135,40 @@ impl UnwornSlip {
         let mut high = low;
         while depth_left(high) > 0.0 {
             if high >= largest {
-                let cure = profile.end_of_table();
-                return Err(Error::Inconsistent {
-                    what: "limiting contact radius",
-                    why: format!(
-                        "none below {} m; {}",
-                        stick_radius * (0.5 * high).exp(),
-                        cure.as_deref().unwrap_or("reduce the indentation or the amplitude")
+                let radius = stick_radius * (0.5 * high).exp();
+                let (what, why) = match profile.end_of_table() {
+                    Some(end) => {
+                        ("indenter.table", format!("no limiting contact radius below {radius} m: {end}"))
+                    }
+                    None => (
+                        "limiting contact radius",
+                        format!("none below {radius} m; reduce the indentation or the amplitude"),
                     ),
-                });
+                };
+                return Err(Error::Inconsistent { what, why });
             }
             high = (1.5 * high).min(largest);
         }
         let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
         let limit_edge = squared * logarithm.exp_m1();
         let end = (MARGIN * limit_edge / squared).ln_1p();
-        let growth = (transform.slip(end) / transform.slip(AT_STICK * end)).ln() / end;
-        // A table may begin flat.
-        let growth = if growth.is_finite() { growth } else { 0.0 };
-        let slip = |l: f64| transform.slip(l) * (-growth * l).exp();
-        let tabulated = profile.end_of_table().is_some();
+        let slip = match &transform.table {
+            Some(table) => SlipSeries::Table { series: table.series(logarithm), factor: transform.factor },
+            None => {
+                let growth = (transform.slip(end) / transform.slip(AT_STICK * end)).ln() / end;
+                let series = Chebyshev::fit(|l| transform.slip(l) * (-growth * l).exp(), end);
+                SlipSeries::Smooth { series, growth }
+            }
+        };
         Ok(Self {
             stick_radius_squared: squared,
             slip_compression,
             profile: profile.clone(),
             mu,
             uniform: Chebyshev::fit(|l| transform.uniform(l), end),
-            slip: if tabulated {
-                Chebyshev::fit_to(slip, end, TABLE_ACCURACY)
-            } else {
-                Chebyshev::fit(slip, end)
-            },
-            growth,
-            rule: transform.rule.clone(),
+            slip,
+            rule: transform.rule,
+            table: transform.table,
             limit_edge,
         })
     }
@@ -161,7 +190,7 @@ impl UnwornSlip {
         UnwornValues {
             logarithm,
             limit_slip: self.slip_compression * power * self.uniform.value(logarithm),
-            slip: logarithm * power * self.slip_series(logarithm),
+            slip: logarithm * power * self.slip.value(logarithm),
         }
     }
 
@@ -177,9 +206,16 @@ impl UnwornSlip {
         let power = logarithm.powf(self.mu);
         let slip = match self.profile.exponent() {
             Some(exponent) => {
-                (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip_series(logarithm)
+                (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip.value(logarithm)
             }
-            None => Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm),
+            None => match &self.table {
+                Some(table) => {
+                    profile_factor(1.0 - self.mu, self.mu) * table.mean_from(stick_area, logarithm)
+                }
+                None => {
+                    Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm)
+                }
+            },
         };
         UnwornValues {
             logarithm,
@@ -188,20 +224,14 @@ impl UnwornSlip {
         }
     }
 
-    /// `(F(q_c - q_0))/ℓ^(1+μ)`.
-    fn slip_series(&self, logarithm: f64) -> f64 {
-        self.slip.value(logarithm) * (self.growth * logarithm).exp()
-    }
-
     /// Derivatives of the slip depths where `values` belong to.
     pub fn slopes(&self, values: &UnwornValues) -> UnwornSlopes {
         let logarithm = values.logarithm;
         let by_z = (-logarithm).exp() / self.stick_radius_squared;
         let (uniform, uniform_slope) = self.uniform.value_and_derivative(logarithm);
-        let (slip, slip_slope) = self.slip.value_and_derivative(logarithm);
         UnwornSlopes {
             limit_slip: values.limit_slip * by_z * (uniform_slope / uniform + self.mu / logarithm),
-            log_slip: by_z * (slip_slope / slip + self.growth + (1.0 + self.mu) / logarithm),
+            log_slip: by_z * (self.slip.log_slope(logarithm) + (1.0 + self.mu) / logarithm),
         }
     }
 }
@@ -213,18 +243,20 @@ struct Transform<'a> {
     nu: f64,
     factor: f64,
     rule: Rule,
+    /// What stands for the rule where the profile is a table.
+    table: Option<Arc<RiseTransform>>,
 }
 
 impl<'a> Transform<'a> {
     fn new(profile: &'a EquivalentProfile, stick_radius: f64) -> Result<Self> {
         let nu = 0.5 * (1.0 + profile.grading());
-        let nodes = if profile.end_of_table().is_some() { MAX_NODES } else { NODES };
-        Ok(Self::with_rule(profile, stick_radius, Rule::jacobi(nodes, 0.0, -nu)?))
+        let transform = Self::with_rule(profile, stick_radius, Rule::jacobi(NODES, 0.0, -nu)?);
+        Ok(Self { table: profile.rise_transform(stick_radius)?, ..transform })
     }
 
     fn with_rule(profile: &'a EquivalentProfile, stick_radius: f64, rule: Rule) -> Self {
         let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
-        Self { profile, stick_radius, nu, factor: profile_factor(nu, mu), rule }
+        Self { profile, stick_radius, nu, factor: profile_factor(nu, mu), rule, table: None }
     }
 
     /// `(F 1)/ℓ^μ`.
@@ -234,6 +266,9 @@ impl<'a> Transform<'a> {
 
     /// `(F (g_0 - g_0(c)))/ℓ^(1+μ)`.
     fn slip(&self, logarithm: f64) -> f64 {
+        if let Some(table) = &self.table {
+            return self.factor * table.mean(logarithm);
+        }
         let squared = self.stick_radius * self.stick_radius;
         let weighted = |(node, complement): (&f64, &f64)| {
             let rise = self.profile.rise(self.stick_radius, squared * (logarithm * complement).exp_m1());

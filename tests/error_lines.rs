@@ -107,7 +107,9 @@ fn every_mistake_in_any_line_of_any_file_is_shown_at_its_place() {
     for (path, read, stride) in files() {
         let text = fs::read_to_string(&path).expect("readable");
         // The files that scenes name are relative to the working directory of the test.
-        let text = text.replace("\"measured_profile.csv\"", "\"data/scenes/measured_profile.csv\"");
+        let text = ["measured_profile.csv", "waviness.csv"].iter().fold(text, |text, name| {
+            text.replace(&format!("\"{name}\""), &format!("\"data/scenes/{name}\""))
+        });
         read(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let lines: Vec<&str> = text.lines().collect();
         for (number, line) in lines.iter().enumerate().step_by(stride) {

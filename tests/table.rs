@@ -239,8 +239,10 @@ fn depth_by_definition(shape: &LimitingShape, offset: f64) -> f64 {
 }
 
 #[test]
-fn two_hundred_nodes_serve_smooth_tables_and_rough_ones() {
-    for (rows, rough, tolerance) in [(101, 0.0, 8e-9), (401, 0.0, 2e-9), (101, 1e-4, 1e-5), (401, 1e-5, 1e-4)]
+fn the_limit_of_smooth_tables_and_rough_ones_is_that_of_its_definition() {
+    // At k = -0.9 what is seen is Simpson's rule.
+    for (rows, rough, tolerance) in
+        [(101, 0.0, 8e-11), (401, 0.0, 8e-11), (101, 1e-4, 8e-11), (401, 1e-5, 8e-11)]
     {
         let indenter = crowned(rows, rough);
         let mut worst = (0.0, String::new());
@@ -320,9 +322,9 @@ fn rows_that_are_no_profile_are_refused_with_the_cure() {
         (
             radius[..3].to_vec(),
             height[..3].to_vec(),
-            "it has 3 rows of different radius; give from 4 to 50000",
+            "it has 3 rows of different radius; give from 4 to 1000000",
         ),
-        (even(50_001, 1.0), even(50_001, 1.0), "50001 rows"),
+        (even(1_000_001, 1.0), even(1_000_001, 1.0), "1000001 rows"),
         (radius[..3].to_vec(), height.clone(), "3 radii and 4 heights"),
         (with(2, f64::NAN, &radius), height.clone(), "row 3 is r = NaN, f = 4, not finite"),
         (radius.clone(), with(1, f64::INFINITY, &height), "row 2 is r = 1, f = inf"),

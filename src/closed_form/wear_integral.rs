@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::table_wear::TableWear;
 use crate::error::{Error, Result};
 use crate::indenter::EquivalentProfile;
 use crate::quadrature::{MAX_NODES, RuleFamily};
@@ -33,6 +34,7 @@ pub(super) struct WearIntegral {
     nodes: usize,
     mu: f64,
     nu: f64,
+    table: Option<TableWear>,
 }
 
 /// Integrand at one node.
@@ -61,9 +63,13 @@ impl WearIntegral {
         rules: Arc<RuleFamily>,
     ) -> Self {
         let (mu, nu) = (0.5 * (1.0 - profile.grading()), 0.5 * (1.0 + profile.grading()));
-        // Rings of a table are looked for even where nothing slips.
-        let nodes = if profile.end_of_table().is_some() { MAX_NODES } else { 1 };
-        Self { profile, indentation, contact_radius, rules, nodes, mu, nu }
+        Self { profile, indentation, contact_radius, rules, nodes: 1, mu, nu, table: None }
+    }
+
+    /// The same for one edge of stick only, at `ln(a0/c)`: where the profile is a table, split at its knots.
+    pub(super) fn at_stick(self, stick_logarithm: f64) -> Result<Self> {
+        let table = TableWear::new(&self.profile, self.contact_radius, stick_logarithm)?;
+        Ok(Self { table, ..self })
     }
 
     /// The limit `b = ln(a∞/a0)`, the root of `Δf(a∞) = 0`; chooses the number of nodes for radii up to there.
@@ -108,15 +114,18 @@ impl WearIntegral {
         let high = [small, bound].into_iter().find(|&growth| growth <= bound && mean(growth) < 0.0);
         match high {
             Some(high) => roots::bracketed(mean, 0.0, high, 0.0),
-            None => Err(Error::Inconsistent {
-                what: "limiting shape",
-                why: format!(
-                    "at an indentation of {} m the worn indenter would touch beyond {} m{}",
-                    self.indentation,
-                    self.contact_radius * largest.exp(),
-                    self.profile.end_of_table().map_or(String::new(), |end| format!(": {end}"))
-                ),
-            }),
+            None => {
+                let table = self.profile.end_of_table();
+                Err(Error::Inconsistent {
+                    what: if table.is_some() { "indenter.table" } else { "limiting shape" },
+                    why: format!(
+                        "at an indentation of {} m the worn indenter would touch beyond {} m{}",
+                        self.indentation,
+                        self.contact_radius * largest.exp(),
+                        table.map_or(String::new(), |end| format!(": {end}"))
+                    ),
+                })
+            }
         }
     }
 
@@ -131,11 +140,8 @@ impl WearIntegral {
     ///
     /// The integrands have the zeros of `φ`, `v = ±iπ/L`, and for the sphere its equator, `v = -ln(R/r)/L`, as nearest singularities;
     /// the error falls as `ρ^(-2n)` with the sum `ρ` of the semi-axes of the ellipse through them. Steep power laws and long spans add a
-    /// boundary layer of relative width `1/(nL)`. The kinks of a table call for as many as there can be.
+    /// boundary layer of relative width `1/(nL)`. Of a table only the kernel's integral is left to the rule.
     fn node_count(&self, span: f64, growth: f64) -> usize {
-        if self.profile.end_of_table().is_some() {
-            return MAX_NODES;
-        }
         const DIGITS: f64 = 18.5; // half of -ln(1e-16)
         // Of the ellipse with foci 0 and 1 at these distances, in units of half the distance of the foci.
         let ellipse = |to_zero: f64, to_one: f64| {
@@ -164,6 +170,9 @@ impl WearIntegral {
 
     /// `G`, the weighted mean of the compression left between the stick radius and `r`: zero at the limiting contact radius.
     pub(super) fn mean_compression(&self, span: f64, growth: f64) -> f64 {
+        if let Some(table) = &self.table {
+            return table.mean_compression(2.0 * span, self.uniform(span)) / self.indentation;
+        }
         let edge = self.edge_compression(growth);
         let mean = self.mean(span, growth, |v, node| {
             ((-self.nu * node.logarithm).exp_m1() * node.compression - node.rise) / v
@@ -171,8 +180,22 @@ impl WearIntegral {
         edge + self.mu / (1.0 + self.mu) * mean
     }
 
+    /// `G` of the compression 1.
+    fn uniform(&self, span: f64) -> f64 {
+        let change = |v: f64| (-self.nu * logarithmic_growth(2.0 * span * v)).exp_m1() / v;
+        1.0 + self.mu / (1.0 + self.mu) * self.rules.at_least(self.nodes).mean(change)
+    }
+
+    /// `ln(r/c)` where wear is deepest, up to the limit at `span = ln(a∞/c)`.
+    pub(super) fn deepest(&self, span: f64, stick_logarithm: f64) -> Result<f64> {
+        match &self.table {
+            Some(table) => Ok(0.5 * table.deepest(2.0 * span, |l| self.uniform(0.5 * l))?),
+            None => roots::bracketed(|span| self.depth_slope(span, span - stick_logarithm), 0.0, span, 0.0),
+        }
+    }
+
     /// `L/(S (2L)^μ) · d(Δf/d)/dL` along `r` at fixed stick radius: zero where the wear is deepest.
-    pub(super) fn depth_slope(&self, span: f64, growth: f64) -> f64 {
+    fn depth_slope(&self, span: f64, growth: f64) -> f64 {
         let origin = self.profile.at(self.contact_radius * growth.exp());
         let edge = -span * origin.logarithmic_slope(0.0) / self.indentation;
         let mean = self.mean(span, growth, |v, node| {
@@ -192,8 +215,11 @@ impl WearIntegral {
         if span <= 0.0 {
             return 0.0;
         }
-        let mean = self
-            .mean(span, growth, |_, node| (self.mu * node.logarithm - node.doubled).exp() * node.compression);
+        let integrand = |_, node: &Node| (self.mu * node.logarithm - node.doubled).exp() * node.compression;
+        let mean = match &self.table {
+            Some(table) => table.volume_mean(2.0 * span) / self.indentation,
+            None => self.mean(span, growth, integrand),
+        };
         let alpha = 1.0 + self.mu;
         transform_factor(self.profile.grading()) * (2.0 * growth).exp() * (2.0 * span).powf(alpha) / alpha
             * mean

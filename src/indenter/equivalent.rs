@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::Indenter;
 use super::sphere::SphereIntegral;
 use super::table_equivalent::TabulatedEquivalent;
+use super::table_rise::RiseTransform;
 use crate::error::{Error, Result};
 use crate::roots;
 
@@ -53,9 +54,7 @@ impl EquivalentProfile {
             (None, &Indenter::Sphere { radius }) => {
                 Shape::Sphere { radius, integral: Box::new(SphereIntegral::new(grading)?) }
             }
-            (None, Indenter::Table(table)) => {
-                Shape::Table(Arc::new(TabulatedEquivalent::new(table, grading)?))
-            }
+            (None, Indenter::Table(table)) => Shape::Table(table.equivalent(grading)?),
             (None, _) => unreachable!("every other indenter is a power law"),
         };
         Ok(Self { grading, shape })
@@ -97,6 +96,14 @@ impl EquivalentProfile {
         match &self.shape {
             Shape::Table(table) => Some(table.end()),
             _ => None,
+        }
+    }
+
+    /// The transform of the rise over the value at a radius, m, where `g` is that of a table.
+    pub(crate) fn rise_transform(&self, radius: f64) -> Result<Option<Arc<RiseTransform>>> {
+        match &self.shape {
+            Shape::Table(table) => table.rise_transform(radius).map(Some),
+            _ => Ok(None),
         }
     }
 

@@ -1,6 +1,9 @@
 //! A measured profile: rows of radius and height, and the curve through them.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use super::cubic::Cubic;
+use super::table_equivalent::TabulatedEquivalent;
 use crate::error::{Error, Result};
 use crate::grid::lagrange_derivative;
 
@@ -28,6 +31,24 @@ pub struct TabulatedProfile {
     source: String,
     heights: Vec<f64>,
     curve: Cubic,
+    equivalent: Known,
+}
+
+/// The equivalent profile that was last asked for: every contact of a scene needs the same, and it takes seconds for very many rows.
+#[derive(Debug, Default)]
+struct Known(Mutex<Option<Arc<TabulatedEquivalent>>>);
+
+impl Clone for Known {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl PartialEq for Known {
+    /// What is known of a table is no part of it.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl TabulatedProfile {
@@ -35,7 +56,7 @@ impl TabulatedProfile {
     pub const FEWEST_ROWS: usize = 4;
 
     /// Most rows of a table.
-    pub const MOST_ROWS: usize = 50_000;
+    pub const MOST_ROWS: usize = 1_000_000;
 
     /// Profile through rows.
     ///
@@ -56,7 +77,7 @@ impl TabulatedProfile {
                 "its rows are too close or too large to compute with; check the units".into(),
             ));
         }
-        Ok(Self { source: source.into(), heights: height, curve })
+        Ok(Self { source: source.into(), heights: height, curve, equivalent: Known::default() })
     }
 
     /// Where the rows come from.
@@ -98,6 +119,18 @@ impl TabulatedProfile {
         }
         let [low, ..] = self.curve.piece(above - 1);
         self.radii()[above - 1] + self.curve.climb(above - 1, height - low)
+    }
+
+    /// Its equivalent profile.
+    pub(super) fn equivalent(&self, grading: f64) -> Result<Arc<TabulatedEquivalent>> {
+        let known = || self.equivalent.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(equivalent) = known().as_ref().filter(|it| it.grading() == grading) {
+            return Ok(Arc::clone(equivalent));
+        }
+        // Not under the lock: threads may be at work on different gradings.
+        let equivalent = Arc::new(TabulatedEquivalent::new(self, grading)?);
+        *known() = Some(Arc::clone(&equivalent));
+        Ok(equivalent)
     }
 
     /// The curve.

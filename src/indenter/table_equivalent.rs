@@ -1,12 +1,18 @@
 //! The equivalent profile of a measured profile.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use super::cubic::Cubic;
 use super::power_law_factor;
 use super::table::TabulatedProfile;
+use super::table_rise::RiseTransform;
 use super::table_transform::Transform;
 use crate::error::{Error, Result};
 use crate::quadrature::Rule;
 use crate::roots;
+
+/// Fall of `g` from one knot to the next, relative, that is rounding: where a wave is flat, a million rows rise by less.
+const ROUNDING: f64 = 1e-13;
 
 /// Pieces of `g` to one of `f`.
 const DIVISIONS: usize = 2;
@@ -14,15 +20,19 @@ const DIVISIONS: usize = 2;
 /// Nodes for `x^(1+k)` over a piece no longer than its distance from the axis.
 const LOAD_NODES: usize = 12;
 
+/// Pieces looked at one by one for the place to which `g` falls, before a search by halves.
+const MOST_WALKED: usize = 64;
+
 /// Equivalent profile `g` [S, Eq. (19)] of a [`TabulatedProfile`]: value and slope at the rows and halfway between them by
 /// [`Transform`], cubics in between.
 ///
 /// Rows of a power law with the exponent 1, 2 or 3 give its `g` but for rounding. Else the error is that of the table: against a sphere in to
 /// half its radius it falls with the power 3.6 to 4 of the number of rows for `k >= 0`, with the power 3 as `k → -1`.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct TabulatedEquivalent {
+    grading: f64,
     exponent: f64,
-    curve: Cubic,
+    curve: Arc<Cubic>,
     /// Load integral at the contact radii that are knots.
     loads: Vec<f64>,
     rule: Rule,
@@ -30,6 +40,8 @@ pub(super) struct TabulatedEquivalent {
     rising: usize,
     /// Knot beyond that up to which it falls; the same where the table ends.
     falling: usize,
+    /// The last transform that was asked for: the limit and the model of one contact need the same.
+    transform: Mutex<Option<Arc<RiseTransform>>>,
 }
 
 impl TabulatedEquivalent {
@@ -55,6 +67,7 @@ impl TabulatedEquivalent {
                 }
             }
         }
+        even_out(&mut values);
         let curve = Cubic::new(knots, &values, slopes);
         let last = values.len() - 1;
         if !(0..=last).all(|i| curve.piece(i).iter().all(|it| it.is_finite())) {
@@ -67,12 +80,14 @@ impl TabulatedEquivalent {
         let rising = (0..last).take_while(rises).count();
         let falling = rising + (rising..last).take_while(|&i| values[i + 1] <= values[i]).count();
         let mut equivalent = Self {
+            grading,
             exponent: 1.0 + grading,
-            curve,
+            curve: Arc::new(curve),
             loads: vec![0.0],
             rule: Rule::legendre(LOAD_NODES)?,
             rising,
             falling,
+            transform: Mutex::new(None),
         };
         for i in 0..rising {
             let width = equivalent.curve.knots()[i + 1] - equivalent.curve.knots()[i];
@@ -81,9 +96,25 @@ impl TabulatedEquivalent {
         Ok(equivalent)
     }
 
+    pub(super) fn grading(&self) -> f64 {
+        self.grading
+    }
+
     /// Radius up to which `g` rises.
     pub(super) fn largest_radius(&self) -> f64 {
         self.curve.knots()[self.rising]
+    }
+
+    /// The transform of the rise over the value at a radius, m.
+    pub(super) fn rise_transform(&self, radius: f64) -> Result<Arc<RiseTransform>> {
+        let known = || self.transform.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(transform) = known().as_ref().filter(|it| it.radius() == radius) {
+            return Ok(Arc::clone(transform));
+        }
+        // Not under the lock: threads may be at work on different contacts.
+        let transform = Arc::new(RiseTransform::new(&self.curve, self.grading, radius)?);
+        *known() = Some(Arc::clone(&transform));
+        Ok(transform)
     }
 
     /// Radius within which `g` is zero.
@@ -128,7 +159,18 @@ impl TabulatedEquivalent {
         let mut piece = self.curve.index(radius).min(self.rising.saturating_sub(1));
         let mut t = radius - self.curve.knots()[piece];
         let (mut left, mut back) = (depth_drop, 0.0);
-        loop {
+        for walked in 0.. {
+            if walked == MOST_WALKED && left > 0.0 {
+                // Far enough for the difference of two values.
+                let target = self.curve.at_knot(piece) + self.curve.rise_within(piece, t) - left;
+                let below = self.last_at_most(target.max(0.0), |i| self.curve.at_knot(i));
+                if below < piece {
+                    let knots = self.curve.knots();
+                    left = (self.curve.at_knot(below + 1) - target).max(0.0);
+                    back += t + (knots[piece] - knots[below + 1]);
+                    (piece, t) = (below, knots[below + 1] - knots[below]);
+                }
+            }
             if let Some(distance) = self.curve.descend(piece, t, left) {
                 back += distance;
                 break;
@@ -215,5 +257,15 @@ impl TabulatedEquivalent {
 
     fn unreachable(&self, what: &str) -> Error {
         Error::Inconsistent { what: "contact radius", why: format!("{what} is too much: {}", self.end()) }
+    }
+}
+
+/// Takes falls that are rounding out of values that rise.
+fn even_out(values: &mut [f64]) {
+    for i in 1..values.len() {
+        let before = values[i - 1];
+        if values[i] <= before && before > 0.0 && before - values[i] <= ROUNDING * before {
+            values[i] = before.next_up();
+        }
     }
 }

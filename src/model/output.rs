@@ -49,6 +49,24 @@ impl Model {
         self.volume(self.unworn.limit_edge(), &depth)
     }
 
+    /// Depth between the springs of the limit that these do not see in the unworn slip, over the limit's largest: waves of a table that are too
+    /// short for them. None where the indenter is no table, or the edge of stick moves.
+    pub fn unseen_depth(&self) -> Option<f64> {
+        self.contact.equivalent_profile().end_of_table()?;
+        if self.moving.is_some() {
+            return None;
+        }
+        let (mesh, count) = (self.operators.abel.mesh(), self.springs());
+        let smooth = |unworn: &UnwornValues| unworn.slip.ln() - (1.0 + self.mu()) * unworn.logarithm.ln();
+        let springs: Vec<f64> = self.radial_unworn.iter().map(smooth).collect();
+        let missed = |y: f64| {
+            let unworn = self.unworn.at(self.unworn.limit_edge() * mesh.at(y).value);
+            unworn.slip * (mesh.local(y, count).sum(&springs) - smooth(&unworn)).abs()
+        };
+        let between = (1..count).flat_map(|i| [0.25, 0.5, 0.75].map(|part| i as f64 + part));
+        Some(between.map(missed).fold(0.0, f64::max) / self.depth_scale)
+    }
+
     pub(super) fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
         PI * edge * dot(self.operators.abel.depth_sum(), wear_depth)
     }

@@ -153,7 +153,7 @@ impl Observer for Recorder {
 ///
 /// Where worn volume and dissipated energy are in proportion, as under Archard's law and Coulomb's friction (`μ_f/k_w`), that volume is the
 /// energy's, a balance that holds for the continuous contact between springs and surface. Else it is the integral of what the surface
-/// loses in each cycle, and tells of the time stepping alone.
+/// loses in each cycle, and tells of the time stepping alone. What the springs do not see of a waviness is in neither.
 fn balance_error(simulation: &Simulation) -> Option<f64> {
     let (model, state) = (simulation.model(), simulation.state());
     if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
@@ -161,5 +161,5 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
     }
     let by_depth = model.wear_volume(simulation.fields());
     let by_rate = (state.volume_by_rate - by_depth).abs() / model.limit_volume();
-    Some(by_rate.max(model.core_uncertainty()))
+    Some(by_rate.max(model.core_uncertainty()).max(model.unseen_depth().unwrap_or(0.0)))
 }

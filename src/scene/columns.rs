@@ -9,8 +9,8 @@ use super::document::printable;
 use super::quantity::{Dimension, parse};
 use crate::error::{Error, Result};
 
-/// Size of the largest file read, bytes: 50,000 rows of 400 characters.
-const LARGEST: u64 = 20_000_000;
+/// Size of the largest file read, bytes: a million rows of a hundred characters.
+const LARGEST: u64 = 100_000_000;
 
 /// What stands in a file, for the reader and for its messages.
 pub(super) struct Kind<'a> {
