@@ -1,55 +1,211 @@
-//! Cost of an evaluation and of a factorisation for many springs.
+//! Time and memory of the transforms and of implicit steps for 100 to a million springs: `cargo bench --bench many_springs`, results in
+//! docs/many_springs.md. `-- --quick` ends at 100,000.
+//!
+//! Either backend alone, then the model with what serves it: an evaluation of depths, pressures and wear, and the factors of Newton's matrix. Beside
+//! them, measured in the same run, what the machine's memory delivers, and what the product would take by Fourier transform on a uniform grid, with
+//! the round-off that this leaves next to the edge of stick.
+
+use std::hint::black_box;
 use std::time::Instant;
 
-use fretwear::grid::Clustering;
+use fretwear::abel::{AbelOperators, Backend};
+use fretwear::grid::{Clustering, Mesh};
+use fretwear::linear::Factors;
 use fretwear::model::Model;
 use fretwear::scene::Scene;
+use rayon::prelude::*;
+use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
+
+const SPRINGS: [usize; 9] = [100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000];
+const QUICK: usize = 100_000;
+/// Springs up to which dense operators are tried.
+const MOST_DENSE: usize = 3000;
+/// Springs from which on exponents are fitted.
+const FITTED_FROM: usize = 10_000;
+/// Newton iterations of a step, evaluations with solutions (measured in runs of the main scene).
+const ITERATIONS: f64 = 4.2;
+const REPEATS: usize = 5;
+
+struct Cost {
+    springs: usize,
+    apply: f64,
+    bytes: f64,
+    evaluation: Option<f64>,
+    step: Option<f64>,
+}
+
+/// Least time of several, s.
+fn least(mut work: impl FnMut()) -> f64 {
+    let time = |_| {
+        let begin = Instant::now();
+        work();
+        begin.elapsed().as_secs_f64()
+    };
+    (0..REPEATS).map(time).fold(f64::INFINITY, f64::min)
+}
+
+/// Time of both transforms together, s.
+fn apply(operators: &AbelOperators) -> f64 {
+    let n = operators.len();
+    let x: Vec<f64> = (1..n).map(|i| operators.mesh().node(i).complement).collect();
+    let mut y = vec![0.0; n];
+    let mut both = || {
+        for transform in operators.transforms() {
+            transform.apply(black_box(&x), &mut y);
+        }
+    };
+    // Where it is short, many at a time.
+    let times = 1 + 100_000 / n;
+    least(|| (0..times).for_each(|_| both())) / times as f64
+}
+
+fn dense(n: usize) -> (f64, f64, f64) {
+    let operators = AbelOperators::new(0.0, Mesh::new(n, 10.0, Clustering::Smooth)).expect("operators");
+    let lu = least(|| {
+        black_box(Factors::new(operators.profile().clone()));
+    });
+    (apply(&operators), lu, 8.0 * 5.0 * (n * n) as f64)
+}
+
+/// Evaluation, factors and solution of the model, s, and the bytes of the factors.
+fn model(n: usize) -> [f64; 5] {
+    let scene = Scene::from_toml(include_str!("../data/scenes/paraboloid.toml"), "scene").expect("a scene");
+    let contact = scene.contact().expect("a contact");
+    let begin = Instant::now();
+    let model = Model::new(&contact, n, Clustering::Smooth).expect("a model");
+    let state = model.initial_state().expect("a state");
+    let set_up = begin.elapsed().as_secs_f64();
+    let mut fields = model.fields(&state);
+    let drive = model.schedule().drive(0.0, 0.0);
+    let mut cycle = model.cycle(&drive, &state.compression, &fields);
+    let evaluation = least(|| {
+        model.evaluate(state.edge, &state.compression, &mut fields);
+        cycle = model.cycle(&drive, &state.compression, &fields);
+    });
+    let by_edge = model.log_slip_by_edge(&fields);
+    let step = 0.1 / contact.tau_per_cycle();
+    let mut factors = None;
+    let factorise = least(|| {
+        factors = None;
+        let slopes = model.plain_growth_slopes(&drive, &fields, &cycle, -step).expect("a plain cycle");
+        factors = model.stage_factors(&fields, 1e-3, slopes, &by_edge);
+    });
+    let Some(factors) = factors else { return [evaluation, 0.0, 0.0, 0.0, set_up] };
+    let mut rhs: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
+    let solve = least(|| factors.solve(&mut rhs));
+    [evaluation, factorise, solve, factors.bytes() as f64, set_up]
+}
+
+/// Slope of a straight line through the logarithms.
+fn exponent(costs: &[Cost], value: impl Fn(&Cost) -> Option<f64>) -> f64 {
+    let points: Vec<(f64, f64)> = costs
+        .iter()
+        .filter(|cost| cost.springs >= FITTED_FROM)
+        .filter_map(|cost| Some(((cost.springs as f64).ln(), value(cost)?.ln())))
+        .collect();
+    let count = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
+    let slope = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum::<f64>();
+    slope / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>()
+}
+
+/// What all threads together read from memory in a second, bytes.
+fn bandwidth() -> f64 {
+    let values = vec![1.0f64; 1 << 26];
+    let seconds = least(|| {
+        let sum: f64 = values.par_chunks(1 << 16).map(|part| part.iter().sum::<f64>()).sum();
+        black_box(sum);
+    });
+    8.0 * values.len() as f64 / seconds
+}
+
+/// Time, s, of Eq. (20) on a uniform grid by Fourier transform, and its round-off over the depth at the first node and over the largest.
+fn fourier(n: usize) -> (f64, f64, f64) {
+    // Piecewise constant densities for k = 0: weights that differ by a shift only.
+    let weights: Vec<f64> = (0..n).map(|m| ((m + 1) as f64).sqrt() - (m as f64).sqrt()).collect();
+    let density: Vec<f64> = (0..n).map(|i| 1.0 - i as f64 / n as f64).collect();
+    let size = (2 * n).next_power_of_two();
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
+    let padded = |values: &[f64]| {
+        let mut padded = values.to_vec();
+        padded.resize(size, 0.0);
+        padded
+    };
+    let mut kernel = forward.make_output_vec();
+    forward.process(&mut padded(&weights), &mut kernel).expect("sizes fit");
+    let mut spectrum: Vec<Complex<f64>> = forward.make_output_vec();
+    let mut result = vec![0.0; size];
+    let seconds = least(|| {
+        let mut values = padded(&density);
+        forward.process(&mut values, &mut spectrum).expect("sizes fit");
+        spectrum.iter_mut().zip(&kernel).for_each(|(value, kernel)| *value *= *kernel / size as f64);
+        // A real signal has no imaginary part there.
+        spectrum[0].im = 0.0;
+        spectrum[size / 2].im = 0.0;
+        inverse.process(&mut spectrum, &mut result).expect("sizes fit");
+    });
+    let exact = |row: usize| (0..=row).map(|j| weights[row - j] * density[j]).sum::<f64>();
+    let first = (result[0] / exact(0) - 1.0).abs();
+    let rows = [0, 1, 2, 5, 10, 100, n / 2, n - 1];
+    let largest = rows.iter().map(|row| exact(*row)).fold(0.0, f64::max);
+    let off = rows.iter().map(|row| (result[*row] - exact(*row)).abs()).fold(0.0, f64::max);
+    (seconds, first, off / largest)
+}
 
 fn main() {
-    let scene = Scene::from_toml(include_str!("../data/scenes/paraboloid.toml"), "scene").unwrap();
-    let contact = scene.contact().unwrap();
-    for n in std::env::args().filter_map(|it| it.parse::<usize>().ok()) {
-        let begin = Instant::now();
-        let model = Model::new(&contact, n, Clustering::Smooth).unwrap();
-        let set_up = begin.elapsed().as_secs_f64();
-        let begin = Instant::now();
-        let state = model.initial_state().unwrap();
-        let start = begin.elapsed().as_secs_f64();
-        let mut fields = model.fields(&state);
-        let drive = model.schedule().drive(0.0, 0.0);
-        let mut cycle = model.cycle(&drive, &state.compression, &fields);
-        let time = |f: &mut dyn FnMut()| {
-            let mut best = f64::INFINITY;
-            for _ in 0..5 {
-                let begin = Instant::now();
-                f();
-                best = best.min(begin.elapsed().as_secs_f64());
-            }
-            best
-        };
-        let evaluation = time(&mut || {
-            model.evaluate(state.edge, &state.compression, &mut fields);
-            cycle = model.cycle(&drive, &state.compression, &fields);
-        });
-        let step = 0.1 / contact.tau_per_cycle();
-        let by_edge = model.log_slip_by_edge(&fields);
-        let mut factors = None;
-        let factorise = time(&mut || {
-            let slopes = model.plain_growth_slopes(&drive, &fields, &cycle, -step).unwrap();
-            factors = model.stage_factors(&fields, 1e-3, slopes, &by_edge);
-        });
-        let factors = factors.unwrap();
-        let mut rhs: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
-        let solve = time(&mut || factors.solve(&mut rhs));
-        let mut out = vec![0.0; n];
-        let apply = time(&mut || model.operators().transforms()[0].apply(&state.compression, &mut out));
-        println!(
-            "{n}: set-up {set_up:.2} s, start {start:.2} s, apply {:.2} ms evaluation {:.2} ms, factors {:.1} ms {} B/spring, solve {:.2} ms",
-            apply * 1e3,
-            evaluation * 1e3,
-            factorise * 1e3,
-            factors.bytes() / n,
-            solve * 1e3
-        );
+    let quick = std::env::args().any(|argument| argument == "--quick");
+    let bandwidth = bandwidth();
+    println!("memory reads {:.1} GB/s on {} threads", 1e-9 * bandwidth, rayon::current_num_threads());
+    println!(
+        "springs | dense: both ms, LU ms, MB | hierarchical: both ms, MB, of bandwidth | evaluation ms, factors ms, solution ms, step ms, MB of factors, set-up s | Fourier ms, error of the first depth, of the largest"
+    );
+    let mut costs = Vec::new();
+    for n in SPRINGS.into_iter().filter(|n| !quick || *n <= QUICK) {
+        print!("{n} |");
+        if n <= MOST_DENSE {
+            let (both, lu, bytes) = dense(n);
+            print!(" {:.3}, {:.2}, {:.1}", 1e3 * both, 1e3 * lu, 1e-6 * bytes);
+        }
+        print!(" |");
+        let mut cost = Cost { springs: n, apply: f64::NAN, bytes: f64::NAN, evaluation: None, step: None };
+        if n >= 300 {
+            let mesh = Mesh::new(n, 10.0, Clustering::Smooth);
+            let operators = AbelOperators::with(Backend::Hierarchical, 0.0, mesh).expect("operators");
+            let [profile, pressure] = operators.hierarchical().expect("hierarchical ones");
+            cost.bytes = (profile.bytes() + pressure.bytes()) as f64;
+            cost.apply = apply(&operators);
+            print!(
+                " {:.3}, {:.1}, {:.2}",
+                1e3 * cost.apply,
+                1e-6 * cost.bytes,
+                cost.bytes / cost.apply / bandwidth
+            );
+        }
+        let [evaluation, factorise, solve, bytes, set_up] = model(n);
+        cost.evaluation = Some(evaluation);
+        print!(" | {:.3}", 1e3 * evaluation);
+        if factorise > 0.0 && bytes > 0.0 {
+            let step = factorise + ITERATIONS * (evaluation + solve);
+            cost.step = Some(step);
+            print!(
+                ", {:.1}, {:.2}, {:.1}, {:.1}, {set_up:.1}",
+                1e3 * factorise,
+                1e3 * solve,
+                1e3 * step,
+                1e-6 * bytes
+            );
+        }
+        let (seconds, first, largest) = fourier(n);
+        println!(" | {:.3}, {first:.1e}, {largest:.1e}", 1e3 * seconds);
+        costs.push(cost);
     }
+    println!(
+        "exponents from {FITTED_FROM} springs on: both transforms {:.2}, their memory {:.2}, evaluation {:.2}, step {:.2}",
+        exponent(&costs, |cost| Some(cost.apply)),
+        exponent(&costs, |cost| Some(cost.bytes)),
+        exponent(&costs, |cost| cost.evaluation),
+        exponent(&costs, |cost| cost.step),
+    );
 }

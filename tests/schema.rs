@@ -537,9 +537,9 @@ fn what_is_refused_after_reading_is_shown_at_its_line_too() {
         ),
         (
             "cycles = 1e6",
-            "cycles = 1e6\n[numerics]\nsprings = 1000000",
-            "springs = 1000000",
-            "numerics.springs: 1000000 springs need",
+            "cycles = 1e6\n[numerics]\nsprings = 1000000000",
+            "springs = 1000000000",
+            "numerics.springs: 1000000000 springs need",
         ),
         (
             "cycles = 1e6",

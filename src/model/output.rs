@@ -14,6 +14,13 @@ const AT_EDGE: f64 = 1e-13;
 /// Places at which the fields on a smooth mesh are shown where its springs are fewer.
 const SHOWN: usize = 128;
 
+/// Most places shown: of more springs every second one, or every third, and so on, inwards from the contact edge. A file of a hundred snapshots
+/// takes 40 MB then.
+const MOST_SHOWN: usize = 16_384;
+
+/// Most springs at which the depth is compared from step to step.
+const MOST_JUDGED: usize = 4096;
+
 /// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
 /// innermost of them may be as strong as the core.
 const MIDDLE: f64 = 2.0;
@@ -189,12 +196,14 @@ impl Model {
         (y, log_slip + worn * (unworn.limit_log_slip() - between))
     }
 
-    /// Wear depth, m, at the places of the limit's springs that are shown, at least zero: fewer than [`Model::radii`] where springs are few.
+    /// Wear depth, m, at the places of the limit's springs that are not hidden, or of one in several where they are many; at least zero.
     pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
         if let Some(stick) = state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
             return stick.wear_depth.clone();
         }
+        let every = self.springs().div_ceil(MOST_JUDGED);
         let places = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
+        let places = places.step_by(every);
         let of_limit = self.limit_log_slip(fields);
         let depth = |(x, unworn): (&f64, &UnwornValues)| {
             let spot = self.spot(state, fields, &of_limit, self.unworn.limit_edge() * x, unworn);
@@ -293,17 +302,19 @@ pub(super) struct Shown {
 }
 
 impl Shown {
-    /// The places of the limit's springs, but for the first ones; on a smooth mesh of few springs, whose polynomials serve between them, at
+    /// The places of the limit's springs, but for the first ones, or of one in several where they are more than [`MOST_SHOWN`]; on a smooth mesh of few springs, whose polynomials serve between them, at
     /// least [`SHOWN`] places, graded as the mesh is, from [`HIDDEN`] to the contact edge.
     pub(super) fn new(unworn: &UnwornSlip, mesh: &Mesh, hidden: usize) -> Self {
         let springs = &mesh.nodes()[1 + hidden..];
-        let fractions = if mesh.clustering() == Clustering::Smooth && springs.len() < SHOWN {
+        let fractions: Vec<f64> = if mesh.clustering() == Clustering::Smooth && springs.len() < SHOWN {
             let like = Mesh::new(SHOWN, mesh.stretch(), Clustering::Smooth);
             let first = like.place(HIDDEN);
             let spacing = (SHOWN as f64 - first) / (SHOWN - 1) as f64;
             (0..SHOWN).map(|i| like.at(SHOWN as f64 - spacing * (SHOWN - 1 - i) as f64).value).collect()
         } else {
-            springs.to_vec()
+            let every = springs.len().div_ceil(MOST_SHOWN);
+            let skipped = (springs.len() - 1) % every;
+            springs.iter().skip(skipped).step_by(every).copied().collect()
         };
         let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_edge() * x).collect();
         Self { unworn: offsets.iter().map(|offset| unworn.at(*offset)).collect(), offsets }
