@@ -16,8 +16,15 @@ const TOLERANCE: f64 = 1e-3;
 /// Leaves of the hierarchical transforms to one of the halved matrix.
 const LEAVES: usize = 2;
 
-/// Distance in springs up to which a weight is that of the transform; beyond it the kernel does, at the spring itself.
-const NEAR: usize = LEAF - 4;
+/// Columns at the far end of what is near to a leaf to which farther cells contribute as well.
+const SHARED: usize = 4;
+
+/// The columns, within a leaf of a row to either side, whose weights are those of the transform; for others the kernel does, at the spring itself.
+fn near(row: usize) -> Range<usize> {
+    let leaf = row / LEAF;
+    let first = if leaf < 2 { 0 } else { (leaf - 1) * LEAF + SHARED };
+    first..(leaf + 2) * LEAF - SHARED
+}
 
 /// Both transforms of a mesh, halved again and again.
 #[derive(Debug)]
@@ -118,7 +125,7 @@ impl AbelOperators {
     /// where it is a rounding.
     pub fn profile_weight(&self, i: usize, j: usize) -> f64 {
         let Some([profile, _]) = self.hierarchical() else { return self.profile()[(i, j)] };
-        if i < j + NEAR {
+        if i < j || near(i).contains(&j) {
             return profile.near_weight(i, j);
         }
         let nu = 0.5 * (1.0 + self.grading);
@@ -134,13 +141,14 @@ impl AbelOperators {
             // At the contact edge there is no compression.
             return 0.0;
         }
-        if j < i + NEAR {
+        if j < i || near(i).contains(&j) {
             let before = if j > 0 { pressure.near_weight(i, j - 1) } else { 0.0 };
             return before - pressure.near_weight(i, j);
         }
         let mu = 0.5 * (1.0 - self.grading);
-        let far = self.mesh.node(j + 1);
-        -mu * far.minus(&self.mesh.node(i + 1)).powf(-mu - 1.0) * far.slope
+        let distance = self.mesh.node(j + 1).minus(&self.mesh.node(i + 1));
+        // By parts: what the local polynomials have under the derivative of the kernel.
+        -mu * distance.powf(-mu - 1.0) * self.spring_sum[j]
     }
 
     /// Weights of both transforms next to the diagonal, of hierarchical operators: of Eq. (20) for the springs `rows`, of Eq. (21) for the springs
@@ -153,9 +161,8 @@ impl AbelOperators {
         let (count, own) = (columns.len(), columns.clone());
         let mut carried = Mat::zeros(rows.len(), count);
         profile.add_near(rows.clone(), columns.clone(), 1.0, &mut carried);
-        // Of the rows ahead, some are too far from the first columns to have weights of their own.
-        for i in rows.clone().skip_while(|row| *row < columns.start + NEAR) {
-            for j in columns.start..(i - NEAR + 1).min(columns.end) {
+        for i in rows.clone() {
+            for j in columns.start..near(i).start.min(columns.end) {
                 carried[(i - rows.start, j - columns.start)] = self.profile_weight(i, j);
             }
         }
@@ -171,8 +178,8 @@ impl AbelOperators {
                 pressed[(i, j + skipped)] += shifted[(i, j)];
             }
         }
-        for j in own.clone().skip_while(|column| *column < own.start + NEAR) {
-            for i in own.start..(j - NEAR + 1).min(own.end) {
+        for i in own.clone() {
+            for j in near(i).end..own.end {
                 pressed[(i - own.start, j - own.start)] = self.pressure_weight(i, j);
             }
         }
