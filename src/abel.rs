@@ -90,7 +90,7 @@ pub enum Backend {
 #[derive(Debug, Clone)]
 enum Pair {
     Dense([Matrix; 2]),
-    Hierarchical([Hierarchical; 2]),
+    Hierarchical(Box<[Hierarchical; 2]>),
 }
 
 /// Product-integration operators of one grading on one mesh.
@@ -132,7 +132,7 @@ impl AbelOperators {
         let pair = match backend {
             Backend::Dense => Pair::Dense(BOTH.map(|direction| Matrix::new(&assembly, direction))),
             Backend::Hierarchical => {
-                Pair::Hierarchical(BOTH.map(|direction| Hierarchical::new(&assembly, direction)))
+                Pair::Hierarchical(Box::new(BOTH.map(|direction| Hierarchical::new(&assembly, direction))))
             }
         };
         Ok(Self { grading, mesh, pair, spring_sum, depth_sum })
@@ -143,7 +143,7 @@ impl AbelOperators {
     pub fn transforms(&self) -> [&dyn Transform; 2] {
         match &self.pair {
             Pair::Dense([profile, pressure]) => [profile, pressure],
-            Pair::Hierarchical([profile, pressure]) => [profile, pressure],
+            Pair::Hierarchical(pair) => [&pair[0], &pair[1]],
         }
     }
 
@@ -159,7 +159,7 @@ impl AbelOperators {
     pub fn hierarchical(&self) -> Option<[&Hierarchical; 2]> {
         match &self.pair {
             Pair::Dense(_) => None,
-            Pair::Hierarchical([profile, pressure]) => Some([profile, pressure]),
+            Pair::Hierarchical(pair) => Some([&pair[0], &pair[1]]),
         }
     }
 

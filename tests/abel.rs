@@ -2,7 +2,7 @@
 
 mod support;
 
-use fretwear::abel::{AbelOperators, Transform};
+use fretwear::abel::AbelOperators;
 use fretwear::grid::{Clustering, Mesh};
 use fretwear::linear::{dot, multiply};
 use libm::tgamma;

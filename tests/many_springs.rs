@@ -109,10 +109,10 @@ fn blocks_of_low_rank_are_found_from_some_of_their_rows_and_columns() {
         [0.01f64, 0.1, 1.0].iter().map(|rate| (-rate * (i as f64 - j as f64)).exp()).sum()
     };
     let found = LowRank::new(50..130, 0..50, 50, entry, 1e-12);
-    assert!(found.len() <= 4, "{} terms", found.len());
+    assert!(found.terms() <= 4, "{} terms", found.terms());
     for i in 50..130 {
         for j in 0..50 {
-            let sum: f64 = (0..found.len()).map(|t| found.rows[t][i - 50] * found.columns[t][j]).sum();
+            let sum: f64 = (0..found.terms()).map(|t| found.rows[t][i - 50] * found.columns[t][j]).sum();
             assert!((sum - entry(i, j)).abs() < 1e-13, "({i}, {j}): {sum} for {}", entry(i, j));
         }
     }

@@ -349,7 +349,7 @@ fn scenes_that_cannot_be_simulated_are_refused_with_the_key_the_value_and_the_cu
     for (text, words) in [
         (with("amplitude = 0"), ["loading.amplitude", "stuck", "ask for more"]),
         (with("stick_ratio = 1"), ["loading.stick_ratio", "stuck", "ask for more"]),
-        (springs("10000000"), ["numerics.springs", "4000000.0 GB", "ask for at most"]),
+        (springs("10000000"), ["numerics.springs", "120.0 GB", "ask for at most"]),
         (springs("9223372036854775807"), ["numerics.springs", "GB", "ask for at most"]),
         (springs("5"), ["numerics.springs", "5", "outside [8, inf)"]),
     ] {

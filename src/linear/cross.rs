@@ -61,7 +61,7 @@ impl LowRank {
     }
 
     /// Number of products.
-    pub fn len(&self) -> usize {
+    pub fn terms(&self) -> usize {
         self.rows.len()
     }
 

@@ -152,7 +152,6 @@ enum Plan {
 impl Plan {
     fn new(halves: &Halves, parts: &mut Parts) -> Self {
         Self::part(
-            halves,
             &mut halves.splits.iter().peekable(),
             parts,
             0..halves.leaves.last().map_or(0, |it| it.end),
@@ -160,7 +159,6 @@ impl Plan {
     }
 
     fn part<'a>(
-        halves: &Halves,
         splits: &mut std::iter::Peekable<impl Iterator<Item = &'a Split>>,
         parts: &mut Parts,
         rows: Range<usize>,
@@ -169,8 +167,8 @@ impl Plan {
             return Self::Leaf(parts.leaves.next().expect("a block for each leaf"));
         };
         let blocks = parts.off_diagonal.next().expect("blocks for each split");
-        let first = Self::part(halves, splits, parts, rows.start..split.middle);
-        let second = Self::part(halves, splits, parts, split.middle..rows.end);
+        let first = Self::part(splits, parts, rows.start..split.middle);
+        let second = Self::part(splits, parts, split.middle..rows.end);
         let middle = split.middle - rows.start;
         Self::Split { middle, blocks: Box::new(blocks), halves: Box::new([first, second]) }
     }

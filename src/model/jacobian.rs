@@ -240,10 +240,10 @@ impl Jacobian<'_> {
             middle - Block::BACK..middle,
             scale,
         );
-        let terms = block.profile.len();
+        let terms = block.profile.terms();
         let across = if self.along != 0.0 { Block::BACK } else { 0 };
-        let mut left = Mat::zeros(end - middle, terms + across + beside.len());
-        let mut right = Mat::zeros(middle - start, terms + across + beside.len());
+        let mut left = Mat::zeros(end - middle, terms + across + beside.terms());
+        let mut right = Mat::zeros(middle - start, terms + across + beside.terms());
         let mut product = vec![0.0; end - middle];
         for (term, row) in block.profile.rows.iter().enumerate() {
             product.fill(0.0);
@@ -271,9 +271,9 @@ impl Jacobian<'_> {
         let (corner_rows, corner_columns) =
             (middle.saturating_sub(CORNER).max(start)..middle, middle..(middle + CORNER).min(end));
         let beside = self.beside(operators, corner_rows.clone(), corner_columns, scale);
-        let terms = if self.pressure_factor == 0.0 { 0 } else { block.pressure.len() };
-        let mut left = Mat::zeros(middle - start, terms + beside.len());
-        let mut right = Mat::zeros(end - middle, terms + beside.len());
+        let terms = if self.pressure_factor == 0.0 { 0 } else { block.pressure.terms() };
+        let mut left = Mat::zeros(middle - start, terms + beside.terms());
+        let mut right = Mat::zeros(end - middle, terms + beside.terms());
         for term in 0..terms {
             let to = left.col_as_slice_mut(term);
             fill(to, self.pressure_factor, &scale[start..middle], &block.pressure.rows[term]);
