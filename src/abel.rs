@@ -10,7 +10,7 @@
 //!
 //! `F` integrates the local polynomial through the densities `s^(ν-1) q`, `P` the one through the compressions `q`, both against the exact
 //! kernel, with Gauss-Jacobi rules where that is singular. Polynomials are those of the [`Mesh`]. Where the clustering is
-//! [`Clustering::Smooth`], the compression is linear in the last cell: the contact edge meets unworn ground there, and a polynomial of degree 5
+//! [`Clustering::Smooth`](crate::grid::Clustering::Smooth), the compression is linear in the last cell: the contact edge meets unworn ground there, and a polynomial of degree 5
 //! through it makes the pressure next to it negative on coarse meshes. In the first cell, which the mesh makes tiny, the compression is
 //! constant: it may jump at the stick edge, as it does in the limit.
 //!
