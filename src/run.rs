@@ -255,7 +255,7 @@ impl Run {
         let (contact, numerics) = (scene.contact()?, scene.numerics());
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
         if numerics.springs.is_some_and(|springs| springs > QUICKLY_TRIED) {
-            return mesh::check_memory(numerics, &schedule);
+            return mesh::check_memory(numerics, &schedule, contact.half_space().grading());
         }
         mesh::model(&contact, &schedule, numerics, None, &OperatorStore::default()).map(|_| ())
     }

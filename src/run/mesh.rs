@@ -74,7 +74,7 @@ pub(super) fn model(
     let chosen = || springs_for(clusterings[0], contact, numerics.accuracy);
     let mut springs = given.or(wanted).unwrap_or_else(chosen);
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
-    check_memory_of(key, springs, schedule.wears_smoothly())?;
+    check_memory_of(key, springs, schedule.wears_smoothly(), grading)?;
     let allowed = match given {
         Some(_) => Quality { compression: COARSEST, volume: COARSEST_VOLUME, round_off: ROUND_OFF },
         None => Quality { compression: COARSE, volume: numerics.accuracy, round_off: ROUND_OFF },
@@ -164,14 +164,14 @@ fn too_coarse(contact: &InitialContact, springs: usize, by_hand: bool, quality: 
 ///
 /// # Errors
 /// [`Error::Inconsistent`] with the figures.
-pub(super) fn check_memory(numerics: &Numerics, schedule: &Schedule) -> Result<()> {
+pub(super) fn check_memory(numerics: &Numerics, schedule: &Schedule, grading: f64) -> Result<()> {
     let smooth = schedule.wears_smoothly();
-    numerics.springs.map_or(Ok(()), |springs| check_memory_of("numerics.springs", springs, smooth))
+    numerics.springs.map_or(Ok(()), |springs| check_memory_of("numerics.springs", springs, smooth, grading))
 }
 
 /// Refuses springs for which the operators do not fit into the memory that is free.
-fn check_memory_of(key: &'static str, springs: usize, smooth: bool) -> Result<()> {
-    let needed = |springs: usize| match Model::backend(springs, smooth) {
+fn check_memory_of(key: &'static str, springs: usize, smooth: bool, grading: f64) -> Result<()> {
+    let needed = |springs: usize| match Model::backend(springs, smooth, grading) {
         Backend::Dense => BYTES_PER_PAIR * (springs as f64).powi(2),
         Backend::Hierarchical => BYTES_PER_SPRING * springs as f64,
     };
@@ -179,7 +179,7 @@ fn check_memory_of(key: &'static str, springs: usize, smooth: bool) -> Result<()
     if needed(springs) < free {
         return Ok(());
     }
-    let most = match Model::backend(springs, smooth) {
+    let most = match Model::backend(springs, smooth, grading) {
         Backend::Dense => (free / BYTES_PER_PAIR).sqrt(),
         Backend::Hierarchical => free / BYTES_PER_SPRING,
     };
