@@ -173,6 +173,7 @@ impl Model {
         clustering: Clustering,
         store: &OperatorStore,
     ) -> Result<Self> {
+        let backend = Self::backend(contact, &schedule, springs);
         let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
         let Reach { contact, slides } = if uniform {
             Reach { contact: contact.clone(), slides: false }
@@ -212,8 +213,6 @@ impl Model {
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
         let natural = (unworn.limit_edge() / stick_radius_squared).ln_1p();
         let stretch = clustering.stretch(natural, grading);
-        let backend =
-            Self::backend(springs, schedule.wears_smoothly() && moving.is_none() && !slides, grading);
         let operators = store.get(grading, stretch, springs, clustering, backend)?;
         let radial_unworn: Vec<_> =
             operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
@@ -244,11 +243,12 @@ impl Model {
         })
     }
 
-    /// The operators that serve a number of springs at a grading: hierarchical ones where springs are many and wear has no kinks, see
-    /// [`Model::wears_smoothly`].
-    pub fn backend(springs: usize, smooth: bool, grading: f64) -> Backend {
-        let serve = smooth && springs >= HIERARCHICAL && grading >= SOFTEST_HIERARCHICAL;
-        if serve { Backend::Hierarchical } else { Backend::Dense }
+    /// The operators that serve a contact on a number of springs: hierarchical ones where those are many, wear has no kinks and the edge of
+    /// stick stays where it is.
+    pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
+        let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
+        let serve = springs >= HIERARCHICAL && contact.half_space().grading() >= SOFTEST_HIERARCHICAL;
+        if schedule.wears_smoothly() && stays && serve { Backend::Hierarchical } else { Backend::Dense }
     }
 
     /// The unworn contact.

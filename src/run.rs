@@ -25,6 +25,7 @@ mod knob;
 mod mesh;
 mod recorder;
 
+pub(crate) use mesh::operator_bytes;
 use recorder::{Recorder, snapshot};
 
 /// Part of the run at which the first of geometrically spread snapshots is taken.
@@ -38,12 +39,6 @@ const SPRINGS_TO_SLIDE: usize = 60;
 
 /// Springs on which a contact is tried in a tenth of a second.
 const QUICKLY_TRIED: usize = 400;
-
-/// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
-pub(crate) const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
-
-/// Bytes held per spring where operators are hierarchical.
-const BYTES_PER_SPRING: f64 = 12e3;
 
 /// What a finished or interrupted run comes to; SI.
 #[derive(Debug, Clone)]
@@ -247,15 +242,16 @@ impl Run {
 
     /// Refuses what [`Run::new`] would refuse for its mesh: springs that do not carry the contact, or do not fit into memory.
     ///
-    /// Where more springs are asked for than can be tried in a moment, only their memory is looked at.
+    /// Where more springs are asked for than can be tried in a moment, and where the contact slides as a whole, only their memory is looked at.
     ///
     /// # Errors
     /// As [`Run::new`].
     pub fn check_mesh(scene: &Scene) -> Result<()> {
         let (contact, numerics) = (scene.contact()?, scene.numerics());
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
-        if numerics.springs.is_some_and(|springs| springs > QUICKLY_TRIED) {
-            return mesh::check_memory(numerics, &schedule, contact.half_space().grading());
+        let many = numerics.springs.is_some_and(|springs| springs > QUICKLY_TRIED);
+        if many || contact.regime() == Regime::FullSliding {
+            return mesh::check_memory(numerics, &contact, &schedule);
         }
         mesh::model(&contact, &schedule, numerics, None, &OperatorStore::default()).map(|_| ())
     }

@@ -360,6 +360,26 @@ fn scenes_that_cannot_be_simulated_are_refused_with_the_key_the_value_and_the_cu
 }
 
 #[test]
+fn springs_whose_matrices_are_dense_are_refused_where_there_is_no_memory_for_those() {
+    let numerics = "[numerics]\nsprings = 100000";
+    let slides = scene(0.2, "amplitude = \"1 mm\"\ntau = 1", numerics);
+    let held = scene(0.2, "amplitude = \"0.3 um\"\ntau = 1", numerics)
+        .replace("indentation = \"1 um\"", "normal_force = 10");
+    for text in [slides, held] {
+        let folder = folder_with(&text);
+        for command in ["check", "run"] {
+            refused(
+                folder.path(),
+                &[command, "scene.toml", "--json"],
+                2,
+                &["numerics.springs", "400.0 GB", "at most"],
+            );
+        }
+        assert_eq!(names(folder.path()), ["scene.toml"]);
+    }
+}
+
+#[test]
 fn a_cycle_that_wears_too_much_for_every_cycle_fails_the_run() {
     let numerics = "[numerics]\nstepper = \"every-cycle\"";
     let text = scene(0.2, "stick_ratio = 0.6\ncycles = 1000", numerics).replace("1e-12", "1e-9");

@@ -100,11 +100,11 @@ impl CheckReport {
     /// Derives the quantities.
     ///
     /// # Errors
-    /// As [`InitialContact::new`], [`LimitingShape::from_contact`] and, under partial slip, [`Run::check_mesh`]; [`Error::Inconsistent`] if the number of cycles overflows.
+    /// As [`InitialContact::new`], [`LimitingShape::from_contact`] and, where something slips, [`Run::check_mesh`]; [`Error::Inconsistent`] if the number of cycles overflows.
     pub fn new(scene: &Scene) -> Result<Self> {
         let contact = scene.contact()?;
         let limit = LimitingShape::from_contact(&contact)?;
-        if contact.regime() == Regime::PartialSlip {
+        if contact.regime() != Regime::Stick {
             Run::check_mesh(scene)?;
         }
         let of_limit =

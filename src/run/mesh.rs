@@ -1,7 +1,7 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
 use super::knob::{smallness, springs_for};
-use super::{BYTES_PER_PAIR, BYTES_PER_SPRING, memory_figure};
+use super::memory_figure;
 use crate::abel::Backend;
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
@@ -32,6 +32,12 @@ const ROUND_OFF: f64 = 1e-2;
 
 /// By how much the number of springs is raised that do not do.
 const RAISE: f64 = 1.3;
+
+/// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
+const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
+
+/// Bytes held per spring where operators are hierarchical.
+const BYTES_PER_SPRING: f64 = 12e3;
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
 pub(super) const MOST_RAISED: usize = 600;
@@ -74,7 +80,7 @@ pub(super) fn model(
     let chosen = || springs_for(clusterings[0], contact, numerics.accuracy);
     let mut springs = given.or(wanted).unwrap_or_else(chosen);
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
-    check_memory_of(key, springs, schedule.wears_smoothly(), grading)?;
+    check_memory_of(key, springs, contact, schedule)?;
     let allowed = match given {
         Some(_) => Quality { compression: COARSEST, volume: COARSEST_VOLUME, round_off: ROUND_OFF },
         None => Quality { compression: COARSE, volume: numerics.accuracy, round_off: ROUND_OFF },
@@ -164,22 +170,24 @@ fn too_coarse(contact: &InitialContact, springs: usize, by_hand: bool, quality: 
 ///
 /// # Errors
 /// [`Error::Inconsistent`] with the figures.
-pub(super) fn check_memory(numerics: &Numerics, schedule: &Schedule, grading: f64) -> Result<()> {
-    let smooth = schedule.wears_smoothly();
-    numerics.springs.map_or(Ok(()), |springs| check_memory_of("numerics.springs", springs, smooth, grading))
+pub(super) fn check_memory(numerics: &Numerics, contact: &InitialContact, schedule: &Schedule) -> Result<()> {
+    numerics.springs.map_or(Ok(()), |springs| check_memory_of("numerics.springs", springs, contact, schedule))
 }
 
 /// Refuses springs for which the operators do not fit into the memory that is free.
-fn check_memory_of(key: &'static str, springs: usize, smooth: bool, grading: f64) -> Result<()> {
-    let needed = |springs: usize| match Model::backend(springs, smooth, grading) {
-        Backend::Dense => BYTES_PER_PAIR * (springs as f64).powi(2),
-        Backend::Hierarchical => BYTES_PER_SPRING * springs as f64,
-    };
+fn check_memory_of(
+    key: &'static str,
+    springs: usize,
+    contact: &InitialContact,
+    schedule: &Schedule,
+) -> Result<()> {
     let Some(free) = free_memory() else { return Ok(()) };
-    if needed(springs) < free {
+    let backend = Model::backend(contact, schedule, springs);
+    let needed = operator_bytes(backend, springs);
+    if needed < free {
         return Ok(());
     }
-    let most = match Model::backend(springs, smooth, grading) {
+    let most = match backend {
         Backend::Dense => (free / BYTES_PER_PAIR).sqrt(),
         Backend::Hierarchical => free / BYTES_PER_SPRING,
     };
@@ -187,11 +195,20 @@ fn check_memory_of(key: &'static str, springs: usize, smooth: bool, grading: f64
         what: key,
         why: format!(
             "{springs} springs need {:.1} GB for their operators and {:.1} GB are free; ask for at most {} (numerics.springs)",
-            needed(springs) * 1e-9,
+            needed * 1e-9,
             free * 1e-9,
             most.floor()
         ),
     })
+}
+
+/// Memory, bytes, that operators take with Newton's matrix and its factors, about.
+pub(crate) fn operator_bytes(backend: Backend, springs: usize) -> f64 {
+    let springs = springs as f64;
+    match backend {
+        Backend::Dense => BYTES_PER_PAIR * springs * springs,
+        Backend::Hierarchical => BYTES_PER_SPRING * springs,
+    }
 }
 
 /// Free memory, bytes, where the system tells.

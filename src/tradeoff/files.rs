@@ -59,7 +59,7 @@ const NUMBERS: [Number; 16] = [
     }),
     (label("steps", "1", "steps accepted"), |row| cost(row, |it| it.steps as f64)),
     (label("rejected_steps", "1", "steps rejected"), |row| cost(row, |it| it.rejected_steps as f64)),
-    (label("memory", "byte", "memory of the dense operators, estimated"), |row| cost(row, |it| it.memory)),
+    (label("memory", "byte", "memory of the operators, estimated"), |row| cost(row, |it| it.memory)),
     (
         label(
             "volume_error_max",

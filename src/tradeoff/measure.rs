@@ -9,7 +9,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::run::{BYTES_PER_PAIR, Run, Shared};
+use crate::run::{Run, Shared, operator_bytes};
 use crate::scene::Scene;
 use crate::simulation::{Flow, Observer, Simulation};
 use crate::snapshot::{AtomicFile, RunFile, StopReason, make_folder};
@@ -32,7 +32,7 @@ pub struct Cost {
     pub steps: u64,
     /// Steps rejected.
     pub rejected_steps: u64,
-    /// Memory of its dense operators, bytes, estimated from the springs.
+    /// Memory of its operators, bytes, estimated from the springs.
     pub memory: f64,
     /// Springs, asked for or chosen.
     pub springs: usize,
@@ -206,7 +206,8 @@ impl<'a> Runs<'a> {
             ..Shared::default()
         };
         let run = Run::one_of_many(scene, &stopped, &shared)?;
-        let (springs, tolerance) = (run.simulation().model().springs(), run.simulation().tolerance());
+        let (model, tolerance) = (run.simulation().model(), run.simulation().tolerance());
+        let (springs, backend) = (model.springs(), model.operators().backend());
         let (result, file) = run.execute_keeping(Some(&mut Deadline { started, most_seconds }))?;
         let wall_seconds = started.elapsed().as_secs_f64();
         if self.shared.stop.load(Ordering::Relaxed) {
@@ -229,7 +230,7 @@ impl<'a> Runs<'a> {
             rate_evaluations: progress.rate_evaluations,
             steps: progress.steps,
             rejected_steps: progress.rejected_steps,
-            memory: BYTES_PER_PAIR * (springs as f64).powi(2),
+            memory: operator_bytes(backend, springs),
             springs,
             tolerance,
         })))
