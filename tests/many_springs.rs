@@ -116,6 +116,17 @@ fn blocks_of_low_rank_are_found_from_some_of_their_rows_and_columns() {
             assert!((sum - entry(i, j)).abs() < 1e-13, "({i}, {j}): {sum} for {}", entry(i, j));
         }
     }
+    // A fourth exponential, much smaller, is left out again.
+    let small = |i: usize, j: usize| entry(i, j) + 1e-5 * (-0.3 * (i as f64 - j as f64)).exp();
+    let shorter = LowRank::new(50..130, 0..50, 50, small, 1e-12).truncated(1e-4);
+    assert_eq!(shorter.terms(), 3);
+    let off = |i: usize, j: usize| {
+        let sum: f64 = (0..3).map(|t| shorter.rows[t][i - 50] * shorter.columns[t][j]).sum();
+        (sum - small(i, j)).abs()
+    };
+    let largest =
+        (50..130).flat_map(|i| (0..50).map(move |j| (i, j))).map(|(i, j)| off(i, j)).fold(0.0, f64::max);
+    assert!(largest < 1e-4 && largest > 1e-8, "off by {largest:e}");
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use faer::{Mat, MatRef};
+
 /// Most pairs of vectors of a block.
 const MOST_TERMS: usize = 60;
 
@@ -58,6 +60,32 @@ impl LowRank {
             pivot_row = next;
         }
         found
+    }
+
+    /// The same in the fewest products, but for those whose singular values are no larger than a tolerance: crosses are half as many again as
+    /// it takes.
+    #[must_use]
+    pub fn truncated(&self, tolerance: f64) -> Self {
+        let terms = self.terms();
+        let matrix = |vectors: &[Vec<f64>]| {
+            Mat::from_fn(vectors.first().map_or(0, Vec::len), terms, |i, term| vectors[term][i])
+        };
+        let [rows, columns] = [&self.rows, &self.columns].map(|vectors| matrix(vectors).qr());
+        // Products that are no numbers have no singular values; they are left as they are, for whoever applies them to notice.
+        let Ok(svd) = (rows.thin_R() * columns.thin_R().transpose()).thin_svd() else { return self.clone() };
+        let sizes = svd.S().column_vector();
+        let kept = sizes.iter().take_while(|size| **size > tolerance).count();
+        let vectors = |basis: Mat<f64>, sides: MatRef<'_, f64>| -> Vec<Vec<f64>> {
+            (basis * sides.subcols(0, kept))
+                .col_iter()
+                .map(|column| column.iter().copied().collect())
+                .collect()
+        };
+        let mut rows = vectors(rows.compute_thin_Q(), svd.U());
+        for (row, size) in rows.iter_mut().zip(sizes.iter()) {
+            row.iter_mut().for_each(|value| *value *= size);
+        }
+        Self { rows, columns: vectors(columns.compute_thin_Q(), svd.V()) }
     }
 
     /// Number of products.
