@@ -89,7 +89,7 @@ fn model(n: usize) -> [f64; 5] {
     let factorise = least(|| {
         factors = None;
         let slopes = model.plain_growth_slopes(&drive, &fields, &cycle, -step).expect("a plain cycle");
-        factors = model.stage_factors(&fields, 1e-3, slopes, &by_edge);
+        factors = model.stage_factors(&fields, 1e-3, slopes, &by_edge, factors.take());
     });
     let Some(factors) = factors else { return [evaluation, 0.0, 0.0, 0.0, set_up] };
     let mut rhs: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();

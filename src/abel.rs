@@ -173,6 +173,11 @@ impl AbelOperators {
         self.len() == 0
     }
 
+    /// Grading `k`.
+    pub fn grading(&self) -> f64 {
+        self.grading
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh

@@ -54,9 +54,6 @@ const HIDDEN: f64 = 3e-5;
 /// Springs from which on hierarchical operators serve wear without kinks.
 const HIERARCHICAL: usize = 1000;
 
-/// Grading below which factors in single precision lose Newton's method: with 3,000 springs at -0.9 steps shrank to nothing, at -0.8 nothing was amiss.
-const SOFTEST_HIERARCHICAL: f64 = -0.85;
-
 /// Fewest springs on which the local polynomials fit.
 pub const FEWEST_SPRINGS: usize = 8;
 
@@ -247,8 +244,8 @@ impl Model {
     /// stick stays where it is.
     pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
         let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
-        let serve = springs >= HIERARCHICAL && contact.half_space().grading() >= SOFTEST_HIERARCHICAL;
-        if schedule.wears_smoothly() && stays && serve { Backend::Hierarchical } else { Backend::Dense }
+        let serve = springs >= HIERARCHICAL && schedule.wears_smoothly() && stays;
+        if serve { Backend::Hierarchical } else { Backend::Dense }
     }
 
     /// The unworn contact.

@@ -355,7 +355,7 @@ impl Simulation {
             let error = trial.error / self.tolerance;
             let accepted = match trial.state {
                 Some(state) if error <= 1.0 => {
-                    let fields = self.model.fields(&state);
+                    let fields = trial.fields.unwrap_or_else(|| self.model.fields(&state));
                     let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
                     let rate = rate_of_wear(&self.model, &fields, &cycle);
                     if let Some(shorter) = self.overshoot(rate, step) {

@@ -14,13 +14,15 @@ pub use moving_stick::MovingStickImplicit;
 pub use multistep::Multistep;
 
 use crate::error::Result;
-use crate::model::{Model, State};
+use crate::model::{Fields, Model, State};
 
 /// A step that was tried; accepting it is an assignment, so a failed one changes nothing.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Trial {
     /// The state after the step, `None` if none was found or it is none of a contact.
     pub state: Option<State>,
+    /// The fields of that state, where the method has them.
+    pub fields: Option<Fields>,
     /// Estimated error of the step in the wear depth, relative to the largest depth of the limit.
     pub error: f64,
     /// Evaluations of pressure, slip and wear that the trial took.
@@ -32,7 +34,7 @@ pub struct Trial {
 impl Trial {
     /// A trial that found no state.
     pub fn failed(rate_evaluations: u64) -> Self {
-        Self { state: None, error: f64::INFINITY, rate_evaluations, next_step: None }
+        Self { state: None, fields: None, error: f64::INFINITY, rate_evaluations, next_step: None }
     }
 }
 

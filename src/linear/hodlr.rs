@@ -5,14 +5,16 @@
 //!     | U₂ V₁ᵀ  A₂     |       |    A₂ |       | Y₂ V₁ᵀ   0    |
 //! ```
 //!
-//! In single precision: it is for matrices whose diagonal is one and that are known to some digits only, and takes half the time and memory.
 //! The halves are of the same kind down to dense leaves, so that factors cost `O(n log² n)` and solutions `O(n log n)` operations (HODLR:
-//! Ambikasaran & Darve, J. Sci. Comput. 57:477, 2013).
+//! Ambikasaran & Darve, J. Sci. Comput. 57:477, 2013). In single precision, where that does, they take half the time and memory.
 
 use std::ops::Range;
 
 use faer::linalg::matmul::matmul;
+use faer::traits::RealField;
+use faer::traits::math_utils::{one, zero};
 use faer::{Accum, Mat, MatMut, MatRef, Par};
+use rayon::prelude::*;
 
 use super::Factors;
 
@@ -34,229 +36,293 @@ pub struct Split {
 pub struct Halves {
     /// Each before the halves of its parts.
     pub splits: Vec<Split>,
-    /// From the first row on.
+    /// From the first row on; all but the last have the same number of rows.
     pub leaves: Vec<Range<usize>>,
+    /// For each leaf the splits that it is in, from the whole matrix down.
+    above: Vec<Vec<usize>>,
 }
 
 impl Halves {
     /// Halves `n` rows at multiples of `leaf` until parts are no larger.
     pub fn new(n: usize, leaf: usize) -> Self {
-        let mut halves = Self { splits: Vec::new(), leaves: Vec::new() };
-        halves.divide(0, n, 0, leaf);
+        let mut halves = Self { splits: Vec::new(), leaves: Vec::new(), above: Vec::new() };
+        halves.divide(0..n, leaf, &mut Vec::new());
         halves
     }
 
-    fn divide(&mut self, start: usize, end: usize, level: usize, leaf: usize) {
-        let leaves = (end - start).div_ceil(leaf);
+    fn divide(&mut self, rows: Range<usize>, leaf: usize, above: &mut Vec<usize>) {
+        let leaves = rows.len().div_ceil(leaf);
         if leaves <= 1 {
-            self.leaves.push(start..end);
+            self.leaves.push(rows);
+            self.above.push(above.clone());
             return;
         }
+        let (start, end) = (rows.start, rows.end);
         let middle = start + leaves / 2 * leaf;
-        self.splits.push(Split { level, start, middle, end });
-        self.divide(start, middle, level + 1, leaf);
-        self.divide(middle, end, level + 1, leaf);
+        above.push(self.splits.len());
+        self.splits.push(Split { level: above.len() - 1, start, middle, end });
+        self.divide(start..middle, leaf, above);
+        self.divide(middle..end, leaf, above);
+        above.pop();
     }
 }
 
-/// The blocks off the diagonal of a [`Split`]: `upper = [U₁, V₂]`, `lower = [U₂, V₁]`, columns a term each.
+/// The blocks off the diagonal: `U` and `V` of all splits, columns a term each.
+///
+/// Splits of one level have the same columns. In the rows of its first half are `U₁` and `V₁`, in those of its second `U₂` and `V₂`.
 #[derive(Debug, Clone)]
-pub struct OffDiagonal {
-    pub upper: [Mat<f32>; 2],
-    pub lower: [Mat<f32>; 2],
+pub struct OffDiagonal<T> {
+    rows: usize,
+    /// For each split the terms of `U₁ V₂ᵀ` and of `U₂ V₁ᵀ`.
+    terms: Vec<[usize; 2]>,
+    /// Where the columns of each level begin, and their number.
+    columns: Vec<usize>,
+    left: Vec<T>,
+    right: Vec<T>,
+}
+
+/// What a leaf has of `U` and `V` of a split that it is in.
+#[derive(Debug)]
+pub struct Sides<'a, T> {
+    /// The split.
+    pub split: usize,
+    /// Whether the leaf is in its first half.
+    pub is_first: bool,
+    /// `U`, shape `(rows, terms)`, zero at first.
+    pub left: MatMut<'a, T>,
+    /// `V`, likewise.
+    pub right: MatMut<'a, T>,
+}
+
+impl<T: RealField + Copy> OffDiagonal<T> {
+    /// Makes blocks, leaf by leaf.
+    ///
+    /// # Arguments
+    /// * `terms` -- for each of [`Halves::splits`] the terms of `U₁ V₂ᵀ` and of `U₂ V₁ᵀ`
+    /// * `memory` -- of blocks that are not needed any more, if there are some: new pages take as long as all of the rest
+    /// * `fill` -- is called for every leaf with each of the splits that it is in
+    pub fn new(
+        halves: &Halves,
+        terms: Vec<[usize; 2]>,
+        memory: Option<Self>,
+        fill: impl Fn(Range<usize>, Sides<'_, T>) + Sync,
+    ) -> Self {
+        let levels = halves.above.iter().map(Vec::len).max().unwrap_or(0);
+        let mut columns = vec![0; levels + 1];
+        for (split, terms) in halves.splits.iter().zip(&terms) {
+            let width = &mut columns[split.level + 1];
+            *width = terms[0].max(terms[1]).max(*width);
+        }
+        for level in 0..levels {
+            columns[level + 1] += columns[level];
+        }
+        let n = halves.leaves.last().map_or(0, |leaf| leaf.end);
+        let [left, right] =
+            memory.map_or_else(Default::default, |it| [it.left, it.right]).map(|mut values| {
+                values.resize(n * columns[levels], zero::<T>());
+                values
+            });
+        let mut blocks = Self { rows: n, terms, left, right, columns };
+        blocks.fill(halves, fill);
+        blocks
+    }
+
+    fn fill(&mut self, halves: &Halves, fill: impl Fn(Range<usize>, Sides<'_, T>) + Sync) {
+        let (n, width) = self.shape();
+        let (terms, columns) = (&self.terms, &self.columns);
+        let size = halves.leaves.first().map_or(1, Range::len);
+        let left = MatMut::from_column_major_slice_mut(&mut self.left, n, width).par_row_chunks_mut(size);
+        let right = MatMut::from_column_major_slice_mut(&mut self.right, n, width).par_row_chunks_mut(size);
+        let leaves = halves.leaves.par_iter().zip(&halves.above);
+        leaves.zip(left.zip(right)).for_each(|((leaf, above), (mut left, mut right))| {
+            left.fill(zero());
+            right.fill(zero());
+            for &split in above {
+                let Split { level, middle, .. } = halves.splits[split];
+                let is_first = leaf.start < middle;
+                let [upper, lower] = terms[split];
+                let [of_left, of_right] = if is_first { [upper, lower] } else { [lower, upper] };
+                let left = left.as_mut().subcols_mut(columns[level], of_left);
+                let right = right.as_mut().subcols_mut(columns[level], of_right);
+                fill(leaf.clone(), Sides { split, is_first, left, right });
+            }
+        });
+    }
 }
 
 /// Factors of such a matrix.
 #[derive(Debug)]
-pub struct HodlrFactors {
-    root: Node,
-    /// `Y` of all splits, a range of columns for each level.
-    reduced: Mat<f32>,
+pub struct HodlrFactors<T> {
+    root: Node<T>,
+    /// `Y` in the place of `U`.
+    blocks: OffDiagonal<T>,
 }
 
 #[derive(Debug)]
-enum Node {
-    Leaf(Factors<f32>),
-    Split(Box<Joint>),
+enum Node<T> {
+    Leaf(Factors<T>),
+    Split(Box<Joint<T>>),
 }
 
 #[derive(Debug)]
-struct Joint {
+struct Joint<T> {
     middle: usize,
-    columns: Range<usize>,
-    halves: [Node; 2],
-    /// `V₁` and `V₂`.
-    right: [Mat<f32>; 2],
-    /// Of `[I, V₂ᵀ Y₂; V₁ᵀ Y₁, I]`.
-    small: Factors<f32>,
+    /// First column of its level.
+    first: usize,
+    terms: [usize; 2],
+    halves: [Node<T>; 2],
+    /// Of `[I, V₂ᵀ Y₂; V₁ᵀ Y₁, I]`, for what the halves give to each other: `V₂ᵀ x₂` and then `V₁ᵀ x₁`.
+    small: Factors<T>,
 }
 
-/// What factors are made of.
-struct Parts {
-    leaves: std::vec::IntoIter<Mat<f32>>,
-    off_diagonal: std::vec::IntoIter<OffDiagonal>,
-}
-
-impl HodlrFactors {
+impl<T: RealField + Copy> HodlrFactors<T> {
     /// Factorises.
     ///
     /// # Arguments
     /// * `leaves` -- dense blocks on the diagonal, in the order of [`Halves::leaves`]
-    /// * `off_diagonal` -- in the order of [`Halves::splits`]
-    pub fn new(halves: &Halves, leaves: Vec<Mat<f32>>, off_diagonal: Vec<OffDiagonal>) -> Self {
-        let n = halves.leaves.last().map_or(0, |leaf| leaf.end);
-        let levels = halves.splits.iter().map(|split| split.level + 1).max().unwrap_or(0);
-        let mut widths = vec![0; levels];
-        for (split, blocks) in halves.splits.iter().zip(&off_diagonal) {
-            let terms = blocks.upper[0].ncols().max(blocks.lower[0].ncols());
-            widths[split.level] = terms.max(widths[split.level]);
-        }
-        let offsets: Vec<usize> = std::iter::once(0)
-            .chain(widths.iter().scan(0, |sum, width| {
-                *sum += width;
-                Some(*sum)
-            }))
-            .collect();
-        let mut reduced = Mat::zeros(n, offsets[levels]);
-        for (split, blocks) in halves.splits.iter().zip(&off_diagonal) {
-            let first = offsets[split.level];
-            for (row, left) in [(split.start, &blocks.upper[0]), (split.middle, &blocks.lower[0])] {
-                let mut to = reduced.as_mut().submatrix_mut(row, first, left.nrows(), left.ncols());
-                to.copy_from(left);
-            }
-        }
-        let mut parts = Parts { leaves: leaves.into_iter(), off_diagonal: off_diagonal.into_iter() };
-        let tree = Plan::new(halves, &mut parts);
-        let root = tree.factorise(&offsets, 0, reduced.as_mut());
-        Self { root, reduced }
+    pub fn new(halves: &Halves, leaves: Vec<Mat<T>>, mut blocks: OffDiagonal<T>) -> Self {
+        let (n, columns) = blocks.shape();
+        let part = Part {
+            splits: &halves.splits,
+            terms: &blocks.terms,
+            columns: &blocks.columns,
+            leaves,
+            left: MatMut::from_column_major_slice_mut(&mut blocks.left, n, columns),
+            right: MatRef::from_column_major_slice(&blocks.right, n, columns),
+            level: 0,
+        };
+        Self { root: part.factorise(), blocks }
     }
 
     /// Replaces the right-hand side by the solution.
-    pub fn solve(&self, rhs: &mut [f32]) {
-        let n = rhs.len();
-        self.root.solve(self.reduced.as_ref(), MatMut::from_column_major_slice_mut(rhs, n, 1));
+    pub fn solve(&self, rhs: &mut [T]) {
+        let (n, columns) = self.blocks.shape();
+        let [left, right] = [&self.blocks.left, &self.blocks.right]
+            .map(|values| MatRef::from_column_major_slice(values, n, columns));
+        self.root.solve(left, right, MatMut::from_column_major_slice_mut(rhs, n, 1));
+    }
+
+    /// The memory of the blocks.
+    pub fn into_blocks(self) -> OffDiagonal<T> {
+        self.blocks
     }
 
     /// Bytes held, about.
     pub fn bytes(&self) -> usize {
-        4 * self.reduced.nrows() * self.reduced.ncols() + self.root.bytes()
+        size_of::<T>() * (self.blocks.left.len() + self.blocks.right.len()) + self.root.bytes()
     }
 }
 
-/// The tree before it is factorised.
-enum Plan {
-    Leaf(Mat<f32>),
-    Split { middle: usize, blocks: Box<OffDiagonal>, halves: Box<[Plan; 2]> },
+impl<T> OffDiagonal<T> {
+    fn shape(&self) -> (usize, usize) {
+        (self.rows, self.columns[self.columns.len() - 1])
+    }
 }
 
-impl Plan {
-    fn new(halves: &Halves, parts: &mut Parts) -> Self {
-        Self::part(
-            &mut halves.splits.iter().peekable(),
-            parts,
-            0..halves.leaves.last().map_or(0, |it| it.end),
-        )
-    }
+/// What a part of the matrix is factorised from.
+struct Part<'a, T> {
+    /// The splits of this part, itself before those of its halves.
+    splits: &'a [Split],
+    terms: &'a [[usize; 2]],
+    columns: &'a [usize],
+    leaves: Vec<Mat<T>>,
+    left: MatMut<'a, T>,
+    right: MatRef<'a, T>,
+    level: usize,
+}
 
-    fn part<'a>(
-        splits: &mut std::iter::Peekable<impl Iterator<Item = &'a Split>>,
-        parts: &mut Parts,
-        rows: Range<usize>,
-    ) -> Self {
-        let Some(split) = splits.next_if(|split| (split.start, split.end) == (rows.start, rows.end)) else {
-            return Self::Leaf(parts.leaves.next().expect("a block for each leaf"));
+impl<T: RealField + Copy> Part<'_, T> {
+    /// Factorises, and solves for the columns of the levels above.
+    fn factorise(mut self) -> Node<T> {
+        let first = self.columns[self.level];
+        let Some((split, splits)) = self.splits.split_first() else {
+            let factors = Factors::new(self.leaves.pop().expect("a block for each leaf"));
+            factors.solve_columns(self.left.subcols_mut(0, first));
+            return Node::Leaf(factors);
         };
-        let blocks = parts.off_diagonal.next().expect("blocks for each split");
-        let first = Self::part(splits, parts, rows.start..split.middle);
-        let second = Self::part(splits, parts, split.middle..rows.end);
-        let middle = split.middle - rows.start;
-        Self::Split { middle, blocks: Box::new(blocks), halves: Box::new([first, second]) }
+        let middle = split.middle - split.start;
+        let inner = splits.partition_point(|it| it.end <= split.middle);
+        let second_leaves = self.leaves.split_off(inner + 1);
+        let (mut top, mut bottom) = self.left.split_at_row_mut(middle);
+        let (right_top, right_bottom) = self.right.split_at_row(middle);
+        let (terms, below) = (self.terms[0], &self.terms[1..]);
+        let (columns, level) = (self.columns, self.level + 1);
+        let halves = rayon::join(
+            || {
+                let (splits, terms) = (&splits[..inner], &below[..inner]);
+                let (left, right) = (top.as_mut(), right_top);
+                Part { splits, terms, columns, leaves: self.leaves, left, right, level }.factorise()
+            },
+            || {
+                let (splits, terms) = (&splits[inner..], &below[inner..]);
+                let (left, right) = (bottom.as_mut(), right_bottom);
+                Part { splits, terms, columns, leaves: second_leaves, left, right, level }.factorise()
+            },
+        );
+        let [upper, lower] = terms;
+        let right = [right_top.subcols(first, lower), right_bottom.subcols(first, upper)];
+        // Of the levels above, and then of `Y` itself.
+        let mut given =
+            give(right, [top.as_ref().subcols(0, first + upper), bottom.as_ref().subcols(0, first + lower)]);
+        let mut small = Mat::identity(upper + lower, upper + lower);
+        for (row, column, rows, columns) in [(0, upper, upper, lower), (upper, 0, lower, upper)] {
+            let own = given.as_ref().submatrix(row, first, rows, columns);
+            small.as_mut().submatrix_mut(row, column, rows, columns).copy_from(own);
+        }
+        let joint = Joint { middle, first, terms, halves: halves.into(), small: Factors::new(small) };
+        let ((above_top, own_top), (above_bottom, own_bottom)) =
+            (top.split_at_col_mut(first), bottom.split_at_col_mut(first));
+        let own = [own_top.as_ref().subcols(0, upper), own_bottom.as_ref().subcols(0, lower)];
+        joint.take(own, given.as_mut().subcols_mut(0, first), [above_top, above_bottom]);
+        Node::Split(Box::new(joint))
     }
+}
 
-    /// Factorises, and solves for the columns of the levels above, which `reduced` has in the rows of this part.
-    fn factorise(self, offsets: &[usize], level: usize, mut reduced: MatMut<'_, f32>) -> Node {
-        match self {
-            Self::Leaf(matrix) => {
-                let factors = Factors::new(matrix);
-                let above = reduced.subcols_mut(0, offsets[level]);
-                factors.solve_columns(above);
-                Node::Leaf(factors)
-            }
-            Self::Split { middle, blocks, halves } => {
-                let columns = offsets[level]..offsets[level + 1];
-                let (mut top, mut bottom) = reduced.as_mut().split_at_row_mut(middle);
-                let [first, second] = *halves;
-                let (first, second) = rayon::join(
-                    || first.factorise(offsets, level + 1, top.as_mut()),
-                    || second.factorise(offsets, level + 1, bottom.as_mut()),
-                );
-                let OffDiagonal { upper: [_, right_second], lower: [_, right_first] } = *blocks;
-                let right = [right_first, right_second];
-                let small = coupling(&right, [top.as_ref(), bottom.as_ref()], &columns);
-                let joint = Joint { middle, columns, halves: [first, second], right, small };
-                let (above_top, own_top) = top.split_at_col_mut(joint.columns.start);
-                let (above_bottom, own_bottom) = bottom.split_at_col_mut(joint.columns.start);
-                joint.correct([own_top.as_ref(), own_bottom.as_ref()], [above_top, above_bottom]);
-                Node::Split(Box::new(joint))
-            }
+/// `V₂ᵀ X₂` and then `V₁ᵀ X₁`, in as many columns as the wider of `X` has.
+fn give<T: RealField + Copy>(right: [MatRef<'_, T>; 2], solutions: [MatRef<'_, T>; 2]) -> Mat<T> {
+    let ([first, second], [top, bottom]) = (right, solutions);
+    let (upper, lower) = (second.ncols(), first.ncols());
+    let mut given = Mat::zeros(upper + lower, top.ncols().max(bottom.ncols()));
+    for (row, right, solution) in [(0, second, bottom), (upper, first, top)] {
+        let to = given.as_mut().submatrix_mut(row, 0, right.ncols(), solution.ncols());
+        matmul(to, Accum::Replace, right.transpose(), solution, one(), Par::Seq);
+    }
+    given
+}
+
+impl<T: RealField + Copy> Joint<T> {
+    /// Takes from the solutions of each half for itself what the other gives to it.
+    ///
+    /// # Arguments
+    /// * `left` -- `Y` of the halves
+    /// * `given` -- of [`give`]
+    fn take(&self, left: [MatRef<'_, T>; 2], mut given: MatMut<'_, T>, solutions: [MatMut<'_, T>; 2]) {
+        self.small.solve_columns(given.as_mut());
+        let (to_top, to_bottom) = given.as_ref().split_at_row(self.terms[0]);
+        for ((solution, left), given) in solutions.into_iter().zip(left).zip([to_top, to_bottom]) {
+            matmul(solution, Accum::Add, left, given, -one::<T>(), Par::Seq);
         }
     }
 }
 
-/// Factors of `[I, V₂ᵀ Y₂; V₁ᵀ Y₁, I]`, for what the halves give to each other: `V₂ᵀ x₂` and then `V₁ᵀ x₁`.
-fn coupling(right: &[Mat<f32>; 2], reduced: [MatRef<'_, f32>; 2], columns: &Range<usize>) -> Factors<f32> {
-    let [first, second] = right;
-    let (upper, lower) = (second.ncols(), first.ncols());
-    let mut small = Mat::identity(upper + lower, upper + lower);
-    let own = |half: usize, count: usize| reduced[half].subcols(columns.start, count);
-    let mut block = small.as_mut().submatrix_mut(0, upper, upper, lower);
-    matmul(block.as_mut(), Accum::Replace, second.transpose(), own(1, lower), 1.0, Par::Seq);
-    let mut block = small.as_mut().submatrix_mut(upper, 0, lower, upper);
-    matmul(block.as_mut(), Accum::Replace, first.transpose(), own(0, upper), 1.0, Par::Seq);
-    Factors::new(small)
-}
-
-impl Joint {
-    /// Takes what the halves give to each other from the solutions of each for itself.
-    ///
-    /// # Arguments
-    /// * `own` -- `Y` of the halves from the columns of this split on
-    /// * `solutions` -- of the halves
-    fn correct(&self, own: [MatRef<'_, f32>; 2], solutions: [MatMut<'_, f32>; 2]) {
-        let [mut top, mut bottom] = solutions;
-        let [first, second] = &self.right;
-        let (upper, lower) = (second.ncols(), first.ncols());
-        let mut given = Mat::zeros(upper + lower, top.ncols());
-        let (mut to_top, mut to_bottom) = given.as_mut().split_at_row_mut(upper);
-        matmul(to_top.as_mut(), Accum::Replace, second.transpose(), bottom.as_ref(), 1.0, Par::Seq);
-        matmul(to_bottom.as_mut(), Accum::Replace, first.transpose(), top.as_ref(), 1.0, Par::Seq);
-        self.small.solve_columns(given.as_mut());
-        matmul(top.as_mut(), Accum::Add, own[0].subcols(0, upper), given.subrows(0, upper), -1.0, Par::Seq);
-        matmul(
-            bottom.as_mut(),
-            Accum::Add,
-            own[1].subcols(0, lower),
-            given.subrows(upper, lower),
-            -1.0,
-            Par::Seq,
-        );
-    }
-}
-
-impl Node {
-    fn solve(&self, reduced: MatRef<'_, f32>, rhs: MatMut<'_, f32>) {
+impl<T: RealField + Copy> Node<T> {
+    fn solve(&self, left: MatRef<'_, T>, right: MatRef<'_, T>, rhs: MatMut<'_, T>) {
         match self {
             Self::Leaf(factors) => factors.solve_columns(rhs),
             Self::Split(joint) => {
-                let (own_top, own_bottom) = reduced.split_at_row(joint.middle);
-                let (mut top, mut bottom) = rhs.split_at_row_mut(joint.middle);
-                let [first, second] = &joint.halves;
+                let Joint { middle, first, terms: [upper, lower], .. } = **joint;
+                let (left_top, left_bottom) = left.split_at_row(middle);
+                let (right_top, right_bottom) = right.split_at_row(middle);
+                let (mut top, mut bottom) = rhs.split_at_row_mut(middle);
+                let halves = &joint.halves;
                 rayon::join(
-                    || first.solve(own_top, top.as_mut()),
-                    || second.solve(own_bottom, bottom.as_mut()),
+                    || halves[0].solve(left_top, right_top, top.as_mut()),
+                    || halves[1].solve(left_bottom, right_bottom, bottom.as_mut()),
                 );
-                let own = [own_top, own_bottom].map(|part| part.split_at_col(joint.columns.start).1);
-                joint.correct(own, [top, bottom]);
+                let right = [right_top.subcols(first, lower), right_bottom.subcols(first, upper)];
+                let mut given = give(right, [top.as_ref(), bottom.as_ref()]);
+                let left = [left_top.subcols(first, upper), left_bottom.subcols(first, lower)];
+                joint.take(left, given.as_mut(), [top, bottom]);
             }
         }
     }
@@ -264,10 +330,7 @@ impl Node {
     fn bytes(&self) -> usize {
         match self {
             Self::Leaf(factors) => factors.bytes(),
-            Self::Split(joint) => {
-                let right: usize = joint.right.iter().map(|it| 4 * it.nrows() * it.ncols()).sum();
-                right + joint.small.bytes() + joint.halves.iter().map(Node::bytes).sum::<usize>()
-            }
+            Self::Split(joint) => joint.small.bytes() + joint.halves.iter().map(Node::bytes).sum::<usize>(),
         }
     }
 }

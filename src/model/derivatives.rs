@@ -79,7 +79,9 @@ impl Model {
             let slopes = self.unworn.slopes(&fields.unworn[i]);
             (nodes[i] * slopes.limit_slip - elastic[i]) / fields.slip_depth[i] - nodes[i] * slopes.log_slip
         };
-        (0..nodes.len()).map(rate).collect()
+        let mut by_edge = vec![0.0; nodes.len()];
+        self.on_springs(&mut by_edge, rate);
+        by_edge
     }
 
     /// Derivative of the elastic depth at spring `i` by the compression of spring `j`, over `Z^(1-ν)`: `F_ij x_j^(k-1)`.

@@ -9,7 +9,9 @@
 
 use std::ops::Range;
 
-use faer::Mat;
+use faer::traits::RealField;
+use faer::traits::math_utils::from_f64;
+use faer::{Mat, MatMut};
 use rayon::prelude::*;
 
 use super::cycle::PlainSlopes;
@@ -18,7 +20,7 @@ use super::operators::Operators;
 use super::{Fields, Model};
 use crate::abel::{Block, Compressed};
 use crate::grid::MOST_POINTS;
-use crate::linear::{HodlrFactors, LowRank, OffDiagonal, Split};
+use crate::linear::{HodlrFactors, LowRank, OffDiagonal, Sides, Split};
 
 /// Columns of a second half that stencils of the first reach through what `F` has above its diagonal.
 const CORNER: usize = Block::AHEAD + 2;
@@ -41,31 +43,53 @@ pub(super) struct Jacobian<'a> {
 /// What is left out beside the blocks where the diagonal is one.
 const BESIDE: f64 = 1e-3;
 
+/// Grading below which factors are in double precision. In single precision Newton's method found no step with 3,000 springs at k = -0.9 and with
+/// 60,000 at -0.5, and wasted two steps of three with 100,000 at -0.4; at -0.25 and above nothing was amiss with 300,000.
+const SOFTEST_SINGLE: f64 = -0.25;
+
 /// Factors of a matrix scaled to a diagonal of one.
 #[derive(Debug)]
 pub(super) struct ScaledFactors {
-    factors: HodlrFactors,
+    factors: Halved,
     /// One over the root of the diagonal.
     scale: Vec<f64>,
+}
+
+/// In either precision.
+#[derive(Debug)]
+enum Halved {
+    Single(HodlrFactors<f32>),
+    Double(HodlrFactors<f64>),
 }
 
 impl ScaledFactors {
     /// Replaces the right-hand side by the solution, nearly.
     pub fn solve(&self, rhs: &mut [f64]) {
-        let scaled = rhs.iter().zip(&self.scale).map(|(value, scale)| value * scale);
-        let largest = scaled.clone().fold(0.0, |most: f64, value| most.max(value.abs()));
-        if largest == 0.0 {
-            return;
+        for (value, scale) in rhs.iter_mut().zip(&self.scale) {
+            *value *= scale;
         }
-        let mut single: Vec<f32> = scaled.map(|value| (value / largest) as f32).collect();
-        self.factors.solve(&mut single);
-        for ((value, scale), single) in rhs.iter_mut().zip(&self.scale).zip(single) {
-            *value = largest * scale * f64::from(single);
+        match &self.factors {
+            Halved::Single(factors) => {
+                let largest = rhs.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+                if largest > 0.0 {
+                    let mut single: Vec<f32> = rhs.iter().map(|value| (value / largest) as f32).collect();
+                    factors.solve(&mut single);
+                    rhs.iter_mut().zip(single).for_each(|(to, from)| *to = largest * f64::from(from));
+                }
+            }
+            Halved::Double(factors) => factors.solve(rhs),
+        }
+        for (value, scale) in rhs.iter_mut().zip(&self.scale) {
+            *value *= scale;
         }
     }
 
     fn bytes(&self) -> usize {
-        self.factors.bytes() + 8 * self.scale.len()
+        let factors = match &self.factors {
+            Halved::Single(factors) => factors.bytes(),
+            Halved::Double(factors) => factors.bytes(),
+        };
+        factors + 8 * self.scale.len()
     }
 }
 
@@ -101,12 +125,14 @@ impl Model {
     /// * `theta` -- `1 - Ẑ/Z`
     /// * `growth` -- derivatives of the growth times those by it
     /// * `by_edge` -- derivatives of the rest by the edge, 1/m², shape `(springs,)`
+    /// * `memory` -- of factors that are not needed any more
     pub fn stage_factors(
         &self,
         fields: &Fields,
         theta: f64,
         growth: PlainSlopes,
         by_edge: &[f64],
+        memory: Option<StageFactors>,
     ) -> Option<StageFactors> {
         let compressed = self.operators.compressed()?;
         let scale = fields.edge.powf(self.mu());
@@ -119,7 +145,7 @@ impl Model {
             pressure_factor: growth.by_pressure,
             corner: by_edge[inner],
         };
-        let factors = jacobian.factors(&self.operators, compressed);
+        let factors = jacobian.factors(&self.operators, compressed, memory.map(|it| it.factors));
         let mut edge: Vec<f64> = by_edge.iter().zip(&growth.by_edge).map(|(a, b)| a + b).collect();
         edge[inner] = 0.0;
         factors.solve(&mut edge);
@@ -166,24 +192,56 @@ impl Diagonals {
 }
 
 impl Jacobian<'_> {
-    pub(super) fn factors(&self, operators: &Operators, compressed: &Compressed) -> ScaledFactors {
+    /// The factors; `memory` is that of others that are not needed any more.
+    pub(super) fn factors(
+        &self,
+        operators: &Operators,
+        compressed: &Compressed,
+        memory: Option<ScaledFactors>,
+    ) -> ScaledFactors {
+        let memory = memory.map(|it| it.factors);
+        if operators.abel.grading() < SOFTEST_SINGLE {
+            let memory = memory.and_then(|it| if let Halved::Double(it) = it { Some(it) } else { None });
+            let (factors, scale) = self.halved(operators, compressed, memory);
+            ScaledFactors { factors: Halved::Double(factors), scale }
+        } else {
+            let memory = memory.and_then(|it| if let Halved::Single(it) = it { Some(it) } else { None });
+            let (factors, scale) = self.halved(operators, compressed, memory);
+            ScaledFactors { factors: Halved::Single(factors), scale }
+        }
+    }
+
+    /// Factors of the matrix scaled to a diagonal of one, and the scale.
+    fn halved<T: RealField + Copy>(
+        &self,
+        operators: &Operators,
+        compressed: &Compressed,
+        memory: Option<HodlrFactors<T>>,
+    ) -> (HodlrFactors<T>, Vec<f64>) {
         let halves = compressed.halves();
         let diagonals = Diagonals::new(self, &operators.derivative);
-        let leaves: Vec<Mat<f64>> =
-            halves.leaves.par_iter().map(|leaf| self.leaf(operators, &diagonals, leaf.clone())).collect();
-        let diagonal = leaves.iter().flat_map(|leaf| (0..leaf.nrows()).map(|i| leaf[(i, i)]));
-        let scale: Vec<f64> = diagonal.map(|value| value.abs().sqrt().recip()).collect();
-        let own = halves.leaves.par_iter().zip(&leaves);
-        let leaves = own.map(|(range, leaf)| {
-            let scale = &scale[range.clone()];
-            Mat::from_fn(leaf.nrows(), leaf.ncols(), |i, j| (scale[i] * leaf[(i, j)] * scale[j]) as f32)
+        let leaves = halves.leaves.par_iter().map(|leaf| {
+            let matrix = self.leaf(operators, &diagonals, leaf.clone());
+            let root = |i: usize| matrix[(i, i)].abs().sqrt().recip();
+            let scale: Vec<f64> = (0..leaf.len()).map(root).collect();
+            let scaled = |i: usize, j: usize| from_f64(scale[i] * matrix[(i, j)] * scale[j]);
+            (Mat::<T>::from_fn(leaf.len(), leaf.len(), scaled), scale)
         });
-        let leaves = leaves.collect();
-        let blocks = halves.splits.par_iter().zip(compressed.blocks());
-        let off_diagonal = blocks
-            .map(|(split, block)| self.off_diagonal(operators, &diagonals, split, block, &scale))
-            .collect();
-        ScaledFactors { factors: HodlrFactors::new(halves, leaves, off_diagonal), scale }
+        let (leaves, scale): (Vec<_>, Vec<_>) = leaves.unzip();
+        let rows = Rows { jacobian: self, operators, diagonals, scale: scale.concat() };
+        let splits = halves.splits.par_iter().zip(compressed.blocks());
+        let near: Vec<Beside<'_>> = splits.map(|(split, block)| rows.near(split, block)).collect();
+        let terms = near.iter().map(Beside::terms).collect();
+        let memory = memory.map(HodlrFactors::into_blocks);
+        let blocks = OffDiagonal::new(halves, terms, memory, |leaf, sides| {
+            let block = &near[sides.split];
+            if sides.is_first {
+                rows.fill_first(leaf, block, sides)
+            } else {
+                rows.fill_second(leaf, block, sides)
+            }
+        });
+        (HodlrFactors::new(halves, leaves, blocks), rows.scale)
     }
 
     fn column_factor(&self, j: usize) -> f64 {
@@ -222,113 +280,161 @@ impl Jacobian<'_> {
         }
         matrix
     }
+}
 
-    fn off_diagonal(
-        &self,
-        operators: &Operators,
-        diagonals: &Diagonals,
-        split: &Split,
-        block: &Block,
-        scale: &[f64],
-    ) -> OffDiagonal {
+/// What the blocks off the diagonal are made of.
+struct Rows<'a> {
+    jacobian: &'a Jacobian<'a>,
+    operators: &'a Operators,
+    diagonals: Diagonals,
+    /// One over the root of the diagonal.
+    scale: Vec<f64>,
+}
+
+/// The blocks of a split, with what stands next to its middle beside those of the transforms.
+struct Beside<'a> {
+    split: &'a Split,
+    block: &'a Block,
+    /// Terms of `P` above the diagonal.
+    pressed: usize,
+    /// Rows of the first half that stencils of the second reach back to.
+    across: usize,
+    /// `P` below the diagonal.
+    below: LowRank,
+    /// `F` above the diagonal, with the stencils.
+    above: LowRank,
+    /// First row of the latter.
+    corner: usize,
+}
+
+impl Beside<'_> {
+    /// Of the blocks above and below the diagonal.
+    fn terms(&self) -> [usize; 2] {
+        let carried = self.block.profile.terms() + self.across;
+        [self.pressed + self.above.terms(), carried + self.below.terms()]
+    }
+}
+
+impl Rows<'_> {
+    fn near<'a>(&self, split: &'a Split, block: &'a Block) -> Beside<'a> {
         let Split { start, middle, end, .. } = *split;
-        let stencils = &operators.derivative;
-        // From the first half to the second; next to the middle, pressures at the first springs by the last compressions.
-        let beside = self.beside(
-            operators,
-            middle..(middle + Block::BACK).min(end),
-            middle - Block::BACK..middle,
-            scale,
-        );
-        let terms = block.profile.terms();
-        let across = if self.along != 0.0 { Block::BACK } else { 0 };
-        let mut left = Mat::zeros(end - middle, terms + across + beside.terms());
-        let mut right = Mat::zeros(middle - start, terms + across + beside.terms());
-        let mut product = vec![0.0; end - middle];
+        let across = if self.jacobian.along != 0.0 { Block::BACK } else { 0 };
+        let pressed = if self.jacobian.pressure_factor == 0.0 { 0 } else { block.pressure.terms() };
+        let corner = middle.saturating_sub(CORNER).max(start);
+        let below = self.beside(middle..(middle + Block::BACK).min(end), middle - Block::BACK..middle);
+        let above = self.beside(corner..middle, middle..(middle + CORNER).min(end));
+        Beside { split, block, pressed, across, below, above, corner }
+    }
+
+    /// `U₁` and `V₁`.
+    fn fill_first<T: RealField + Copy>(
+        &self,
+        leaf: Range<usize>,
+        near: &Beside<'_>,
+        mut sides: Sides<'_, T>,
+    ) {
+        let (Split { start, middle, .. }, block) = (*near.split, near.block);
+        let scale = &self.scale[leaf.clone()];
+        let within = leaf.start - start..leaf.end - start;
+        for (term, rows) in block.pressure.rows.iter().enumerate().take(near.pressed) {
+            let pressed = scale.iter().zip(&rows[within.clone()]);
+            let factor = self.jacobian.pressure_factor;
+            fill(&mut sides.left, term, pressed.map(|(scale, row)| factor * scale * row));
+        }
+        put(&near.above.rows, near.corner, &leaf, &mut sides.left, near.pressed);
+        // The last rows of the first half are as large as its diagonal.
+        let last_rows = block.last_rows.iter().enumerate().take(near.across).map(|(back, row)| {
+            let i = middle - 1 - back;
+            (self.scale[i] * self.jacobian.row_factor[i], row)
+        });
+        let vectors = block.profile.columns.iter().map(|column| (1.0, column)).chain(last_rows);
+        let factors: Vec<f64> =
+            leaf.clone().zip(scale).map(|(j, scale)| self.jacobian.column_factor(j) * scale).collect();
+        for (term, (times, vector)) in vectors.enumerate() {
+            let carried = factors.iter().zip(&vector[within.clone()]);
+            fill(&mut sides.right, term, carried.map(|(factor, value)| times * factor * value));
+        }
+        let first = block.profile.terms() + near.across;
+        put(&near.below.columns, middle - Block::BACK, &leaf, &mut sides.right, first);
+    }
+
+    /// `U₂` and `V₂`.
+    fn fill_second<T: RealField + Copy>(
+        &self,
+        leaf: Range<usize>,
+        near: &Beside<'_>,
+        mut sides: Sides<'_, T>,
+    ) {
+        let (Split { middle, end, .. }, block) = (*near.split, near.block);
+        let scale = &self.scale[leaf.clone()];
+        let within = leaf.start - middle..leaf.end - middle;
+        let mut product = vec![0.0; leaf.len()];
         for (term, row) in block.profile.rows.iter().enumerate() {
             product.fill(0.0);
-            diagonals.add(middle..end, middle..middle + row.len(), row, &mut product);
-            let to = left.col_as_slice_mut(term).iter_mut().zip(&product).zip(&scale[middle..end]);
-            to.for_each(|((to, value), scale)| *to = (scale * value) as f32);
+            self.diagonals.add(leaf.clone(), middle..middle + row.len(), row, &mut product);
+            fill(&mut sides.left, term, product.iter().zip(scale).map(|(value, scale)| value * scale));
         }
-        // The last rows of the first half are as large as its diagonal.
-        for i in middle..(middle + across).min(end) {
-            for (k, weight) in self.row(stencils, i).filter(|(k, _)| *k < middle) {
-                left[(i - middle, terms + middle - 1 - k)] += (weight * scale[i] / scale[k]) as f32;
+        let terms = block.profile.terms();
+        for i in leaf.start..(middle + near.across).min(end).min(leaf.end) {
+            for (k, weight) in self.jacobian.row(&self.operators.derivative, i).filter(|(k, _)| *k < middle) {
+                let value = weight * self.scale[i] / self.scale[k];
+                let to = &mut sides.left[(i - leaf.start, terms + middle - 1 - k)];
+                *to = *to + from_f64::<T>(value);
             }
         }
-        let factors: Vec<f64> = (start..middle).map(|j| self.column_factor(j) * scale[j]).collect();
-        let last_rows = block.last_rows.iter().enumerate().take(across);
-        let last_rows =
-            last_rows.map(|(back, row)| (scale[middle - 1 - back] * self.row_factor[middle - 1 - back], row));
-        let vectors = block.profile.columns.iter().map(|column| (1.0, column)).chain(last_rows);
-        for (term, (times, vector)) in vectors.enumerate() {
-            fill(right.col_as_slice_mut(term), times, &factors, vector);
+        put(&near.below.rows, middle, &leaf, &mut sides.left, terms + near.across);
+        for (term, columns) in block.pressure.columns.iter().enumerate().take(near.pressed) {
+            let pressed = scale.iter().zip(&columns[within.clone()]);
+            fill(&mut sides.right, term, pressed.map(|(scale, column)| scale * column));
         }
-        put(&beside, [&mut left, &mut right], [0, middle - Block::BACK - start], terms + across);
-        let lower = [left, right];
-        // From the second half to the first; next to the middle, what F has above its diagonal and stencils that reach ahead.
-        let (corner_rows, corner_columns) =
-            (middle.saturating_sub(CORNER).max(start)..middle, middle..(middle + CORNER).min(end));
-        let beside = self.beside(operators, corner_rows.clone(), corner_columns, scale);
-        let terms = if self.pressure_factor == 0.0 { 0 } else { block.pressure.terms() };
-        let mut left = Mat::zeros(middle - start, terms + beside.terms());
-        let mut right = Mat::zeros(end - middle, terms + beside.terms());
-        for term in 0..terms {
-            let to = left.col_as_slice_mut(term);
-            fill(to, self.pressure_factor, &scale[start..middle], &block.pressure.rows[term]);
-            fill(right.col_as_slice_mut(term), 1.0, &scale[middle..end], &block.pressure.columns[term]);
-        }
-        put(&beside, [&mut left, &mut right], [corner_rows.start - start, 0], terms);
-        OffDiagonal { upper: [left, right], lower }
+        put(&near.above.columns, middle, &leaf, &mut sides.right, near.pressed);
     }
 
     /// What stands next to the middle of a split beside the blocks: `P` below the diagonal, and above it `F` with the stencils.
-    fn beside(
-        &self,
-        operators: &Operators,
-        rows: Range<usize>,
-        columns: Range<usize>,
-        scale: &[f64],
-    ) -> LowRank {
+    fn beside(&self, rows: Range<usize>, columns: Range<usize>) -> LowRank {
         let below = rows.start > columns.start;
+        let (jacobian, abel) = (self.jacobian, &self.operators.abel);
         let entry = |i: usize, j: usize| {
-            let abel = &operators.abel;
             let value = if below {
                 let edge = abel.len() - 1;
-                if i < edge { self.pressure_factor * abel.pressure_weight(i, j) } else { 0.0 }
+                if i < edge { jacobian.pressure_factor * abel.pressure_weight(i, j) } else { 0.0 }
             } else {
                 let carried = |(k, weight): (usize, f64)| {
                     // Above the diagonal a row of F reaches no farther.
                     if j < k + Block::AHEAD {
-                        weight * self.row_factor[k] * abel.profile_weight(k, j)
+                        weight * jacobian.row_factor[k] * abel.profile_weight(k, j)
                     } else {
                         0.0
                     }
                 };
-                self.row(&operators.derivative, i).map(carried).sum::<f64>() * self.column_factor(j)
+                jacobian.row(&self.operators.derivative, i).map(carried).sum::<f64>()
+                    * jacobian.column_factor(j)
             };
-            scale[i] * value * scale[j]
+            self.scale[i] * value * self.scale[j]
         };
         let first = if below { rows.start } else { rows.end - 1 };
         LowRank::new(rows.clone(), columns, first, entry, BESIDE)
     }
 }
 
-/// Sets values to products of a factor with one of each of two vectors.
-fn fill(to: &mut [f32], times: f64, factors: &[f64], values: &[f64]) {
-    for ((to, factor), value) in to.iter_mut().zip(factors).zip(values) {
-        *to = (times * factor * value) as f32;
+/// Sets a column.
+fn fill<T: RealField + Copy>(to: &mut MatMut<'_, T>, column: usize, values: impl Iterator<Item = f64>) {
+    for (to, value) in to.as_mut().col_mut(column).iter_mut().zip(values) {
+        *to = from_f64(value);
     }
 }
 
-/// Puts a block of low rank into the last columns, from `first` on, of what blocks are made of.
-fn put(block: &LowRank, to: [&mut Mat<f32>; 2], rows: [usize; 2], first: usize) {
-    for ((to, begin), vectors) in to.into_iter().zip(rows).zip([&block.rows, &block.columns]) {
-        for (term, vector) in vectors.iter().enumerate() {
-            for (i, value) in vector.iter().enumerate() {
-                to[(begin + i, first + term)] = *value as f32;
-            }
+/// Puts vectors that begin at a row into columns from `column` on, as far as they lie in a leaf.
+fn put<T: RealField + Copy>(
+    vectors: &[Vec<f64>],
+    begin: usize,
+    leaf: &Range<usize>,
+    to: &mut MatMut<'_, T>,
+    column: usize,
+) {
+    for (term, vector) in vectors.iter().enumerate() {
+        for (i, value) in (begin..).zip(vector).filter(|(i, _)| leaf.contains(i)) {
+            to[(i - leaf.start, column + term)] = from_f64(*value);
         }
     }
 }

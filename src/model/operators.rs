@@ -171,7 +171,7 @@ impl Operators {
                 pressure_factor: 0.0,
                 corner: 1.0,
             };
-            jacobian.factors(self, compressed)
+            jacobian.factors(self, compressed, None)
         })
     }
 

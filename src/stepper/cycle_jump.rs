@@ -49,7 +49,13 @@ impl Stepper for CycleJump {
         );
         let error = self.depth_error(model, &difference.compression);
         let Ok(edge) = model.close_edge(at.edge, &at.compression) else { return Ok(Trial::failed(4)) };
-        Ok(Trial { state: Some(State { edge, ..at }), error, rate_evaluations: 5, next_step: None })
+        Ok(Trial {
+            state: Some(State { edge, ..at }),
+            fields: None,
+            error,
+            rate_evaluations: 5,
+            next_step: None,
+        })
     }
 
     fn estimate_order(&self) -> f64 {

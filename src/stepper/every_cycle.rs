@@ -50,7 +50,13 @@ impl Stepper for EveryCycle {
             least_stick_radius: state.least_stick_radius.min(cycle.stick_radius),
             ..state.clone()
         };
-        Ok(Trial { state: Some(next), error: 0.0, rate_evaluations: evaluations, next_step: None })
+        Ok(Trial {
+            state: Some(next),
+            fields: None,
+            error: 0.0,
+            rate_evaluations: evaluations,
+            next_step: None,
+        })
     }
 
     fn estimate_order(&self) -> f64 {

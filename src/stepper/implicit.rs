@@ -1,6 +1,6 @@
 //! Implicit steps over many cycles: L-stable, adaptive, with the analytic Jacobian.
 
-use super::newton::{Newton, Target};
+use super::newton::{Kept, Newton, Target};
 use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::model::{Fields, Model, State};
@@ -16,6 +16,7 @@ use crate::model::{Fields, Model, State};
 #[derive(Debug)]
 pub struct Implicit {
     newton: Newton,
+    factors: Kept,
 }
 
 /// Times of the stages.
@@ -37,7 +38,7 @@ const EMBEDDED: [f64; STAGES] = [GAMMA / (1.0 - GAMMA), (1.0 - 2.0 * GAMMA) / (1
 impl Implicit {
     /// A stepper whose stages are solved well below the tolerance of the time stepping.
     pub fn new(tolerance: f64) -> Self {
-        Self { newton: Newton::new(tolerance) }
+        Self { newton: Newton::new(tolerance), factors: Kept::default() }
     }
 }
 
@@ -56,7 +57,7 @@ impl Stepper for Implicit {
         let start = self.newton.fields.log_slip.clone();
         let mut at = self.predict(model, state, TIMES[0] * cycles);
         let mut stages: Vec<Stage> = Vec::with_capacity(STAGES);
-        let mut factors = None;
+        self.factors.outdate();
         for (index, row) in MATRIX.into_iter().enumerate() {
             if index > 0 {
                 extrapolate(state, &mut at, TIMES[index] / TIMES[index - 1]);
@@ -74,7 +75,7 @@ impl Stepper for Implicit {
                 step: GAMMA * cycles,
                 drive: model.schedule().drive(state.cycles, state.cycles + TIMES[index] * cycles),
             };
-            if !self.newton.solve(model, &target, &mut at, &mut factors, &mut evaluations) {
+            if !self.newton.solve(model, &target, &mut at, &mut self.factors, &mut evaluations) {
                 return Ok(Trial::failed(evaluations));
             }
             let slope = |(now, before): (&f64, &f64)| (now - before) / target.step;
@@ -105,7 +106,7 @@ impl Stepper for Implicit {
             cycles,
             stages.iter().map(|stage| &stage.log_slip[..]),
         );
-        Ok(Trial { state: Some(at), error, rate_evaluations: evaluations, next_step: None })
+        Ok(Trial { state: Some(at), fields: None, error, rate_evaluations: evaluations, next_step: None })
     }
 
     fn estimate_order(&self) -> f64 {

@@ -237,7 +237,7 @@ impl Stepper for MovingStickImplicit {
         };
         let slopes = stages.iter().map(|stage| &stage.log_slip[..]);
         let error = embedded_error(model, &self.trial.fields, cycles, slopes);
-        Ok(Trial { state: Some(next), error, rate_evaluations: evaluations, next_step: None })
+        Ok(Trial { state: Some(next), fields: None, error, rate_evaluations: evaluations, next_step: None })
     }
 
     fn estimate_order(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Implicit steps that remember several before: backward differentiation in the logarithm of time.
 
-use super::newton::{Newton, Target};
+use super::newton::{Kept, Newton, Target};
 use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::model::{Model, Past, PastPoint, State};
@@ -20,6 +20,7 @@ pub struct Multistep {
     /// Largest error of one step.
     tolerance: f64,
     newton: Newton,
+    factors: Kept,
 }
 
 /// Times remembered, the present one included: the error at the next order takes two more than that order.
@@ -52,9 +53,10 @@ impl Stepper for Multistep {
         let mut evaluations = 1;
         // Where the past leads first; on fine meshes with gradings near -1 that may be beyond what Newton's method comes back from.
         let still = State { cycles: now, past: Past::default(), ..state.clone() };
-        let guesses = [state_of(state, times.guess(&past), now), still];
-        let found = guesses.into_iter().find_map(|mut at| {
-            self.newton.solve(model, &target, &mut at, &mut None, &mut evaluations).then_some(at)
+        let led = (past.points.len() > 1).then(|| state_of(state, times.guess(&past), now));
+        let found = led.into_iter().chain([still]).find_map(|mut at| {
+            self.factors.outdate();
+            self.newton.solve(model, &target, &mut at, &mut self.factors, &mut evaluations).then_some(at)
         });
         let Some(mut at) = found else { return Ok(Trial::failed(evaluations)) };
         let cycle = &self.newton.cycle;
@@ -75,6 +77,7 @@ impl Stepper for Multistep {
         at.past = past;
         Ok(Trial {
             state: Some(at),
+            fields: Some(std::mem::take(&mut self.newton.fields)),
             error: ACCUMULATED * error,
             rate_evaluations: evaluations,
             next_step: Some(cycles * factor.clamp(SMALLEST_FACTOR, LARGEST_FACTOR)),
@@ -104,7 +107,7 @@ impl Multistep {
 
     /// A stepper whose tolerance is about the error at the end of a run.
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance: tolerance / ACCUMULATED, newton: Newton::new(tolerance) }
+        Self { tolerance: tolerance / ACCUMULATED, newton: Newton::new(tolerance), factors: Kept::default() }
     }
 
     /// The past of a state, which at the start is that state alone.

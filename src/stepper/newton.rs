@@ -66,6 +66,29 @@ impl Factorised {
     }
 }
 
+/// Factors that serve several stages, and their memory in between.
+#[derive(Debug, Default)]
+pub(super) struct Kept {
+    factors: Option<Factorised>,
+    /// Whether they are good for more than their memory.
+    current: bool,
+}
+
+impl Kept {
+    /// Leaves nothing but the memory.
+    pub fn outdate(&mut self) {
+        self.current = false;
+    }
+
+    /// The factors, made anew if they are outdated, and whether they were.
+    fn get(&mut self, make: impl FnOnce(Option<Factorised>) -> Factorised) -> (&Factorised, bool) {
+        let fresh = !self.current;
+        let memory = if fresh { self.factors.take() } else { None };
+        self.current = true;
+        (self.factors.get_or_insert_with(|| make(memory)), fresh)
+    }
+}
+
 /// Newton's method and what it left: the fields and the cycle of the last state tried.
 #[derive(Debug)]
 pub(super) struct Newton {
@@ -88,7 +111,7 @@ impl Newton {
         model: &Model,
         target: &Target,
         at: &mut State,
-        factors: &mut Option<Factorised>,
+        kept: &mut Kept,
         evaluations: &mut u64,
     ) -> bool {
         let inner = at.compression.len();
@@ -97,8 +120,7 @@ impl Newton {
             return false;
         }
         for _ in 0..=RENEWALS {
-            let fresh = factors.is_none();
-            let lu = factors.get_or_insert_with(|| self.factorise(model, target, &at.compression));
+            let (lu, fresh) = kept.get(|memory| self.factorise(model, target, &at.compression, memory));
             let mut before = f64::INFINITY;
             for _ in 0..ITERATIONS {
                 let mut change = residual(model, target, &self.fields, &self.cycle.growth);
@@ -128,7 +150,7 @@ impl Newton {
                 }
                 before = size;
             }
-            *factors = None;
+            kept.outdate();
         }
         false
     }
@@ -157,13 +179,32 @@ impl Newton {
         true
     }
 
-    fn factorise(&self, model: &Model, target: &Target, compression: &[f64]) -> Factorised {
+    fn factorise(
+        &self,
+        model: &Model,
+        target: &Target,
+        compression: &[f64],
+        memory: Option<Factorised>,
+    ) -> Factorised {
         let theta = 1.0 - target.edge / self.fields.edge;
         let by_edge = self.by_edge(model, target, theta);
         let slopes = model.plain_growth_slopes(&target.drive, &self.fields, &self.cycle, -target.step);
-        match slopes.and_then(|slopes| model.stage_factors(&self.fields, theta, slopes, &by_edge)) {
+        let (dense, hierarchical) = match memory {
+            Some(Factorised::Dense(factors)) => (Some(factors.into_matrix()), None),
+            Some(Factorised::Hierarchical(factors)) => (None, Some(factors)),
+            None => (None, None),
+        };
+        let factors = slopes
+            .and_then(|slopes| model.stage_factors(&self.fields, theta, slopes, &by_edge, hierarchical));
+        match factors {
             Some(factors) => Factorised::Hierarchical(factors),
-            None => Factorised::Dense(Factors::new(self.matrix(model, target, compression, theta, &by_edge))),
+            None => {
+                let n = model.springs();
+                let mut matrix = dense.filter(|it| it.nrows() == n).unwrap_or_else(|| Mat::zeros(n, n));
+                matrix.fill(0.0);
+                self.fill(&mut matrix, model, target, compression, theta, &by_edge);
+                Factorised::Dense(Factors::new(matrix))
+            }
         }
     }
 
@@ -180,21 +221,20 @@ impl Newton {
         by_edge
     }
 
-    /// Newton's matrix at the current fields, columns the compressions and then the edge.
-    fn matrix(
+    /// Adds Newton's matrix at the current fields, columns the compressions and then the edge.
+    fn fill(
         &self,
+        matrix: &mut Mat<f64>,
         model: &Model,
         target: &Target,
         compression: &[f64],
         theta: f64,
         by_edge: &[f64],
-    ) -> Mat<f64> {
+    ) {
         let fields = &self.fields;
-        let n = model.springs();
-        let inner = n - 1;
-        let mut matrix = Mat::zeros(n, n);
-        model.add_growth_slopes(&target.drive, compression, fields, &self.cycle, -target.step, &mut matrix);
-        model.add_log_slip_by_compression(fields, theta, &mut matrix);
+        let inner = model.springs() - 1;
+        model.add_growth_slopes(&target.drive, compression, fields, &self.cycle, -target.step, matrix);
+        model.add_log_slip_by_compression(fields, theta, matrix);
         for i in 0..inner {
             matrix[(i, inner)] += by_edge[i];
         }
@@ -203,7 +243,6 @@ impl Newton {
             matrix[(inner, j)] = -scale * model.elastic_depth_by_compression(fields, inner, j);
         }
         matrix[(inner, inner)] = by_edge[inner];
-        matrix
     }
 }
 
