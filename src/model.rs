@@ -43,7 +43,7 @@ pub use operators::OperatorStore;
 use operators::Operators;
 pub use output::RadialFields;
 use output::Shown;
-pub use past::{Past, PastPoint};
+pub use past::{Linearised, Past, PastPoint};
 use reach::Reach;
 pub use schedule::{Demand, Drive, Resolution, Schedule};
 

@@ -3,6 +3,7 @@
 mod cycle_jump;
 mod every_cycle;
 mod implicit;
+mod mixing;
 mod moving_stick;
 mod multistep;
 mod newton;

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fretwear::loading::RecordedPath;
-use fretwear::model::{Past, PastPoint, State, StickEdge};
+use fretwear::model::{Linearised, Past, PastPoint, State, StickEdge};
 use fretwear::simulation::Progress;
 use fretwear::snapshot::layout::label;
 use fretwear::snapshot::{
@@ -115,7 +115,16 @@ fn checkpoint() -> Checkpoint {
                 wear_depth: curve(31, 7),
                 rates: [1e-300, -1e-17 / 3.0],
             }),
-            past: Past { order: 3, points: (0..4).map(past_point).collect() },
+            past: Past {
+                order: 3,
+                points: (0..4).map(past_point).collect(),
+                linearised: Some(Arc::new(Linearised {
+                    edge: 3e-10,
+                    gathered_edge: 2e-10,
+                    step: 7e4,
+                    compression: past_point(5).compression.clone(),
+                })),
+            },
         },
         progress: Progress {
             next_step: 5e-324,
@@ -234,6 +243,7 @@ fn every_value_comes_back_bit_for_bit() {
     assert_eq!(to_bits(&stick.left_behind), to_bits(&wanted.left_behind));
     assert_eq!(to_bits(&stick.wear_depth), to_bits(&wanted.wear_depth));
     assert_eq!(found.state.past.order, expected.state.past.order);
+    assert_eq!(found.state.past.linearised, expected.state.past.linearised);
     assert_eq!(found.state.past.points.len(), expected.state.past.points.len());
     for (point, wanted) in found.state.past.points.iter().zip(&expected.state.past.points) {
         let scalars =

@@ -11,6 +11,21 @@ pub struct Past {
     pub order: usize,
     /// The state itself and those before it, the newest first.
     pub points: Vec<Arc<PastPoint>>,
+    /// Where the factors were made that the next step begins with, if it does not make its own.
+    pub linearised: Option<Arc<Linearised>>,
+}
+
+/// Where Newton's matrix was factorised.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Linearised {
+    /// `Z = a² - c²`, m².
+    pub edge: f64,
+    /// What the past made of it, m².
+    pub gathered_edge: f64,
+    /// Cycles by which the rates are multiplied.
+    pub step: f64,
+    /// Compression `q`, m, of the inner springs, shape `(springs - 1,)`.
+    pub compression: Vec<f64>,
 }
 
 impl Past {
@@ -28,6 +43,12 @@ impl Past {
             && (newest.cycles - state.cycles).abs() <= 1e-12 * state.cycles
             && self.points.iter().all(|point| point.cycles >= 0.0 && finite(point))
             && self.points.windows(2).all(|pair| pair[0].cycles > pair[1].cycles)
+            && self.linearised.as_ref().is_none_or(|it| {
+                let scalars = [it.edge, it.gathered_edge, it.step];
+                it.compression.len() == springs
+                    && it.edge > 0.0
+                    && scalars.iter().chain(&it.compression).all(|value| value.is_finite())
+            })
     }
 }
 

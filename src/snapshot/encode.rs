@@ -158,5 +158,13 @@ fn put_past(checkpoint: &Group, past: &Past) -> Result<()> {
     let compressions: Vec<f64> = points.iter().flat_map(|it| &it.compression).copied().collect();
     put_array(&group, COMPRESSION, &[&earlier, &spring], &compressions)?;
     let log_slips: Vec<f64> = points.iter().flat_map(|it| &it.log_slip).copied().collect();
-    put_array(&group, LOG_SLIP, &[&earlier, &spring_or_edge], &log_slips).map(drop)
+    put_array(&group, LOG_SLIP, &[&earlier, &spring_or_edge], &log_slips)?;
+    let Some(linearised) = &past.linearised else { return Ok(()) };
+    let group = create_group(&group, LINEARISED)?;
+    let spring = Dimension::create(&group, SPRING, linearised.compression.len(), false)?;
+    put_array(&group, COMPRESSION, &[&spring], &linearised.compression)?;
+    for field in &LINEARISED_REALS {
+        put_array(&group, field.label, &[], &[*(field.of)(linearised)])?;
+    }
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Names, units and meaning of all datasets of a run file: the writer and the reader both go by these tables.
 
 use super::{Checkpoint, Snapshot};
-use crate::model::{PastPoint, StickEdge};
+use crate::model::{Linearised, PastPoint, StickEdge};
 
 /// Value of the root attribute `format_version` that this program writes and reads.
 pub const FORMAT_VERSION: i32 = 3;
@@ -88,6 +88,8 @@ pub const SPRING_OR_EDGE: Label = label("spring_or_edge", "1", "index of the spr
 pub const LOG_SLIP: Label = label("log_slip", "1", "logarithm of the slip over that of the unworn profile");
 /// Order of the step to be tried next, scalar.
 pub const ORDER: Label = label("order", "1", "order of the next step");
+/// Group, in that of the past, of where Newton's matrix was factorised that the next step begins with; absent where that makes its own.
+pub const LINEARISED: &str = "linearised";
 /// Error estimate, scalar, in the group of the checkpoint; absent where there is none.
 pub const ERROR_ESTIMATE: Label =
     label("error_estimate", "1", "estimated error of worn volume and profile relative to those of the limit");
@@ -278,6 +280,21 @@ pub(super) const PAST_REALS: [Field<PastPoint, f64>; 4] = [
         |it| &it.volume_by_rate,
         |it| &mut it.volume_by_rate,
     ),
+];
+
+/// Scalars.
+pub(super) const LINEARISED_REALS: [Field<Linearised, f64>; 3] = [
+    field(
+        label("edge", "m2", "square of the contact radius less that of the stick radius"),
+        |it| &it.edge,
+        |it| &mut it.edge,
+    ),
+    field(
+        label("gathered_edge", "m2", "what the times before made of the edge"),
+        |it| &it.gathered_edge,
+        |it| &mut it.gathered_edge,
+    ),
+    field(label("step", "1", "cycles by which rates are multiplied"), |it| &it.step, |it| &mut it.step),
 ];
 
 /// Scalars of an edge of stick that moves.

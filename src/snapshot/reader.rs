@@ -14,7 +14,7 @@ use super::{Checkpoint, Format, LimitCurves, RunHeader, RunWriter, Snapshot, Sto
 use crate::error::{Error, Result};
 use crate::indenter::TabulatedProfile;
 use crate::loading::RecordedPath;
-use crate::model::{Past, PastPoint, StickEdge};
+use crate::model::{Linearised, Past, PastPoint, StickEdge};
 use crate::stick_slip::Regime;
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
@@ -282,7 +282,20 @@ impl Source {
         }
         let order = self.scalar::<u64>(group, ORDER)?;
         let order = usize::try_from(order).unwrap_or(usize::MAX);
-        Ok(Past { order, points: points.into_iter().map(Arc::new).collect() })
+        let linearised =
+            group.link_exists(LINEARISED).then(|| self.linearised(group, springs)).transpose()?;
+        Ok(Past { order, points: points.into_iter().map(Arc::new).collect(), linearised })
+    }
+
+    fn linearised(&self, past: &Group, springs: usize) -> Result<Arc<Linearised>> {
+        let group =
+            past.group(LINEARISED).map_err(|error| self.damaged("/checkpoint/past/linearised", &error))?;
+        let compression = self.values(&group, COMPRESSION, &[Some(springs)])?;
+        let mut found = Linearised { compression, ..Linearised::default() };
+        for field in &LINEARISED_REALS {
+            *(field.of_mut)(&mut found) = self.scalar(&group, field.label)?;
+        }
+        Ok(Arc::new(found))
     }
 
     fn scalar<T: H5Type + Copy>(&self, group: &Group, label: Label) -> Result<T> {

@@ -1,9 +1,12 @@
 //! Implicit steps that remember several before: backward differentiation in the logarithm of time.
 
+use std::sync::Arc;
+
 use super::newton::{Kept, Newton, Target};
 use super::{Stepper, Trial, relative_depth_error};
+use crate::abel::Backend;
 use crate::error::Result;
-use crate::model::{Model, Past, PastPoint, State};
+use crate::model::{Linearised, Model, Past, PastPoint, State};
 
 /// Backward differentiation formulas of order 1 to 5, with variable steps and order, for wear that is smooth in time.
 ///
@@ -21,6 +24,8 @@ pub struct Multistep {
     tolerance: f64,
     newton: Newton,
     factors: Kept,
+    /// Cycles of the state that the last step was tried from.
+    tried_from: Option<f64>,
 }
 
 /// Times remembered, the present one included: the error at the next order takes two more than that order.
@@ -28,6 +33,11 @@ const REMEMBERED: usize = Multistep::HIGHEST_ORDER + 2;
 
 /// Error at the end of a run over that of its steps, measured (docs/numerics.md), so that a tolerance is about the error that comes of it.
 const ACCUMULATED: f64 = 8.0;
+
+/// Logarithm of the change of the step, and contraction of the corrections, up to which hierarchical factors serve another step: these take as
+/// long as eight corrections, dense ones of as many springs as those are for much less.
+const SAME_STEP: f64 = 0.3;
+const SAME_MATRIX: f64 = 0.4;
 
 /// Parts of the step that the error allows, at the present order and where the order changes.
 const SAFETY: f64 = 0.8;
@@ -50,15 +60,30 @@ impl Stepper for Multistep {
             step: times.per_slope / times.leading(past.order),
             drive: model.schedule().drive(state.cycles, now),
         };
+        self.take_up_factors(model, state, &target);
         let mut evaluations = 1;
-        // Where the past leads first; on fine meshes with gradings near -1 that may be beyond what Newton's method comes back from.
-        let still = State { cycles: now, past: Past::default(), ..state.clone() };
+        // Where the past leads first, once more with factors of its own; on fine meshes with gradings near -1 that may be beyond what Newton's
+        // method comes back from.
         let led = (past.points.len() > 1).then(|| state_of(state, times.guess(&past), now));
-        let found = led.into_iter().chain([still]).find_map(|mut at| {
-            self.factors.outdate();
-            self.newton.solve(model, &target, &mut at, &mut self.factors, &mut evaluations).then_some(at)
+        let again = led.clone().filter(|_| self.factors.at().is_some());
+        let still = State { cycles: now, past: Past::default(), ..state.clone() };
+        let guesses = led.into_iter().chain(again).chain([still]).enumerate();
+        let mut guesses = guesses.map(|(attempt, mut at)| {
+            if attempt > 0 {
+                self.factors.outdate();
+            }
+            let (newton, factors) = (&mut self.newton, &mut self.factors);
+            newton.solve(model, &target, &mut at, factors, &mut evaluations).then_some(at)
         });
-        let Some(mut at) = found else { return Ok(Trial::failed(evaluations)) };
+        let Some(mut at) = guesses.find_map(|found| found) else {
+            drop(guesses);
+            self.factors.outdate();
+            return Ok(Trial::failed(evaluations));
+        };
+        drop(guesses);
+        if self.newton.contraction > SAME_MATRIX {
+            self.factors.outdate();
+        }
         let cycle = &self.newton.cycle;
         at.dissipated_energy = gathered.dissipated_energy + target.step * cycle.dissipation;
         at.volume_by_rate = gathered.volume_by_rate + target.step * cycle.volume;
@@ -74,6 +99,8 @@ impl Stepper for Multistep {
         let (order, factor) = self.choose(model, error, &times, &past);
         past.order = order;
         past.points.truncate(REMEMBERED);
+        let serves_more = model.operators().backend() == Backend::Hierarchical;
+        past.linearised = self.factors.at().filter(|_| serves_more).cloned();
         at.past = past;
         Ok(Trial {
             state: Some(at),
@@ -107,7 +134,31 @@ impl Multistep {
 
     /// A stepper whose tolerance is about the error at the end of a run.
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance: tolerance / ACCUMULATED, newton: Newton::new(tolerance), factors: Kept::default() }
+        Self {
+            tolerance: tolerance / ACCUMULATED,
+            newton: Newton::new(tolerance),
+            factors: Kept::default(),
+            tried_from: None,
+        }
+    }
+
+    /// Takes up the factors that a state was left with, made again if this method did not make them itself, as long as they suit the step.
+    ///
+    /// A step that was rejected leaves its own to the next that is tried from the same state: so does it in a run that is resumed there.
+    fn take_up_factors(&mut self, model: &Model, state: &State, target: &Target) {
+        if self.tried_from != Some(state.cycles) {
+            self.tried_from = Some(state.cycles);
+            let known = self.factors.at().map(Arc::as_ptr);
+            match &state.past.linearised {
+                Some(left) if known == Some(Arc::as_ptr(left)) => {}
+                Some(left) => self.newton.recall(model, &target.drive, left, &mut self.factors),
+                None => self.factors.outdate(),
+            }
+        }
+        let suits = |at: &Arc<Linearised>| (target.step / at.step).ln().abs() <= SAME_STEP;
+        if model.operators().backend() == Backend::Dense || !self.factors.at().is_some_and(suits) {
+            self.factors.outdate();
+        }
     }
 
     /// The past of a state, which at the start is that state alone.
@@ -116,7 +167,7 @@ impl Multistep {
             return state.past.clone();
         }
         model.evaluate(state.edge, &state.compression, &mut self.newton.fields);
-        Past { order: 1, points: vec![PastPoint::new(state, &self.newton.fields.log_slip)] }
+        Past { order: 1, points: vec![PastPoint::new(state, &self.newton.fields.log_slip)], linearised: None }
     }
 
     /// `λ` where the rates at the start lead, from zero.

@@ -1,9 +1,12 @@
 //! Newton's method for the compressions and the edge at the end of an implicit stage, with the analytic Jacobian.
 
+use std::sync::Arc;
+
 use faer::Mat;
 
+use super::mixing::Mixing;
 use crate::linear::Factors;
-use crate::model::{CycleFields, Drive, Fields, Model, StageFactors, State};
+use crate::model::{CycleFields, Drive, Fields, Linearised, Model, StageFactors, State};
 
 /// Newton iterations before the matrix is renewed, and renewals before the step is given up.
 pub(super) const ITERATIONS: usize = 8;
@@ -50,12 +53,14 @@ pub(super) enum Factorised {
 }
 
 impl Factorised {
-    /// What a correction leaves of itself because factors are near the matrix only.
+    /// Whether they are near the matrix only.
+    fn is_near(&self) -> bool {
+        matches!(self, Self::Hierarchical(_))
+    }
+
+    /// What a correction leaves of itself because of that.
     fn slack(&self) -> f64 {
-        match self {
-            Self::Dense(_) => 0.0,
-            Self::Hierarchical(_) => NEARLY,
-        }
+        if self.is_near() { NEARLY } else { 0.0 }
     }
 
     fn solve(&self, rhs: &mut [f64]) {
@@ -66,25 +71,34 @@ impl Factorised {
     }
 }
 
-/// Factors that serve several stages, and their memory in between.
+/// Factors that serve several stages or steps, and their memory in between.
 #[derive(Debug, Default)]
 pub(super) struct Kept {
     factors: Option<Factorised>,
-    /// Whether they are good for more than their memory.
-    current: bool,
+    /// Where they were made; none if they are good for nothing but their memory.
+    at: Option<Arc<Linearised>>,
 }
 
 impl Kept {
     /// Leaves nothing but the memory.
     pub fn outdate(&mut self) {
-        self.current = false;
+        self.at = None;
+    }
+
+    /// Where the factors were made.
+    pub fn at(&self) -> Option<&Arc<Linearised>> {
+        self.at.as_ref()
     }
 
     /// The factors, made anew if they are outdated, and whether they were.
-    fn get(&mut self, make: impl FnOnce(Option<Factorised>) -> Factorised) -> (&Factorised, bool) {
-        let fresh = !self.current;
+    fn get(
+        &mut self,
+        at: impl FnOnce() -> Linearised,
+        make: impl FnOnce(Option<Factorised>) -> Factorised,
+    ) -> (&Factorised, bool) {
+        let fresh = self.at.is_none();
         let memory = if fresh { self.factors.take() } else { None };
-        self.current = true;
+        self.at.get_or_insert_with(|| Arc::new(at()));
         (self.factors.get_or_insert_with(|| make(memory)), fresh)
     }
 }
@@ -95,6 +109,8 @@ pub(super) struct Newton {
     tolerance: f64,
     pub fields: Fields,
     pub cycle: CycleFields,
+    /// Largest part of a correction that the next one was.
+    pub contraction: f64,
 }
 
 impl Newton {
@@ -102,7 +118,7 @@ impl Newton {
     pub fn new(tolerance: f64) -> Self {
         let [least, most] = BOUNDS;
         let tolerance = (OF_TOLERANCE * tolerance).clamp(least, most);
-        Self { tolerance, fields: Fields::default(), cycle: CycleFields::default() }
+        Self { tolerance, fields: Fields::default(), cycle: CycleFields::default(), contraction: 0.0 }
     }
 
     /// Newton's method for one stage, from and into `at`; leaves the fields there. Whether it converged to a contact.
@@ -120,15 +136,34 @@ impl Newton {
             return false;
         }
         for _ in 0..=RENEWALS {
-            let (lu, fresh) = kept.get(|memory| self.factorise(model, target, &at.compression, memory));
+            let linearised = || Linearised {
+                edge: at.edge,
+                gathered_edge: target.edge,
+                step: target.step,
+                compression: at.compression.clone(),
+            };
+            let (lu, fresh) =
+                kept.get(linearised, |memory| self.factorise(model, target, &at.compression, memory));
+            let mut mixing = lu.is_near().then(Mixing::default);
             let mut before = f64::INFINITY;
+            self.contraction = 0.0;
             for _ in 0..ITERATIONS {
                 let mut change = residual(model, target, &self.fields, &self.cycle.growth);
                 lu.solve(&mut change);
-                for (q, dq) in at.compression.iter_mut().zip(&change) {
+                let weight = scale / at.edge;
+                let taken = mixing.as_mut().map(|mixing| {
+                    // The edge counts as much as a compression.
+                    change[inner] *= weight;
+                    let mut taken = mixing.improved(&change);
+                    change[inner] /= weight;
+                    taken[inner] /= weight;
+                    taken
+                });
+                let taken = taken.as_ref().unwrap_or(&change);
+                for (q, dq) in at.compression.iter_mut().zip(taken) {
                     *q -= dq;
                 }
-                at.edge -= change[inner];
+                at.edge -= taken[inner];
                 *evaluations += 1;
                 if !self.evaluate(model, target, at) {
                     return false;
@@ -136,6 +171,9 @@ impl Newton {
                 let largest = change[..inner].iter().fold(0.0, |m: f64, dq| m.max(dq.abs())) / scale;
                 let size = largest.max(change[inner].abs() / at.edge);
                 let left = at.compression.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
+                if before.is_finite() {
+                    self.contraction = self.contraction.max(size / before);
+                }
                 // What is left falls as the corrections do, and the first one with a matrix of its own leaves its square.
                 let first = if fresh { (size / left).max(lu.slack()) } else { SLOWEST };
                 let part = if before.is_finite() { size / before } else { first }.min(SLOWEST);
@@ -153,6 +191,17 @@ impl Newton {
             kept.outdate();
         }
         false
+    }
+
+    /// Makes the factors again that were made some steps before.
+    pub fn recall(&mut self, model: &Model, drive: &Drive, at: &Arc<Linearised>, kept: &mut Kept) {
+        model.evaluate(at.edge, &at.compression, &mut self.fields);
+        self.cycle = model.cycle(drive, &at.compression, &self.fields);
+        let target =
+            Target { log_slip: Vec::new(), edge: at.gathered_edge, step: at.step, drive: drive.clone() };
+        let memory = kept.factors.take();
+        kept.factors = Some(self.factorise(model, &target, &at.compression, memory));
+        kept.at = Some(Arc::clone(at));
     }
 
     /// Whether no more is left of the stage's equations than the round-off of slip, a difference of the depths without pressure and with it.
