@@ -378,8 +378,7 @@ impl Rows<'_> {
         for i in leaf.start..(middle + near.across).min(end).min(leaf.end) {
             for (k, weight) in self.jacobian.row(&self.operators.derivative, i).filter(|(k, _)| *k < middle) {
                 let value = weight * self.scale[i] / self.scale[k];
-                let to = &mut sides.left[(i - leaf.start, terms + middle - 1 - k)];
-                *to = *to + from_f64::<T>(value);
+                sides.left[(i - leaf.start, terms + middle - 1 - k)] += from_f64::<T>(value);
             }
         }
         put(&near.below.rows, middle, &leaf, &mut sides.left, terms + near.across);
