@@ -3,6 +3,8 @@
 //! Each number of springs is a process of the program of its own, file included. The scene is the main one, cut short so that the largest are
 //! bearable. Peak memory is the largest resident set of the process, which the operating system keeps.
 
+mod support;
+
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -75,20 +77,10 @@ fn usage(pid: u32) -> (f64, f64) {
     (seconds(usage.ru_utime) + seconds(usage.ru_stime), megabytes)
 }
 
-/// Slope of a straight line through the logarithms.
+/// The power of the springs with which a cost grows.
 fn exponent(costs: &[Cost], value: fn(&Cost) -> f64) -> f64 {
-    let points: Vec<(f64, f64)> = costs
-        .iter()
-        .filter(|cost| cost.springs >= FITTED_FROM)
-        .map(|cost| ((cost.springs as f64).ln(), value(cost).ln()))
-        .collect();
-    let count = points.len() as f64;
-    let (x, y) =
-        points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / count, sum.1 + point.1 / count));
-    let (above, below) = points.iter().fold((0.0, 0.0), |sum, point| {
-        (sum.0 + (point.0 - x) * (point.1 - y), sum.1 + (point.0 - x).powi(2))
-    });
-    above / below
+    let fitted = costs.iter().filter(|cost| cost.springs >= FITTED_FROM);
+    support::exponent(fitted.map(|cost| (cost.springs as f64, value(cost))))
 }
 
 fn main() {

@@ -5,6 +5,8 @@
 //! them, measured in the same run, what the machine's memory delivers, and what the product would take by Fourier transform on a uniform grid, with
 //! the round-off that this leaves next to the edge of stick.
 
+mod support;
+
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -87,7 +89,6 @@ fn model(n: usize) -> [f64; 5] {
     let step = 0.1 / contact.tau_per_cycle();
     let mut factors = None;
     let factorise = least(|| {
-        factors = None;
         let slopes = model.plain_growth_slopes(&drive, &fields, &cycle, -step).expect("a plain cycle");
         factors = model.stage_factors(&fields, 1e-3, slopes, &by_edge, factors.take());
     });
@@ -97,17 +98,10 @@ fn model(n: usize) -> [f64; 5] {
     [evaluation, factorise, solve, factors.bytes() as f64, set_up]
 }
 
-/// Slope of a straight line through the logarithms.
+/// The power of the springs with which a cost grows.
 fn exponent(costs: &[Cost], value: impl Fn(&Cost) -> Option<f64>) -> f64 {
-    let points: Vec<(f64, f64)> = costs
-        .iter()
-        .filter(|cost| cost.springs >= FITTED_FROM)
-        .filter_map(|cost| Some(((cost.springs as f64).ln(), value(cost)?.ln())))
-        .collect();
-    let count = points.len() as f64;
-    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
-    let slope = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum::<f64>();
-    slope / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>()
+    let fitted = costs.iter().filter(|cost| cost.springs >= FITTED_FROM);
+    support::exponent(fitted.filter_map(|cost| Some((cost.springs as f64, value(cost)?))))
 }
 
 /// What all threads together read from memory in a second, bytes.

@@ -10,9 +10,9 @@
 //!
 //! `F` integrates the local polynomial through the densities `s^(ν-1) q`, `P` the one through the compressions `q`, both against the exact
 //! kernel, with Gauss-Jacobi rules where that is singular. Polynomials are those of the [`Mesh`]. Where the clustering is
-//! [`Clustering::Smooth`](crate::grid::Clustering::Smooth), the compression is linear in the last cell: the contact edge meets unworn ground there, and a polynomial of degree 5
-//! through it makes the pressure next to it negative on coarse meshes. In the first cell, which the mesh makes tiny, the compression is
-//! constant: it may jump at the stick edge, as it does in the limit.
+//! [`Clustering::Smooth`](crate::grid::Clustering::Smooth), the compression is linear in the last cell: the contact edge meets unworn ground
+//! there, and a polynomial of degree 5 through it makes the pressure next to it negative on coarse meshes. In the first cell, which the mesh
+//! makes tiny, the compression is constant: it may jump at the stick edge, as it does in the limit.
 //!
 //! Two backends apply the same weights behind [`Transform`]: matrices ([`Matrix`]), and for many springs what takes `O(n)` numbers and operations
 //! ([`Hierarchical`]).
@@ -28,7 +28,8 @@ use crate::grid::Mesh;
 use crate::linear::multiply;
 pub use compressed::{Block, Compressed};
 pub use hierarchical::Hierarchical;
-use weights::{Assembly, Cell, Direction};
+pub(crate) use weights::profile_factor;
+use weights::{Assembly, Cell, Direction, Kernel};
 
 /// A transform between the springs.
 pub trait Transform {
@@ -52,17 +53,7 @@ impl Matrix {
         let n = assembly.mesh.cells();
         let mut matrix = Mat::zeros(n, n);
         for index in direction.first_cell()..n {
-            let mut cell = Cell::new(assembly, index);
-            let rows = match direction {
-                Direction::Outwards => index + 1..n + 1,
-                Direction::Inwards => 1..index + 1,
-            };
-            for row in rows {
-                let weights = cell.weights(direction, row).into_iter().flatten();
-                for (node, weight) in cell.stencil.clone().zip(weights) {
-                    matrix[(row - 1, node - 1)] += weight;
-                }
-            }
+            Cell::new(assembly, index).add(direction, 1..n + 1, 1, &mut matrix);
         }
         Self { direction, weights: matrix }
     }
@@ -96,7 +87,7 @@ enum Pair {
 /// Product-integration operators of one grading on one mesh.
 #[derive(Debug, Clone)]
 pub struct AbelOperators {
-    grading: f64,
+    kernel: Kernel,
     mesh: Mesh,
     pair: Pair,
     spring_sum: Vec<f64>,
@@ -135,7 +126,7 @@ impl AbelOperators {
                 Pair::Hierarchical(Box::new(BOTH.map(|direction| Hierarchical::new(&assembly, direction))))
             }
         };
-        Ok(Self { grading, mesh, pair, spring_sum, depth_sum })
+        Ok(Self { kernel: assembly.kernel, mesh, pair, spring_sum, depth_sum })
     }
 
     /// The transforms of Eqs. (20) and (21), of densities at `ξ_1 ... ξ_n` to depths there and of compressions to `π p/c_N`, for `Z = 1`; the
@@ -175,7 +166,7 @@ impl AbelOperators {
 
     /// Grading `k`.
     pub fn grading(&self) -> f64 {
-        self.grading
+        self.kernel.grading
     }
 
     /// The mesh.
@@ -231,10 +222,4 @@ impl AbelOperators {
     pub fn depth_sum(&self) -> &[f64] {
         &self.depth_sum
     }
-}
-
-/// `sin(πν)/(π μ)`, the factor of Eq. (20) with that of the mean over its kernel; finite as `k → 1`.
-pub(crate) fn profile_factor(nu: f64, mu: f64) -> f64 {
-    // The sine of the smaller: next to π the other loses its digits.
-    (std::f64::consts::PI * nu.min(mu)).sin() / (std::f64::consts::PI * mu)
 }

@@ -20,22 +20,17 @@ pub struct Chebyshev {
 }
 
 impl Chebyshev {
-    /// Interpolates `function` on `[0, end]`, doubling the number of terms until the last ones are round-off; it is never called at 0.
+    /// Interpolates `function` on `[0, end]`, doubling the number of terms until the last ones are round-off, or there are 256; it is never called at 0.
     pub fn fit(function: impl Fn(f64) -> f64, end: f64) -> Self {
-        Self::fit_to(function, end, ROUND_OFF)
-    }
-
-    /// As [`Chebyshev::fit`], until the last terms are below the fraction `accuracy` of the largest, or there are 256.
-    pub fn fit_to(function: impl Fn(f64) -> f64, end: f64, accuracy: f64) -> Self {
         let mut terms = 16;
         loop {
             let coefficients = Self::coefficients(&function, end, terms);
             let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
             let tail = coefficients[terms - 3..].iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-            if tail <= accuracy * largest || terms >= MOST_TERMS {
+            if tail <= ROUND_OFF * largest || terms >= MOST_TERMS {
                 let keep = coefficients
                     .iter()
-                    .rposition(|c| c.abs() > 0.1 * accuracy * largest)
+                    .rposition(|c| c.abs() > 0.1 * ROUND_OFF * largest)
                     .map_or(1, |i| i + 1);
                 return Self { end, coefficients: coefficients[..keep].to_vec() };
             }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::AbelOperators;
 use super::hierarchical::LEAF;
+use super::weights::Kernel;
 use crate::linear::{Halves, LowRank, Split};
 
 /// Singular values that are left out of a block where the diagonal is one. Newton's method with factors of such matrices contracts to 1e-4 to
@@ -132,10 +133,9 @@ impl AbelOperators {
         if i < j || near(i).contains(&j) {
             return profile.near_weight(i, j);
         }
-        let nu = 0.5 * (1.0 + self.grading);
-        let mu = 0.5 * (1.0 - self.grading);
+        let Kernel { mu, nu, profile_factor, .. } = self.kernel;
         let distance = self.mesh.node(i + 1).minus(&self.mesh.node(j + 1));
-        super::profile_factor(nu, mu) * mu * distance.powf(-nu) * self.spring_sum[j]
+        profile_factor * mu * distance.powf(-nu) * self.spring_sum[j]
     }
 
     /// `P_ij` of Eq. (21), as [`AbelOperators::profile_weight`].
@@ -149,7 +149,7 @@ impl AbelOperators {
             let before = if j > 0 { pressure.near_weight(i, j - 1) } else { 0.0 };
             return before - pressure.near_weight(i, j);
         }
-        let mu = 0.5 * (1.0 - self.grading);
+        let mu = self.kernel.mu;
         let distance = self.mesh.node(j + 1).minus(&self.mesh.node(i + 1));
         // By parts: what the local polynomials have under the derivative of the kernel.
         -mu * distance.powf(-mu - 1.0) * self.spring_sum[j]

@@ -18,7 +18,7 @@ use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 use super::Transform;
-use super::weights::{Assembly, Cell, Direction};
+use super::weights::{Assembly, Cell, Direction, Kernel};
 use crate::grid::{Clustering, MeshPoint};
 use crate::linear::in_parallel;
 
@@ -356,13 +356,7 @@ impl Near {
         let rows = nodes.len();
         let mut block = Mat::<f64>::zeros(rows, end - first);
         for index in cells {
-            let mut cell = Cell::new(assembly, index);
-            for row in nodes.clone() {
-                let Some(weights) = cell.weights(direction, row) else { continue };
-                for (node, weight) in cell.stencil.clone().zip(weights) {
-                    block[(row - nodes.start, node - first)] += weight;
-                }
-            }
+            Cell::new(assembly, index).add(direction, nodes.clone(), first, &mut block);
         }
         let mut near = Self { columns: Vec::with_capacity(end - first), weights: Vec::new() };
         for (j, column) in block.col_iter().enumerate() {
@@ -460,11 +454,10 @@ impl Level {
         let points: Vec<Vec<MeshPoint>> = (0..clusters)
             .map(|cluster| Span::new(cluster, width, mesh.cells()).points().map(|y| mesh.at(y)).collect())
             .collect();
+        let Kernel { mu, nu, profile_factor, .. } = assembly.kernel;
         let kernel = |target: &MeshPoint, source: &MeshPoint| match direction {
-            Direction::Outwards => {
-                assembly.profile_factor * assembly.mu * target.minus(source).powf(-assembly.nu) * source.slope
-            }
-            Direction::Inwards => -source.minus(target).powf(-assembly.mu),
+            Direction::Outwards => profile_factor * mu * target.minus(source).powf(-nu) * source.slope,
+            Direction::Inwards => -source.minus(target).powf(-mu),
         };
         let mut couplings = vec![0.0; first * TERMS * TERMS];
         let mut blocks: Vec<&mut [f64]> = Vec::with_capacity(clusters);

@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::profile_factor;
+use faer::Mat;
+
 use crate::error::{Error, Result};
 use crate::grid::{Clustering, MOST_POINTS, Mesh, MeshPoint, lagrange, lagrange_derivative};
 use crate::quadrature::Rule;
@@ -69,13 +70,32 @@ impl Direction {
     }
 }
 
-/// Everything that the weights of one cell need.
-pub(super) struct Assembly<'a> {
-    pub mesh: &'a Mesh,
+/// Exponents and factor of the kernels of Eqs. (20) and (21).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Kernel {
+    pub grading: f64,
+    /// `ν = (1+k)/2`
     pub nu: f64,
+    /// `μ = (1-k)/2`
     pub mu: f64,
     /// `sin(πν)/(π (1-ν))`: finite as `k → 1`, where `1/(1-ν)` diverges.
     pub profile_factor: f64,
+}
+
+impl Kernel {
+    fn new(grading: f64) -> Result<Self> {
+        let (nu, mu) = (0.5 * (1.0 + grading), 0.5 * (1.0 - grading));
+        if !(nu > 0.0 && mu > 0.0) {
+            return Err(Error::OutOfRange { name: "half_space.grading", value: grading, range: "(-1, 1)" });
+        }
+        Ok(Self { grading, nu, mu, profile_factor: profile_factor(nu, mu) })
+    }
+}
+
+/// Everything that the weights of one cell need.
+pub(super) struct Assembly<'a> {
+    pub mesh: &'a Mesh,
+    pub kernel: Kernel,
     upper_end: LocalRule,
     lower_end: LocalRule,
     legendre: Vec<LocalRule>,
@@ -125,17 +145,12 @@ struct Mapped {
 
 impl<'a> Assembly<'a> {
     pub fn new(grading: f64, mesh: &'a Mesh) -> Result<Self> {
-        let (nu, mu) = (0.5 * (1.0 + grading), 0.5 * (1.0 - grading));
-        if !(nu > 0.0 && mu > 0.0) {
-            return Err(Error::OutOfRange { name: "half_space.grading", value: grading, range: "(-1, 1)" });
-        }
+        let kernel = Kernel::new(grading)?;
         Ok(Self {
             mesh,
-            nu,
-            mu,
-            profile_factor: profile_factor(nu, mu),
-            upper_end: LocalRule::new(mesh, Rule::jacobi(SINGULAR_NODES, -nu, 0.0)?),
-            lower_end: LocalRule::new(mesh, Rule::jacobi(SINGULAR_NODES, 0.0, -mu)?),
+            kernel,
+            upper_end: LocalRule::new(mesh, Rule::jacobi(SINGULAR_NODES, -kernel.nu, 0.0)?),
+            lower_end: LocalRule::new(mesh, Rule::jacobi(SINGULAR_NODES, 0.0, -kernel.mu)?),
             legendre: REGULAR_NODES
                 .into_iter()
                 .map(|nodes| Ok(LocalRule::new(mesh, Rule::legendre(nodes)?)))
@@ -204,7 +219,7 @@ impl<'a> Assembly<'a> {
 pub(super) struct Cell<'a> {
     assembly: &'a Assembly<'a>,
     index: usize,
-    pub stencil: Range<usize>,
+    stencil: Range<usize>,
     regular: [Option<Mapped>; REGULAR_NODES.len()],
 }
 
@@ -213,8 +228,18 @@ impl<'a> Cell<'a> {
         Self { assembly, index, stencil: assembly.stencil(index), regular: Default::default() }
     }
 
+    /// Adds the weights of the cell at some nodes to a matrix that begins with the first of them and with the column of the node `first_column`.
+    pub fn add(&mut self, direction: Direction, rows: Range<usize>, first_column: usize, to: &mut Mat<f64>) {
+        for row in rows.clone() {
+            let Some(weights) = self.weights(direction, row) else { continue };
+            for (node, weight) in self.stencil.clone().zip(weights) {
+                to[(row - rows.start, node - first_column)] += weight;
+            }
+        }
+    }
+
     /// Weights of the cell at a node, if it contributes there.
-    pub fn weights(&mut self, direction: Direction, row: usize) -> Option<Weights> {
+    fn weights(&mut self, direction: Direction, row: usize) -> Option<Weights> {
         let weights = match direction {
             Direction::Outwards if row > self.index => self.profile_weights(row),
             Direction::Inwards if row <= self.index => self.pressure_weights(row),
@@ -226,14 +251,14 @@ impl<'a> Cell<'a> {
     /// Weights of the densities of the cell in the depth at a node from its outer end on.
     fn profile_weights(&mut self, row: usize) -> Weights {
         let (assembly, cell) = (self.assembly, self.index);
-        let factor = assembly.profile_factor;
+        let factor = assembly.kernel.profile_factor;
         if row == cell + 1 {
             return self.at_outer_end().map(|weight| factor * weight);
         }
         let node = assembly.mesh.node(row);
         let mapped = self.regular(row - cell - 1);
-        let kernel = |at: usize| node.minus(&mapped.points[at]).powf(-assembly.nu);
-        weighted_sum(&mapped.values, kernel).map(|weight| factor * assembly.mu * weight)
+        let kernel = |at: usize| node.minus(&mapped.points[at]).powf(-assembly.kernel.nu);
+        weighted_sum(&mapped.values, kernel).map(|weight| factor * assembly.kernel.mu * weight)
     }
 
     /// Weights of the densities of the cell in the integral over it with the kernel that is singular at its outer end, times `μ`.
@@ -249,13 +274,13 @@ impl<'a> Cell<'a> {
                 mesh.lagrange(stencil, mesh.cells() as f64, &point)
             };
             let values: Vec<Weights> = (0..rule.len()).map(on_line).collect();
-            let scale = width.powf(assembly.mu);
+            let scale = width.powf(assembly.kernel.mu);
             return weighted_sum(&values, |at| scale * rule.weights[at]);
         }
         let mapped = assembly.map(cell, &assembly.upper_end, stencil);
         let steepness = |at: usize| {
             let left = rule.complements[at];
-            assembly.mean_slope((cell + 1) as f64 - left, left).powf(-assembly.nu)
+            assembly.mean_slope((cell + 1) as f64 - left, left).powf(-assembly.kernel.nu)
         };
         weighted_sum(&mapped.values, steepness)
     }
@@ -266,12 +291,12 @@ impl<'a> Cell<'a> {
         if row == cell {
             let mapped = assembly.map(cell, &assembly.lower_end, &self.stencil);
             let nodes = &assembly.lower_end.rule.nodes;
-            let steepness = |at: usize| assembly.mean_slope(cell as f64, nodes[at]).powf(-assembly.mu);
-            return weighted_sum(&mapped.slopes, steepness).map(|weight| -1.0 / assembly.nu * weight);
+            let steepness = |at: usize| assembly.mean_slope(cell as f64, nodes[at]).powf(-assembly.kernel.mu);
+            return weighted_sum(&mapped.slopes, steepness).map(|weight| -1.0 / assembly.kernel.nu * weight);
         }
         let node = assembly.mesh.node(row);
         let mapped = self.regular(cell - row);
-        let kernel = |at: usize| mapped.points[at].minus(&node).powf(-assembly.mu);
+        let kernel = |at: usize| mapped.points[at].minus(&node).powf(-assembly.kernel.mu);
         weighted_sum(&mapped.slopes, kernel).map(|weight| -weight)
     }
 
@@ -287,7 +312,7 @@ impl<'a> Cell<'a> {
 
     /// Adds the cell's part of `∫ w dξ`, where `ξ^(-μ) w` is the polynomial.
     pub fn add_depth_sum(&self, sum: &mut [f64]) {
-        let (mesh, mu) = (self.assembly.mesh, self.assembly.mu);
+        let (mesh, mu) = (self.assembly.mesh, self.assembly.kernel.mu);
         let stencil = Mesh::stencil(self.index, SUM_POINTS.min(mesh.cells()), mesh.cells());
         let mapped = self.assembly.map(self.index, &self.assembly.legendre[PLAIN], &stencil);
         let part = weighted_sum(&mapped.values, |at| mapped.points[at].value.powf(mu));
@@ -315,4 +340,10 @@ fn weighted_sum(weights: &[Weights], kernel: impl Fn(usize) -> f64) -> Weights {
         }
     }
     sum
+}
+
+/// `sin(πν)/(π μ)`, the factor of Eq. (20) with that of the mean over its kernel; finite as `k → 1`.
+pub(crate) fn profile_factor(nu: f64, mu: f64) -> f64 {
+    // The sine of the smaller: next to π the other loses its digits.
+    (std::f64::consts::PI * nu.min(mu)).sin() / (std::f64::consts::PI * mu)
 }
