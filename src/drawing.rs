@@ -12,6 +12,7 @@ mod letters;
 mod paths;
 mod picture;
 mod svg;
+mod thinning;
 mod ticks;
 
 pub use colour::{Colour, DISTINCT, graded};

@@ -162,7 +162,7 @@ impl Results {
         }
     }
 
-    /// A figure.
+    /// A figure, its lines without the points that nobody sees.
     ///
     /// # Arguments
     /// * `kind` -- what it shows
@@ -178,7 +178,7 @@ impl Results {
             let why = format!("is chosen for figures of a sweep only, and the file is of {}", self.what());
             return Err(Error::Inconsistent { what: "quantity", why });
         }
-        match self {
+        let mut figure = match self {
             Self::Run(run) => run.figure(kind),
             Self::Sweep(file) => sweep::figure(file, quantity),
             Self::Map(file) if kind == Kind::WornProfiles => worn_profiles::figure(file),
@@ -186,7 +186,9 @@ impl Results {
             Self::Map(file) => map::figure(file),
             Self::Universality(file) => universality::figure(file),
             Self::Tradeoff(file) => tradeoff::figure(file),
-        }
+        }?;
+        figure.thin();
+        Ok(figure)
     }
 
     fn misfit(&self, kind: Kind) -> Error {
