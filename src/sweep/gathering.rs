@@ -2,12 +2,21 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use super::rows::{FAILED, STATUS, WALL_SECONDS};
 use crate::error::{Error, Result};
 use crate::snapshot::{Column, RunFile, SweepFile, SweepHeader, Values};
 
-/// Reads files one after the other, and begins anew where one has gone meanwhile: another process has put it into a larger one.
+/// How often files are read anew, and the first pause before: a process that put many parts into a larger file removes them one after the other, as
+/// long as the file system takes.
+const MOST_TRIES: u32 = 20;
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// Doublings of the pause, to a second.
+const MOST_DOUBLINGS: u32 = 8;
+
+/// Reads files one after the other, and begins anew, after a while, where one has gone meanwhile: another process has put it into a larger one.
 ///
 /// # Arguments
 /// * `list` -- the files that are there now
@@ -18,13 +27,15 @@ pub(super) fn fold_files<T>(
     start: impl Fn() -> T,
     mut add: impl FnMut(&mut T, &Path, SweepFile) -> Result<()>,
 ) -> Result<(T, Vec<PathBuf>)> {
-    const MOST_TRIES: usize = 10;
-    'again: for _ in 0..MOST_TRIES {
+    'again: for tried in 0..MOST_TRIES {
         let (mut sum, paths) = (start(), list()?);
         for path in &paths {
             match SweepFile::read(path) {
                 Ok(file) => add(&mut sum, path, file)?,
-                Err(_) if !path.exists() => continue 'again,
+                Err(_) if !path.exists() => {
+                    std::thread::sleep(PAUSE * 2u32.pow(tried.min(MOST_DOUBLINGS)));
+                    continue 'again;
+                }
                 Err(error) => return Err(error),
             }
         }
