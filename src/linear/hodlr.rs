@@ -247,18 +247,15 @@ impl<T: RealField + Copy> Part<'_, T> {
         let (right_top, right_bottom) = self.right.split_at_row(middle);
         let (terms, below) = (self.terms[0], &self.terms[1..]);
         let (columns, level) = (self.columns, self.level + 1);
-        let halves = rayon::join(
-            || {
-                let (splits, terms) = (&splits[..inner], &below[..inner]);
-                let (left, right) = (top.as_mut(), right_top);
-                Part { splits, terms, columns, leaves: self.leaves, left, right, level }.factorise()
-            },
-            || {
-                let (splits, terms) = (&splits[inner..], &below[inner..]);
-                let (left, right) = (bottom.as_mut(), right_bottom);
-                Part { splits, terms, columns, leaves: second_leaves, left, right, level }.factorise()
-            },
+        let half = |of: Range<usize>, leaves, left, right| {
+            let (splits, terms) = (&splits[of.clone()], &below[of]);
+            Part { splits, terms, columns, leaves, left, right, level }
+        };
+        let halves = (
+            half(0..inner, self.leaves, top.as_mut(), right_top),
+            half(inner..splits.len(), second_leaves, bottom.as_mut(), right_bottom),
         );
+        let halves = rayon::join(|| halves.0.factorise(), || halves.1.factorise());
         let [upper, lower] = terms;
         let right = [right_top.subcols(first, lower), right_bottom.subcols(first, upper)];
         // Of the levels above, and then of `Y` itself.

@@ -16,8 +16,9 @@ use crate::model::{Linearised, Model, Past, PastPoint, State};
 ///
 /// The weights are those of the interpolating polynomial whatever the steps (Hairer & Wanner, Solving Ordinary Differential Equations II,
 /// ch. V.1), which keeps its order under a constraint of index 2 (there, ch. VII.3) as that of the contact edge is. Rates of wear fall like
-/// powers of time, for which steps may stay even in `s`. A step is one stage, and Newton's matrix is factorised once. What lies within a
-/// step is on the same polynomial, so that outputs cost no steps.
+/// powers of time, for which steps may stay even in `s`. A step is one stage, for which Newton's matrix is factorised once
+/// while it converges; on many springs its factors serve the steps after it too. What lies within a step is on the same polynomial, so that
+/// outputs cost no steps.
 #[derive(Debug)]
 pub struct Multistep {
     /// Largest error of one step.
