@@ -8,6 +8,7 @@ pub mod laws;
 pub mod reference;
 pub mod results;
 pub mod resume;
+pub mod scenes;
 
 use fretwear::contact::InitialContact;
 use fretwear::friction::Coulomb;
