@@ -74,11 +74,11 @@ impl InitialContact {
         let Press { indentation, contact_radius, normal_force } =
             Press::new(&profile, half_space.normal_stiffness(), loading.load)?;
         let mean_pressure = normal_force / (PI * contact_radius * contact_radius);
-        representable("mean pressure, Pa", mean_pressure, "loading, indenter and half_space")?;
+        representable("mean pressure, Pa", mean_pressure, &["loading", "indenter", "half_space"])?;
 
         let stiffness_ratio = half_space.stiffness_ratio();
         let sliding = full_sliding_amplitude(stiffness_ratio, friction.coefficient, indentation);
-        representable("amplitude of full sliding μ_f d/M, m", sliding, "friction.coulomb.coefficient")?;
+        representable("amplitude of full sliding μ_f d/M, m", sliding, &["friction"])?;
         let slip = Slip::new(
             &profile,
             indentation,
@@ -91,7 +91,7 @@ impl InitialContact {
         let radial = contact_radius.powf(half_space.grading() - 1.0);
         let tau_per_cycle = 4.0 * (wear.coefficient * half_space.normal_stiffness()) * (radial * sliding);
         let what = "dimensionless time per cycle 4 k_w c_N a0^(k-1) μ_f d/M";
-        representable(what, tau_per_cycle, "wear.archard.coefficient, half_space and loading")?;
+        representable(what, tau_per_cycle, &["wear", "half_space", "loading"])?;
         Ok(Self {
             indenter: indenter.clone(),
             half_space: *half_space,
@@ -284,22 +284,22 @@ impl Press {
                 representable(
                     "normal force per stiffness F_N/c_N, m^(2+k)",
                     per_stiffness,
-                    "loading.initial_force and half_space",
+                    &[key, "half_space"],
                 )?;
                 profile.depth_for_load(per_stiffness).map_err(too_large)?
             }
         };
-        representable("indentation, m", indentation, key)?;
+        representable("indentation, m", indentation, &[key])?;
         let contact_radius = profile.radius_at(indentation).map_err(too_large)?;
-        representable("contact radius, m", contact_radius, "indenter and loading")?;
+        representable("contact radius, m", contact_radius, &["indenter", "loading"])?;
         // Worn volumes are fractions of it.
         let volume = PI * contact_radius * contact_radius * indentation;
-        representable("volume π a0² d, m³", volume, "indenter and loading")?;
+        representable("volume π a0² d, m³", volume, &["indenter", "loading"])?;
         let normal_force = match load {
             Load::Indentation(_) => normal_stiffness * profile.load_integral(contact_radius),
             Load::InitialForce(force) | Load::NormalForce(force) => force,
         };
-        representable("normal force, N", normal_force, "loading.indentation and half_space")?;
+        representable("normal force, N", normal_force, &["loading.indentation", "half_space"])?;
         Ok(Self { indentation, contact_radius, normal_force })
     }
 }
@@ -327,8 +327,8 @@ impl Slip {
             }
             let compression = slip_compression(stiffness_ratio, displacement, friction_coefficient);
             if value > 0.0 {
-                representable("amplitude, m", displacement, key)?;
-                representable("compression at the edge of stick M U/μ_f, m", compression, key)?;
+                representable("amplitude, m", displacement, &[key])?;
+                representable("compression at the edge of stick M U/μ_f, m", compression, &[key])?;
             }
             let stick_logarithm = match Regime::new(indentation, compression) {
                 Regime::Stick => Some(0.0),
@@ -371,11 +371,11 @@ impl Slip {
         {
             let key = amplitude.key();
             let share = -(-2.0 * logarithm).exp_m1();
-            representable("stick radius, m", contact_radius * (-logarithm).exp(), key)?;
-            representable("amplitude, m", slip.amplitude, key)?;
+            representable("stick radius, m", contact_radius * (-logarithm).exp(), &[key])?;
+            representable("amplitude, m", slip.amplitude, &[key])?;
             // The worn volume falls with the power (5-k)/2 of the annulus.
             let least = contact_radius * contact_radius * indentation * share.powi(3);
-            representable("worn volume, m³, in order of size", least, key)?;
+            representable("worn volume, m³, in order of size", least, &[key])?;
         }
         Ok(slip)
     }
@@ -390,8 +390,8 @@ fn positive(name: &'static str, value: f64) -> Result<()> {
 
 /// Passes what a double holds with all its digits.
 ///
-/// `keys` are those of the scene that decide.
-fn representable(what: &'static str, value: f64, keys: &str) -> Result<()> {
+/// `keys` are those of the scene that decide, of which the first is shown.
+fn representable(what: &str, value: f64, keys: &[&'static str]) -> Result<()> {
     if value > 0.0 && value.is_normal() {
         return Ok(());
     }
@@ -401,8 +401,11 @@ fn representable(what: &'static str, value: f64, keys: &str) -> Result<()> {
         _ => "is too small",
     };
     Err(Error::Inconsistent {
-        what,
-        why: format!("{value:e} {why} to compute with; check the value and the unit of {keys}"),
+        what: keys[0],
+        why: format!(
+            "the {what} = {value:e} {why} to compute with; check the value and the unit of {}",
+            keys.join(", ")
+        ),
     })
 }
 

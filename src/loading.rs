@@ -61,6 +61,51 @@ pub enum Duration {
     UntilRate(f64),
 }
 
+impl Duration {
+    /// Smallest fraction of its first value to which the rate of worn volume can be seen to fall: below, it is the rounding of compressions that
+    /// have come to nothing.
+    pub const SMALLEST_RATE: f64 = 1e-14;
+
+    /// Cycles and dimensionless time at the end; none if the rate of wear decides.
+    ///
+    /// # Arguments
+    /// * `tau_per_cycle` -- dimensionless time of one cycle
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] names the key if one of the two overflows.
+    pub fn span(self, tau_per_cycle: f64) -> Result<Option<[f64; 2]>> {
+        let (key, value, span, name) = match self {
+            Self::Cycles(cycles) => ("loading.cycles", cycles, [cycles, cycles * tau_per_cycle], "the time"),
+            Self::Tau(tau) => {
+                ("loading.tau", tau, [cycles_at(tau, tau_per_cycle), tau], "the number of cycles")
+            }
+            Self::UntilRate(_) => return Ok(None),
+        };
+        if span.iter().all(|it| it.is_finite()) {
+            return Ok(Some(span));
+        }
+        let why = format!(
+            "{value:e} is too large at a dimensionless time of {tau_per_cycle:e} per cycle: {name} overflows; ask for less"
+        );
+        Err(Error::Inconsistent { what: key, why })
+    }
+}
+
+/// Cycles at a dimensionless time: of the doubles next to the quotient the one that gives this time back, if there is one.
+pub fn cycles_at(tau: f64, tau_per_cycle: f64) -> f64 {
+    let cycles = tau / tau_per_cycle;
+    let candidates = [cycles, cycles.next_up(), cycles.next_down()];
+    candidates.into_iter().find(|it| it * tau_per_cycle == tau).unwrap_or(cycles)
+}
+
+/// Times closer than this, relatively, are one: the sum of the durations of blocks and the same time written out differ by rounding.
+const ONE_EVENT: f64 = 1e-12;
+
+/// Whether an event at `time` is over at the time `now`, or one with it but for rounding.
+pub fn has_come(time: f64, now: f64) -> bool {
+    time <= now * (1.0 + ONE_EVENT)
+}
+
 /// Load, amplitude and end of plain tangential oscillation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loading {

@@ -180,8 +180,11 @@ impl Model {
         let contact = &contact;
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
         let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
-            what: "slip annulus",
-            why: "no spring slips, so that nothing wears; ask for a larger amplitude".into(),
+            what: "loading.amplitude",
+            why: format!(
+                "at an amplitude of {:e} m no spring slips in any cycle, so that nothing wears; ask for a larger one",
+                contact.amplitude()
+            ),
         })?;
         if springs < FEWEST_SPRINGS {
             return Err(Error::OutOfRange {

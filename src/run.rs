@@ -10,7 +10,7 @@ use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::indenter::Indenter;
-use crate::loading;
+use crate::loading::{self, cycles_at, has_come};
 use crate::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice, WearFrom};
 use crate::simulation::{End, Observer, Outcome, Plan, Simulation};
@@ -23,9 +23,12 @@ use crate::stick_slip::Regime;
 mod effort;
 mod knob;
 mod mesh;
+mod ready;
 mod recorder;
 
 pub(crate) use mesh::operator_bytes;
+pub use ready::Expected;
+use ready::Ready;
 use recorder::{Recorder, snapshot};
 
 /// Part of the run at which the first of geometrically spread snapshots is taken.
@@ -36,9 +39,6 @@ const UNKNOWN_END: [f64; 2] = [1e-2, 1e3];
 
 /// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
 const SPRINGS_TO_SLIDE: usize = 60;
-
-/// Springs on which a contact is tried in a tenth of a second.
-const QUICKLY_TRIED: usize = 400;
 
 /// What a finished or interrupted run comes to; SI.
 #[derive(Debug, Clone)]
@@ -145,16 +145,14 @@ impl Run {
         shared: &Shared,
         writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
     ) -> Result<Self> {
-        let parts = Parts::new(scene, scene.numerics(), None, &shared.operators)?;
-        let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
-        let warning = effort::check(scene.numerics().stepper, &mut simulation)?;
+        let Ready { simulation, limit, expected } = Ready::new(scene, &shared.operators)?;
         if scene.numerics().stepper == StepperChoice::Implicit {
             simulation.model().release_factors();
         }
-        let header = header(scene, simulation.model(), parts.limit.as_ref());
+        let header = header(scene, simulation.model(), limit.as_ref());
         let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
         let store = shared.operators.clone();
-        Ok(Self { simulation, recorder, limit: parts.limit, warning, scene: scene.clone(), store })
+        Ok(Self { simulation, recorder, limit, warning: expected.warning, scene: scene.clone(), store })
     }
 
     /// Prepares a run that goes on from the last checkpoint in its file.
@@ -240,23 +238,15 @@ impl Run {
         Ok(Resumed::Run(Box::new(Self { simulation, recorder, limit, warning: None, scene, store })))
     }
 
-    /// Refuses what [`Run::new`] would refuse for its mesh: springs that do not carry the contact, or do not fit into memory.
-    ///
-    /// Where more springs are asked for than can be tried in a moment, and where the contact slides as a whole, only their memory is looked at.
+    /// Refuses what [`Run::new`] refuses, with the same words; else what the run will take.
     ///
     /// # Errors
-    /// As [`Run::new`].
-    pub fn check_mesh(scene: &Scene) -> Result<()> {
-        let (contact, numerics) = (scene.contact()?, scene.numerics());
-        let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
-        let many = numerics.springs.is_some_and(|springs| springs > QUICKLY_TRIED);
-        if many || contact.regime() == Regime::FullSliding {
-            return mesh::check_memory(numerics, &contact, &schedule);
-        }
-        mesh::model(&contact, &schedule, numerics, None, &OperatorStore::default()).map(|_| ())
+    /// As [`Run::new`], those of files apart. Each names a key of the scene.
+    pub fn check(scene: &Scene) -> Result<Expected> {
+        Ready::new(scene, &OperatorStore::default()).map(|ready| ready.expected)
     }
 
-    /// A word about a run that will take hours, where that is known beforehand.
+    /// A word about a run that will take long, where that is known beforehand.
     pub fn warning(&self) -> Option<&str> {
         self.warning.as_deref()
     }
@@ -397,7 +387,7 @@ impl Parts {
             StepperChoice::Implicit => Box::new(Implicit::new(tolerance)),
         };
         let whole = numerics.stepper == StepperChoice::EveryCycle;
-        let plan = plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole);
+        let plan = plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
         Ok(Self { model, stepper, tolerance, plan, limit })
     }
 }
@@ -465,12 +455,11 @@ pub(crate) fn memory_figure(table: &str, name: &str) -> Option<f64> {
 }
 
 /// The plan of a scene; whole cycles where the stepper knows no others.
-fn plan(duration: loading::Duration, output: &Output, tau_per_cycle: f64, whole: bool) -> Plan {
+fn plan(duration: loading::Duration, output: &Output, tau_per_cycle: f64, whole: bool) -> Result<Plan> {
     let round = |cycles: f64| if whole { cycles.round().max(1.0) } else { cycles };
-    let end = match duration {
-        loading::Duration::Cycles(cycles) => End::Cycles(round(cycles)),
-        loading::Duration::Tau(tau) => End::Cycles(round(cycles_at(tau, tau_per_cycle))),
-        loading::Duration::UntilRate(fraction) => End::Rate(fraction),
+    let end = match (duration.span(tau_per_cycle)?, duration) {
+        (None, loading::Duration::UntilRate(fraction)) => End::Rate(fraction),
+        (span, _) => End::Cycles(round(span.map_or(0.0, |[cycles, _]| cycles))),
     };
     let mut outputs: Vec<f64> = match (output, end) {
         (Output::Snapshots(count), End::Cycles(last)) => geometric(FIRST_SNAPSHOT * last, last, *count),
@@ -482,19 +471,13 @@ fn plan(duration: loading::Duration, output: &Output, tau_per_cycle: f64, whole:
         (Output::AtTau(taus), _) => taus.iter().map(|tau| cycles_at(*tau, tau_per_cycle)).collect(),
     };
     if let End::Cycles(last) = end {
-        outputs.retain(|cycles| *cycles < last);
+        outputs.retain(|cycles| !has_come(last, *cycles));
         outputs.push(last);
     }
-    let mut outputs: Vec<f64> = outputs.into_iter().filter(|cycles| *cycles > 0.0).map(round).collect();
-    outputs.dedup();
-    Plan { outputs, end }
-}
-
-/// Cycles at a dimensionless time: of the doubles next to the quotient the one that gives this time back, if there is one.
-fn cycles_at(tau: f64, tau_per_cycle: f64) -> f64 {
-    let cycles = tau / tau_per_cycle;
-    let candidates = [cycles, cycles.next_up(), cycles.next_down()];
-    candidates.into_iter().find(|it| it * tau_per_cycle == tau).unwrap_or(cycles)
+    let within = |cycles: &f64| *cycles > 0.0 && cycles.is_finite();
+    let mut outputs: Vec<f64> = outputs.into_iter().filter(within).map(round).collect();
+    outputs.dedup_by(|next, kept| has_come(*next, *kept));
+    Ok(Plan { outputs, end })
 }
 
 /// `count` numbers of cycles in constant ratio, the last of them `last`.

@@ -4,8 +4,10 @@ use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
+use crate::loading::has_come;
 use crate::model::{CycleFields, Fields, Model, MovingStick, RadialFields, State};
 use crate::stepper::Stepper;
+use crate::wear::WearLaw;
 
 /// Safety factor and bounds of the choice of steps.
 const SAFETY: f64 = 0.9;
@@ -75,6 +77,9 @@ pub enum Outcome {
     /// An observer asked to stop.
     Interrupted,
 }
+
+/// Part of a step that was wanted below which the one to an output or a break tells nothing about the next.
+const CUT_SHORT: f64 = 1e-3;
 
 /// What an observer wants after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -147,6 +152,8 @@ pub struct Simulation {
     depth: Vec<f64>,
     rate: f64,
     progress: Progress,
+    /// Radius, m, at which the last state that was refused had lost wear depth.
+    healed_at: Option<f64>,
 }
 
 impl Simulation {
@@ -168,10 +175,7 @@ impl Simulation {
             growth = growth.max(largest(&cycle.growth));
         }
         if !(growth > 0.0 && growth.is_finite() && first_rate > 0.0 && first_rate.is_finite()) {
-            return Err(Error::Inconsistent {
-                what: "wear",
-                why: "nothing wears in the first cycles".into(),
-            });
+            return Err(nothing_wears(&model));
         }
         let next_step = FIRST_GROWTH / growth;
         let progress = Progress { next_step, first_rate, rate_evaluations: 1, ..Progress::default() };
@@ -191,7 +195,7 @@ impl Simulation {
         let cycle = cycle_of(&model, &state, &fields, state.cycles);
         let depth = model.depth_on_springs(&state, &fields);
         let rate = rate_of_wear(&model, &fields, &cycle);
-        Self { model, stepper, tolerance, plan, state, fields, cycle, depth, rate, progress }
+        Self { model, stepper, tolerance, plan, state, fields, cycle, depth, rate, progress, healed_at: None }
     }
 
     /// The model.
@@ -249,12 +253,12 @@ impl Simulation {
         self.rate
     }
 
-    /// Tries a step of one cycle and forgets it, for its cost.
+    /// Tries a step of so many cycles and forgets it, for its cost.
     ///
     /// # Errors
     /// Those of the stepper.
-    pub fn measure_step(&mut self) -> Result<()> {
-        self.stepper.step(&self.model, &self.state, 1.0).map(|_| ())
+    pub fn measure_step(&mut self, cycles: f64) -> Result<()> {
+        self.stepper.step(&self.model, &self.state, cycles).map(|_| ())
     }
 
     /// Steps to the end of the plan or until an observer stops it. The start is an output too, unless steps were made before.
@@ -269,7 +273,13 @@ impl Simulation {
             if let Some(outcome) = self.finished() {
                 return Ok(outcome);
             }
-            let landed = self.advance(observers)?;
+            let landed = self.advance(observers).map_err(|error| match error {
+                // A search within a step knows nothing of the moment.
+                Error::NotConverged { what, why } if what != STEPPING => {
+                    self.stuck(&format!("{what}: {why}"))
+                }
+                other => other,
+            })?;
             let ended = self.finished().is_some();
             if landed || ended {
                 self.tell(observers)?;
@@ -378,8 +388,7 @@ impl Simulation {
             };
             if self.stepper.prescribed_step().is_some() {
                 if !accepted {
-                    return Err(self
-                        .stuck("the prescribed step makes wear depth decrease or leaves no contact", step));
+                    return Err(self.stuck("the wear of one cycle leaves no contact that wear can lead to"));
                 }
             } else {
                 self.adapt(step, error, accepted, trial.next_step);
@@ -401,7 +410,11 @@ impl Simulation {
             End::Rate(_) if self.stepper.interpolates() => None,
             _ => self.plan.outputs.get(self.progress.next_output as usize).copied(),
         };
-        let target = self.model.schedule().next_break(now).into_iter().chain(output).min_by(f64::total_cmp);
+        let target = match (self.model.schedule().next_break(now), output) {
+            // Where the two are one, at the time that was asked for.
+            (Some(kink), Some(output)) => Some(if has_come(output, kink) { output } else { kink }),
+            (kink, output) => kink.or(output),
+        };
         let landing = |step: f64, at: Option<f64>| Landing { step, at, output: at.is_some() && at == output };
         if let Some(step) = self.stepper.prescribed_step() {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
@@ -409,7 +422,7 @@ impl Simulation {
         let step = self.progress.next_step;
         let growth = step * largest(&self.cycle.growth);
         if !(growth > SMALLEST_GROWTH || (now > 0.0 && step > 1e-6 * now)) {
-            return Err(self.stuck("the step had to become too small", step));
+            return Err(self.stuck("no step is small enough for wear to go on from there"));
         }
         let Some(target) = target else { return Ok(landing(step, None)) };
         let remaining = target - now;
@@ -454,8 +467,16 @@ impl Simulation {
         let mut pairs = depth.iter().zip(&self.depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);
         if !(grew && fields.are_physical() && self.presses(&state)) {
+            self.healed_at =
+                depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed).map(|at| {
+                    let stick = self.model.contact().stick_radius().unwrap_or_default();
+                    let nodes = self.model.operators().nodes();
+                    (stick * stick + self.model.unworn().limit_edge() * nodes[(at + 1).min(nodes.len() - 1)])
+                        .sqrt()
+                });
             return Ok(false);
         }
+        self.healed_at = None;
         if let Some(target) = target {
             state.cycles = target;
         }
@@ -490,22 +511,64 @@ impl Simulation {
         let order = self.stepper.estimate_order();
         let by_error = || step * SAFETY * error.max(1e-12).powf(-1.0 / order);
         let best = if error.is_finite() { wanted.unwrap_or_else(by_error) } else { 0.25 * step };
-        self.progress.next_step = if accepted {
-            best.clamp(SMALLEST_FACTOR * step, LARGEST_FACTOR * step.max(self.progress.next_step))
+        let planned = self.progress.next_step;
+        self.progress.next_step = if accepted && step < CUT_SHORT * planned {
+            planned
+        } else if accepted {
+            best.clamp(SMALLEST_FACTOR * step, LARGEST_FACTOR * step.max(planned))
         } else {
             best.clamp(SMALLEST_FACTOR * step, 0.5 * step)
         };
     }
 
-    fn stuck(&self, why: &str, step: f64) -> Error {
+    /// The moment at which a run cannot go on, and what can be done.
+    fn stuck(&self, why: &str) -> Error {
+        let (model, cycles) = (&self.model, self.state.cycles);
+        let tau = cycles * model.contact().tau_per_cycle();
+        let [stick, edge] = [model.without_core(self.cycle.stick_radius), model.contact_radius(&self.state)];
+        let healed = self.healed_at.map_or(String::new(), |radius| {
+            format!(", for at the radius {radius:.4e} m wear depth would become less")
+        });
+        let springs = model.springs();
+        let cure = if cycles > 0.0 {
+            format!("or end before (loading.tau below {tau:.4})")
+        } else {
+            "or for another loading.amplitude".into()
+        };
         Error::NotConverged {
-            what: "time stepping",
+            what: STEPPING,
             why: format!(
-                "{why} ({step:e} cycles at cycle {}, {} steps); try another number of springs (numerics.springs)",
-                self.state.cycles, self.progress.steps
+                "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}; \
+                 ask for {} springs (numerics.springs; there were {springs}), {cure}",
+                2 * springs
             ),
         }
     }
+}
+
+/// What of a run does not converge.
+const STEPPING: &str = "time stepping";
+
+/// Why a run cannot begin.
+fn nothing_wears(model: &Model) -> Error {
+    let (what, why) = match model.schedule().conditions().wear {
+        WearLaw::Threshold { pressure, .. } => (
+            "wear.threshold.pressure",
+            format!(
+                "{pressure:e} Pa is not exceeded where springs slip in the first cycles, so that nothing wears (the mean pressure is {:e} Pa); \
+                 ask for less, or press harder",
+                model.contact().mean_pressure()
+            ),
+        ),
+        _ => (
+            "loading.amplitude",
+            format!(
+                "at an amplitude of {:e} m the wear of the first cycles is nothing that can be computed with; ask for another",
+                model.contact().amplitude()
+            ),
+        ),
+    };
+    Error::Inconsistent { what, why }
 }
 
 /// Worn volume per cycle, m³, at least the part of it that is certain.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use fretwear::Error;
 use fretwear::report::CheckReport;
 use fretwear::run::{Run, Shared};
-use fretwear::scene::schema::FileKind;
+use fretwear::scene::schema::is_key;
 use fretwear::simulation::{Flow, Observer, Simulation};
 use fretwear::snapshot::Snapshot;
 use support::scenes::{Length, RandomScene};
@@ -45,9 +45,7 @@ fn names_a_key(error: &Error) -> bool {
         Error::OutOfRange { name, .. } => name,
         _ => return false,
     };
-    let schema = FileKind::Scene.schema();
-    let properties = |schema: &serde_json::Value, key: &str| schema["properties"].get(key).cloned();
-    name.split('.').try_fold(schema, |schema, key| properties(&schema, key)).is_some()
+    is_key(name)
 }
 
 fn numbers_are_numbers(snapshot: &Snapshot) -> bool {

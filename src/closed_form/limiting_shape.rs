@@ -175,8 +175,9 @@ impl LimitingShape {
             let growth = (r / contact_radius).ln();
             if self.integral.mean_compression(self.stick_logarithm + growth, growth) > 0.0 {
                 let why = format!(
-                    "at an indentation of {:e} m the indenter, worn to the contact radius {edge:e} m, would touch again at r = {r:e} m: the \
-                     contact would split into rings; smooth the profile there, or press less deep",
+                    "at an indentation of {:e} m the indenter, worn to the contact radius {edge:e} m, would touch again at its row r = {r:e} m: \
+                     the contact would split into rings; where that is noise, smooth it: give the standard deviation of its heights as \
+                     indenter.table.smoothing; else press less deep",
                     self.indentation()
                 );
                 return Err(Error::Inconsistent { what: "indenter.table", why });

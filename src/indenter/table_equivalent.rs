@@ -248,8 +248,9 @@ impl TabulatedEquivalent {
             );
         }
         format!(
-            "between {radius:e} m and {:e} m the equivalent profile g falls from {depth:e} m to {:e} m, so that the contact would split \
-             into rings; smooth the profile there, take fewer rows, or press less deep",
+            "between its rows at r = {radius:e} m and {:e} m the equivalent profile g falls from {depth:e} m to {:e} m, so that the contact \
+             would split into rings; where that is noise, smooth it: give the standard deviation of its heights as indenter.table.smoothing; \
+             else press less deep",
             self.curve.knots()[self.falling],
             self.curve.at_knot(self.falling),
         )

@@ -251,8 +251,11 @@ impl MovingStick {
         let depth = model.contact.indentation() - compression;
         if depth <= 0.0 {
             return Err(Error::Inconsistent {
-                what: "loading",
-                why: "the whole contact slides in the first cycle under a force that is held; reduce the amplitude".into(),
+                what: "loading.amplitude",
+                why: format!(
+                    "at an amplitude of {:e} m the whole contact slides in the first cycle under a force that is held; reduce it",
+                    drive.amplitude
+                ),
             });
         }
         let radius = profile.radius_at(depth)?;

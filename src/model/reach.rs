@@ -63,10 +63,11 @@ impl Schedule {
         let slides = compression > largest;
         if slides && core_share(grading) > LARGEST_CORE_SHARE {
             return Err(Error::Inconsistent {
-                what: "full sliding",
+                what: "loading.amplitude",
                 why: format!(
-                    "the contact comes to slide as a whole, and at grading {grading} the core of its mesh, a thousandth of its radius, \
-                     would bear {:.2} of the load unworn; reduce the amplitude or the force",
+                    "at an amplitude of {:e} m the contact comes to slide as a whole, and at grading {grading} the core of its mesh, a \
+                     thousandth of its radius, would bear {:.2} of the load unworn; reduce the amplitude or the force",
+                    contact.amplitude(),
                     core_share(grading)
                 ),
             });

@@ -8,7 +8,7 @@ use crate::contact::InitialContact;
 use crate::error::Result;
 use crate::friction::FrictionLaw;
 use crate::history::History;
-use crate::loading::{Block, Clock, Mode, TangentialControl};
+use crate::loading::{Block, Clock, Mode, TangentialControl, has_come};
 use crate::path::{Path, SampledPath};
 use crate::spring::{Response, stick_compression};
 use crate::wear::WearLaw;
@@ -229,20 +229,35 @@ impl Schedule {
             let (pass, block) = self.block(cycles);
             self.end(pass, block)
         });
-        kinks.chain(block).filter(|time| *time > cycles && time.is_finite()).min_by(f64::total_cmp)
+        kinks.chain(block).filter(|time| !has_come(*time, cycles) && time.is_finite()).min_by(f64::total_cmp)
+    }
+
+    /// How many breaks there are up to a number of cycles.
+    pub fn breaks_until(&self, cycles: f64) -> f64 {
+        let histories = [&self.conditions.friction_history, &self.conditions.wear_history];
+        let passed = |time: &&f64| **time / self.clock_rate < cycles;
+        let kinks: usize = histories.iter().map(|it| it.kinks().iter().filter(passed).count()).sum();
+        let ends = match self.ends.last() {
+            Some(whole) if self.conditions.repeat => cycles / whole * self.ends.len() as f64,
+            _ => self.ends.iter().filter(|end| **end < cycles).count() as f64,
+        };
+        kinks as f64 + ends
     }
 
     /// Pass through the blocks, and index of the block, that begins at `cycles` or is under way then.
     fn block(&self, cycles: f64) -> (f64, usize) {
         let Some(whole) = self.ends.last() else { return (0.0, 0) };
         if !self.conditions.repeat {
-            return (0.0, self.ends.partition_point(|end| *end <= cycles).min(self.drives.len() - 1));
+            return (0.0, self.ends.partition_point(|end| has_come(*end, cycles)).min(self.drives.len() - 1));
         }
         // The quotient may round to either side of a whole number of passes.
         let first = ((cycles / whole).floor() - 1.0).max(0.0);
         let ahead =
             (0..3 * self.ends.len()).map(|i| (first + (i / self.ends.len()) as f64, i % self.ends.len()));
-        ahead.into_iter().find(|(pass, block)| self.end(*pass, *block) > cycles).unwrap_or((first, 0))
+        ahead
+            .into_iter()
+            .find(|(pass, block)| !has_come(self.end(*pass, *block), cycles))
+            .unwrap_or((first, 0))
     }
 
     /// End of a block, cycles; the last one goes on where they are not repeated.

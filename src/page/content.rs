@@ -41,7 +41,7 @@ fn rows(table: &str) -> Part {
 }
 
 fn of_run(results: &RunResults, path: &Path) -> Result<Content> {
-    let check = CheckReport::new(&results.scene)?;
+    let check = CheckReport::derived(&results.scene)?;
     let info = InfoReport::new(path, &results.run);
     let mut derived = vec![rows(&check.text())];
     derived.extend(check.warnings.iter().map(|warning| Part::Sentence(format!("Note: {warning}."))));

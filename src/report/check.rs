@@ -7,10 +7,10 @@ use super::{conditions, unsigned_zero};
 use crate::closed_form::LimitingShape;
 use crate::conditions::Conditions;
 use crate::contact::InitialContact;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::indenter::Indenter;
 use crate::loading::Duration;
-use crate::run::Run;
+use crate::run::{Expected, Run};
 use crate::scene::Scene;
 use crate::stick_slip::Regime;
 
@@ -92,26 +92,40 @@ pub struct CheckReport {
     pub tau: Option<f64>,
     /// Fraction of the first rate of wear at which the run ends.
     pub until_rate: Option<f64>,
+    /// Wall time that a run will take, s, in order of size; none where that is short.
+    pub seconds_expected: Option<f64>,
     /// What is allowed but deserves a word.
     pub warnings: Vec<String>,
 }
 
 impl CheckReport {
-    /// Derives the quantities.
+    /// Derives the quantities of a scene that can be run.
     ///
     /// # Errors
-    /// As [`InitialContact::new`], [`LimitingShape::from_contact`] and, where something slips, [`Run::check_mesh`]; [`Error::Inconsistent`] if the number of cycles overflows.
+    /// Those of [`Run::check`]: all that a run refuses before its first step.
     pub fn new(scene: &Scene) -> Result<Self> {
+        let Expected { seconds, warning } = Run::check(scene)?;
+        let mut report = Self::derived(scene)?;
+        report.warnings.extend(warning);
+        Ok(Self { seconds_expected: seconds, ..report })
+    }
+
+    /// Derives the quantities, also of a scene that cannot be run.
+    ///
+    /// # Errors
+    /// As [`InitialContact::new`] and [`Duration::span`].
+    pub fn derived(scene: &Scene) -> Result<Self> {
         let contact = scene.contact()?;
-        let limit = LimitingShape::from_contact(&contact)?;
-        if contact.regime() != Regime::Stick {
-            Run::check_mesh(scene)?;
-        }
+        let limit = LimitingShape::from_contact(&contact);
+        let unlimited = limit.as_ref().err().map(|error| format!("the first cycle has no limit: {error}"));
+        let limit = limit.ok().flatten();
         let of_limit =
             |value: fn(&LimitingShape) -> f64| limit.as_ref().map(|shape| unsigned_zero(value(shape)));
         let half_space = contact.half_space();
-        let (cycles, tau, until_rate) = plan(scene.loading().duration, contact.tau_per_cycle())?;
+        let duration = scene.loading().duration;
+        let span = duration.span(contact.tau_per_cycle())?;
         let mut warnings = scene.warnings().to_vec();
+        warnings.extend(unlimited);
         warnings.extend(doubts(&contact, limit.as_ref()));
         Ok(Self {
             title: scene.title().map(str::to_owned),
@@ -137,9 +151,10 @@ impl CheckReport {
             wear_depth_max: of_limit(LimitingShape::wear_depth_max),
             normal_force_limit: limit.as_ref().map(|shape| contact.normal_force() * shape.load_fraction()),
             tau_per_cycle: contact.tau_per_cycle(),
-            cycles,
-            tau,
-            until_rate,
+            cycles: span.map(|[cycles, _]| cycles),
+            tau: span.map(|[_, tau]| tau),
+            until_rate: if let Duration::UntilRate(rate) = duration { Some(rate) } else { None },
+            seconds_expected: None,
             warnings,
         })
     }
@@ -186,30 +201,6 @@ impl CheckReport {
         }
         rows.finish()
     }
-}
-
-/// Cycles, dimensionless time and rate planned.
-fn plan(duration: Duration, tau_per_cycle: f64) -> Result<(Option<f64>, Option<f64>, Option<f64>)> {
-    let finite = |key: &'static str, value: f64, other: f64, name: &str| {
-        if other.is_finite() {
-            return Ok(other);
-        }
-        let why = format!(
-            "{value:e} is too large at a dimensionless time of {tau_per_cycle:e} per cycle: {name} overflows"
-        );
-        Err(Error::Inconsistent { what: key, why })
-    };
-    Ok(match duration {
-        Duration::Cycles(cycles) => {
-            let tau = finite("loading.cycles", cycles, cycles * tau_per_cycle, "the time")?;
-            (Some(cycles), Some(tau), None)
-        }
-        Duration::Tau(tau) => {
-            let cycles = finite("loading.tau", tau, tau / tau_per_cycle, "the number of cycles")?;
-            (Some(cycles), Some(tau), None)
-        }
-        Duration::UntilRate(rate) => (None, None, Some(rate)),
-    })
 }
 
 /// Where the model leaves its ground.

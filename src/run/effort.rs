@@ -1,17 +1,25 @@
-//! What a run that cannot choose its steps freely comes to, before it begins.
+//! What a run comes to, before it begins: steps and time.
 
 use std::time::Instant;
 
+use super::Expected;
 use crate::error::{Error, Result};
 use crate::model::{Model, State};
 use crate::scene::Stepper as Choice;
 use crate::simulation::{End, Simulation};
 
-/// Most steps of a method that needs one for every cycle or for every relaxation of the stiffest springs: a day or so.
+/// Most steps of a method that needs one for every cycle or for every relaxation of the stiffest springs, and of any for blocks: a day or so.
 const MOST_STEPS: f64 = 1e9;
 
 /// Wall time of a run, s, from which on it deserves a word.
-const LONG: f64 = 3600.0;
+const LONG: f64 = 60.0;
+
+/// Steps of an implicit run beside those to outputs and breaks, and what its pilot takes, as a part.
+const FREE_STEPS: f64 = 30.0;
+const WITH_PILOT: f64 = 1.5;
+
+/// Dimensionless time for which a run that ends at a rate may last.
+const SOME_TAU: f64 = 30.0;
 
 /// Steps times the fastest rate of relaxation for which Bogacki and Shampine's method is stable, on the negative real axis.
 const STABLE: f64 = 2.5;
@@ -19,19 +27,23 @@ const STABLE: f64 = 2.5;
 /// Iterations of the power method; the estimate is one of magnitude.
 const ITERATIONS: usize = 30;
 
-/// Refuses what would take days, and gives a word about what would take hours.
-///
-/// # Arguments
-/// * `steps` -- at least so many
+/// Refuses what would take days, and gives a word about what will take more than a minute, as one step tells.
 ///
 /// # Errors
 /// [`Error::Inconsistent`] beyond [`MOST_STEPS`].
-pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<Option<String>> {
-    let Some(steps) = fewest_steps(choice, simulation) else { return Ok(None) };
+pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<Expected> {
+    let breaks = breaks(simulation);
+    if breaks > MOST_STEPS || breaks.is_nan() {
+        let why = format!(
+            "the run has {breaks:.1e} ends of blocks in it, of which {MOST_STEPS:e} are allowed; make the blocks longer, or ask for fewer cycles"
+        );
+        return Err(Error::Inconsistent { what: "loading.blocks", why });
+    }
+    let steps = fewest_steps(choice, simulation);
     let kind = match choice {
         Choice::EveryCycle => "makes a step of every cycle",
         Choice::CycleJump => "is explicit, and its steps are limited by the stiffest springs",
-        Choice::Implicit => return Ok(None),
+        Choice::Implicit => return Ok(implicit(steps, simulation)),
     };
     if steps > MOST_STEPS || steps.is_nan() {
         let why = format!(
@@ -43,28 +55,76 @@ pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<Optio
     }
     // A first cycle that is too coarse a step is refused here as well.
     let begun = Instant::now();
-    simulation.measure_step()?;
+    simulation.measure_step(1.0)?;
     let seconds = steps * begun.elapsed().as_secs_f64();
-    Ok((seconds > LONG).then(|| {
+    Ok(Expected::of(seconds, || {
         format!(
-            "the stepper {:?} {kind}: at least {steps:.1e} steps, some {:.1} hours as things are; \"implicit\" needs some hundred",
+            "the stepper {:?} {kind}: at least {steps:.1e} steps, some {} as things are; \"implicit\" needs some hundred",
             choice.name(),
-            seconds / 3600.0
+            span(seconds)
         )
     }))
 }
 
-/// A number of steps that the method cannot do with less than.
-fn fewest_steps(choice: Choice, simulation: &Simulation) -> Option<f64> {
+/// What an implicit run of so many steps takes.
+fn implicit(steps: f64, simulation: &mut Simulation) -> Expected {
+    let begun = Instant::now();
+    // Where it fails, the run will say so.
+    let _ = simulation.measure_step(simulation.progress().next_step);
+    let step = begun.elapsed().as_secs_f64();
+    let seconds = WITH_PILOT * steps * step;
+    let model = simulation.model();
+    Expected::of(seconds, || {
+        let resolved =
+            if model.schedule().resolves() { ", numerics.substeps = 24 or fewer rows of a path" } else { "" };
+        format!(
+            "the run takes some {} as things are: {steps:.0} steps of {step:.1e} s on {} springs; where that is too long, ask for \
+             numerics.accuracy = 1e-3 or fewer springs (numerics.springs){resolved}",
+            span(seconds),
+            model.springs()
+        )
+    })
+}
+
+impl Expected {
+    fn of(seconds: f64, words: impl FnOnce() -> String) -> Self {
+        if seconds <= LONG {
+            return Self::default();
+        }
+        Self { seconds: Some(seconds.round()), warning: Some(words()) }
+    }
+}
+
+/// A wall time for people.
+fn span(seconds: f64) -> String {
+    match seconds {
+        seconds if seconds < 5400.0 => format!("{:.0} minutes", seconds / 60.0),
+        seconds if seconds < 1.5e5 => format!("{:.1} hours", seconds / 3600.0),
+        seconds => format!("{:.1e} days", seconds / 86400.0),
+    }
+}
+
+/// Ends of blocks and kinks of histories in a run.
+fn breaks(simulation: &Simulation) -> f64 {
+    let model = simulation.model();
+    let cycles = match simulation.plan().end {
+        End::Cycles(cycles) => cycles,
+        End::Rate(_) => SOME_TAU / model.contact().tau_per_cycle(),
+    };
+    model.schedule().breaks_until(cycles)
+}
+
+/// A number of steps that the method cannot do with less than; about those of implicit ones.
+fn fewest_steps(choice: Choice, simulation: &Simulation) -> f64 {
     let cycles = match simulation.plan().end {
         End::Cycles(cycles) => cycles,
         // Slip has to grow at all before the rate can fall.
         End::Rate(_) => simulation.cycle().growth.iter().fold(0.0_f64, |m, g| m.max(*g)).recip(),
     };
     match choice {
-        Choice::EveryCycle => Some(cycles),
-        Choice::CycleJump => Some(cycles * stiffness(simulation.model(), simulation.state()) / STABLE),
-        Choice::Implicit => None,
+        Choice::EveryCycle => cycles,
+        Choice::CycleJump => cycles * stiffness(simulation.model(), simulation.state()) / STABLE,
+        Choice::Implicit => FREE_STEPS + simulation.plan().outputs.len() as f64 + breaks(simulation),
     }
 }
 

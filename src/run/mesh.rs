@@ -1,7 +1,7 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
 use super::knob::{smallness, springs_for};
-use super::memory_figure;
+use super::{SPRINGS_TO_SLIDE, memory_figure};
 use crate::abel::Backend;
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
@@ -80,15 +80,20 @@ pub(super) fn model(
     let chosen = || springs_for(clusterings[0], contact, numerics.accuracy);
     let mut springs = given.or(wanted).unwrap_or_else(chosen);
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
-    check_memory_of(key, springs, contact, schedule)?;
+    check_memory(key, springs, contact, schedule)?;
     let allowed = match given {
         Some(_) => Quality { compression: COARSEST, volume: COARSEST_VOLUME, round_off: ROUND_OFF },
         None => Quality { compression: COARSE, volume: numerics.accuracy, round_off: ROUND_OFF },
     };
-    loop {
+    let raises = given.or(wanted).is_none();
+    'springs: loop {
         let mut found = None;
         for clustering in clusterings {
             let model = Model::under(contact, schedule.clone(), springs, *clustering, store)?;
+            if raises && model.slides() && springs < SPRINGS_TO_SLIDE {
+                springs = SPRINGS_TO_SLIDE;
+                continue 'springs;
+            }
             // Where the edge of stick moves or the contact slides as a whole, what is known beforehand belongs to another mesh.
             if model.moving().is_some() || model.slides() {
                 return Ok(model);
@@ -166,16 +171,8 @@ fn too_coarse(contact: &InitialContact, springs: usize, by_hand: bool, quality: 
     Error::Inconsistent { what, why }
 }
 
-/// Refuses springs asked for by hand that do not fit into the memory that is free.
-///
-/// # Errors
-/// [`Error::Inconsistent`] with the figures.
-pub(super) fn check_memory(numerics: &Numerics, contact: &InitialContact, schedule: &Schedule) -> Result<()> {
-    numerics.springs.map_or(Ok(()), |springs| check_memory_of("numerics.springs", springs, contact, schedule))
-}
-
 /// Refuses springs for which the operators do not fit into the memory that is free.
-fn check_memory_of(
+fn check_memory(
     key: &'static str,
     springs: usize,
     contact: &InitialContact,

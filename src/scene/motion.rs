@@ -58,8 +58,9 @@ pub(super) fn motion(section: &Section, rows: &Rows, clock: &mut OneClock) -> Re
         ("cycles", entry) => Duration::Cycles(entry.positive(Dimension::NUMBER)?),
         ("tau", entry) => Duration::Tau(entry.positive(Dimension::NUMBER)?),
         (_, entry) => {
-            let within = |rate: f64| rate > 0.0 && rate < 1.0;
-            Duration::UntilRate(entry.quantity_in(Dimension::NUMBER, "(0, 1)", within)?)
+            const RANGE: &str = "[1e-14, 1); below, the rate of worn volume is the rounding of what is left of the pressure: give loading.tau instead";
+            let within = |rate: f64| (Duration::SMALLEST_RATE..1.0).contains(&rate);
+            Duration::UntilRate(entry.quantity_in(Dimension::NUMBER, RANGE, within)?)
         }
     };
     let control = control(section)?;

@@ -76,6 +76,18 @@ pub fn unit_of(key: &str) -> String {
     entry[keys::UNIT].as_str().unwrap_or("1").to_owned()
 }
 
+/// Whether a dotted name is that of a table or a key of a scene.
+///
+/// ```
+/// use fretwear::scene::schema::is_key;
+///
+/// assert!(is_key("loading.amplitude") && is_key("wear.threshold") && !is_key("slip annulus"));
+/// ```
+pub fn is_key(name: &str) -> bool {
+    let scene = FileKind::Scene.schema();
+    name.split('.').try_fold(&scene, |table, key| table["properties"].get(key)).is_some()
+}
+
 /// Dotted keys of a scene that have values, as studies vary them; those of arrays of tables by the array alone.
 pub(super) fn keys_of_scene() -> Vec<String> {
     fn add(schema: &Value, path: &str, keys: &mut Vec<String>) {

@@ -91,9 +91,9 @@ fn secant(function: &mut impl FnMut(f64) -> f64, start: f64) -> Option<f64> {
 
 fn too_coarse(state: &State, why: &str) -> Error {
     Error::Inconsistent {
-        what: "numerics.stepper = \"every-cycle\"",
+        what: "numerics.stepper",
         why: format!(
-            "{why} (cycle {}); one cycle is too coarse a step for this scene and its springs: reduce numerics.springs, \
+            "\"every-cycle\": {why} (cycle {}); one cycle is too coarse a step for this scene and its springs: reduce numerics.springs, \
              or take the stepper \"implicit\"",
             state.cycles
         ),

@@ -6,6 +6,7 @@ use super::keys::{
     Table, above_zero, any, at_least_zero, at_most_one_of, list, number, one_form, one_of, or, quantity,
     switch, text, word,
 };
+use crate::loading::Duration;
 use crate::scene::laws::MOST_TIMES;
 
 pub(super) fn loading() -> Table {
@@ -35,7 +36,7 @@ pub(super) fn loading() -> Table {
             "until_rate",
             number(
                 "The run ends when the rate of worn volume has fallen to this fraction of its first.",
-                json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 }),
+                json!({ "minimum": Duration::SMALLEST_RATE, "exclusiveMaximum": 1 }),
             ),
         ),
         (

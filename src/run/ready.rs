@@ -1,0 +1,76 @@
+//! What a run comes to before its first step. What it refuses is refused here, for `run` and for `check`.
+
+use super::{Parts, effort};
+use crate::closed_form::LimitingShape;
+use crate::error::{Error, Result};
+use crate::model::OperatorStore;
+use crate::scene::Scene;
+use crate::scene::schema::is_key;
+use crate::simulation::Simulation;
+
+/// A run before its first step.
+pub(super) struct Ready {
+    pub simulation: Simulation,
+    pub limit: Option<LimitingShape>,
+    pub expected: Expected,
+}
+
+/// What a run will take, where that is long.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Expected {
+    /// Wall time, s, in order of size; none where it is short.
+    pub seconds: Option<f64>,
+    /// The same in a sentence, with its cause.
+    pub warning: Option<String>,
+}
+
+impl Ready {
+    /// # Errors
+    /// Every refusal names a key of the scene.
+    pub(super) fn new(scene: &Scene, store: &OperatorStore) -> Result<Self> {
+        Self::unkeyed(scene, store).map_err(|error| keyed(scene, error))
+    }
+
+    fn unkeyed(scene: &Scene, store: &OperatorStore) -> Result<Self> {
+        let parts = Parts::new(scene, scene.numerics(), None, store)?;
+        let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
+        let expected = effort::check(scene.numerics().stepper, &mut simulation)?;
+        Ok(Self { simulation, limit: parts.limit, expected })
+    }
+}
+
+/// A refusal at the key with which the scene gives what is refused.
+fn keyed(scene: &Scene, error: Error) -> Error {
+    let loading = scene.loading();
+    let given = |name: &'static str| match name {
+        "loading.amplitude" if scene.path().is_some() => "loading.path",
+        "loading.amplitude" => loading.amplitude.key(),
+        "loading.indentation" => loading.load.key(),
+        other => other,
+    };
+    match error {
+        Error::Inconsistent { what, why } if is_key(what) => Error::Inconsistent { what: given(what), why },
+        Error::OutOfRange { name, value, range } if is_key(name) => {
+            Error::OutOfRange { name: given(name), value, range }
+        }
+        // The depth decides how wide the contact becomes.
+        Error::Inconsistent { .. } | Error::OutOfRange { .. } => {
+            let blocks = scene.conditions().blocks.iter().any(|block| block.indentation_factor != 1.0);
+            let what = if blocks { "loading.blocks" } else { loading.load.key() };
+            Error::Inconsistent { what, why: error.to_string() }
+        }
+        Error::NotConverged { what, why } => {
+            let numerics = scene.numerics();
+            let (key, value) = match numerics.springs {
+                Some(springs) => ("numerics.springs", springs.to_string()),
+                None => ("numerics.accuracy", format!("{:e}", numerics.accuracy)),
+            };
+            let why = format!(
+                "with {value} the first cycle of this contact is not found ({what}: {why}); ask for more springs by hand \
+                 (numerics.springs), or for another amplitude"
+            );
+            Error::Inconsistent { what: key, why }
+        }
+        other => other,
+    }
+}

@@ -1,0 +1,133 @@
+//! Events that differ by rounding are one; a run that fails says when and where; one that takes long says so before.
+
+mod support;
+
+use std::fmt::Write;
+use std::fs;
+
+use fretwear::Error;
+use fretwear::run::{Run, RunResult, Shared};
+use fretwear::scene::Scene;
+use fretwear::snapshot::RunFile;
+use support::command;
+
+/// The plain scene of a paraboloid, with an amplitude, an end, what more there is of loading and other tables.
+fn scene(amplitude: &str, end: &str, more: &str) -> String {
+    format!(
+        "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = 0.0\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n\
+         [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1.667e-13\n[numerics]\naccuracy = 1e-3\n[loading]\n\
+         indentation = 1e-6\n{amplitude}\n{end}\n{more}"
+    )
+}
+
+fn run(text: &str) -> fretwear::Result<(RunResult, RunFile)> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = Scene::from_toml(text, "events.toml")?;
+    Run::one_of_many(&scene, &folder.path().join("run.h5"), &Shared::default())?.execute_keeping(None)
+}
+
+/// Dimensionless times of the snapshots, and steps.
+fn seen(text: &str) -> (Vec<f64>, u64, f64) {
+    let (result, file) = run(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let times = file.snapshots.iter().map(|snapshot| snapshot.tau).collect();
+    (times, result.checkpoint.progress.steps, result.last.wear_volume)
+}
+
+#[test]
+fn a_snapshot_and_an_event_that_differ_by_rounding_are_one() {
+    // Three tenths are 0.30000000000000004 as a sum.
+    let blocks = "[[loading.blocks]]\ntau = 0.1\n[[loading.blocks]]\ntau = 0.2\namplitude_factor = 0.9\n[[loading.blocks]]\ntau = 1\n\
+                  amplitude_factor = 0.8\n";
+    let history =
+        |time: &str| format!("[friction.history]\nfactors = [1.0, 0.9, 0.8]\nat_tau = [0.0, {time}, 0.6]\n");
+    let wear = |time: &str| format!("[wear.history]\nfactors = [1.0, 0.5]\nat_tau = [0.0, {time}]\n");
+    let others = [
+        ("blocks", blocks.to_owned()),
+        ("blocks, repeated", format!("repeat = true\n{}", blocks.replace("tau = 1\n", "tau = 0.2\n"))),
+        ("friction after", history("0.30000000000000004")),
+        ("friction before", history("0.29999999999999993")),
+        ("wear after", wear("0.30000000000000004")),
+        ("wear before", wear("0.29999999999999993")),
+    ];
+    for (name, more) in others {
+        for (end, times) in
+            [("tau = 0.5", "[0.1, 0.3]"), ("tau = 0.3", "[0.1]"), ("tau = 0.30000000000000004", "[0.1, 0.3]")]
+        {
+            let text = scene("stick_ratio = 0.7", end, &format!("{more}[output]\nat_tau = {times}\n"));
+            let (times, steps, volume) = seen(&text);
+            let apart = text.replace("at_tau = [0.1, 0.3]", "at_tau = [0.1]");
+            let (_, steps_apart, volume_apart) = seen(&apart);
+            println!("{name}, {end}: {times:?}, {steps} and {steps_apart} steps");
+            let expected: &[f64] = if end == "tau = 0.5" { &[0.0, 0.1, 0.3, 0.5] } else { &[0.0, 0.1, 0.3] };
+            let met = times.len() == expected.len()
+                && times.iter().zip(expected).all(|(time, wanted)| (time - wanted).abs() <= 1e-15);
+            assert!(met, "{name}, {end}: {times:?}");
+            // The snapshot is where the run lands anyway, or is between two steps.
+            assert!(steps <= steps_apart + 12, "{name}, {end}: {steps} steps instead of {steps_apart}");
+            assert!(
+                (volume / volume_apart - 1.0).abs() < 1e-3,
+                "{name}, {end}: {volume:e} and {volume_apart:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_run_that_cannot_go_on_names_cycle_time_radius_and_what_to_do() {
+    // A cone next to gross slip at falling stiffness, with blocks that shrink and grow again, on as few springs as there can be.
+    let mut failures = 0;
+    for (springs, factor) in [(8, 0.1), (9, 0.3), (12, 0.05), (8, 0.02)] {
+        let text = format!(
+            "[indenter.cone]\nslope = 0.01\n[half_space]\ngrading = -0.3\nnormal_stiffness = 1e10\n[friction.coulomb]\ncoefficient = 0.5\n\
+             [wear.archard]\ncoefficient = 1e-13\n[numerics]\nsprings = {springs}\ntolerance = 1e-6\n[loading]\nindentation = 1e-6\n\
+             stick_ratio = 0.5\ntau = 30\n[[loading.blocks]]\ntau = 0.1\n[[loading.blocks]]\ntau = 0.5\namplitude_factor = {factor}\n\
+             [[loading.blocks]]\ntau = 0.5\n"
+        );
+        let Err(error) = run(&text) else { continue };
+        let words = error.to_string();
+        println!("{words}");
+        assert!(matches!(error, Error::NotConverged { .. }), "{words}");
+        for part in ["at cycle ", "τ = ", "radius ", "numerics.springs", "loading."] {
+            assert!(words.contains(part), "{words:?} does not contain {part:?}");
+        }
+        assert!(!words.contains("had to become too small"), "{words}");
+        failures += 1;
+    }
+    println!("{failures} of 4 fail");
+}
+
+#[test]
+fn check_says_beforehand_that_a_run_takes_minutes_and_why() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut rows = String::from("x, y\n");
+    for row in 0..4000 {
+        let angle = std::f64::consts::TAU * f64::from(row) / 4000.0;
+        writeln!(rows, "{:e}, {:e}", 3.8e-7 * angle.cos(), 3e-7 * (3.0 * angle).sin())
+            .expect("a string takes all");
+    }
+    fs::write(folder.path().join("path.csv"), rows).expect("a file");
+    let long = scene("", "tau = 3", "[loading.path]\nfile = \"path.csv\"\n")
+        .replace("indentation = 1e-6", "normal_force = 266.7");
+    fs::write(folder.path().join("long.toml"), long).expect("a file");
+    let output = command::run(folder.path(), &["check", "long.toml", "--json"]);
+    let errors = command::text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{errors}");
+    assert!(errors.contains("the run takes some") && errors.contains("numerics."), "{errors}");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
+    assert!(report["seconds_expected"].as_f64().is_some_and(|seconds| seconds > 60.0), "{report}");
+    let said = |warning: &serde_json::Value| {
+        warning.as_str().is_some_and(|words| words.contains("the run takes some"))
+    };
+    assert!(report["warnings"].as_array().is_some_and(|warnings| warnings.iter().any(said)), "{report}");
+    fs::write(folder.path().join("short.toml"), scene("stick_ratio = 0.7", "tau = 3", "")).expect("a file");
+    let report = command::object(folder.path(), &["check", "short.toml", "--json"]);
+    assert!(report["seconds_expected"].is_null(), "{report}");
+}
+
+#[test]
+fn what_would_need_a_step_for_each_of_too_many_blocks_is_refused() {
+    let blocks = "repeat = true\n[[loading.blocks]]\ntau = 1e-12\n[[loading.blocks]]\ntau = 1e-12\namplitude_factor = 0.5\n";
+    let error = run(&scene("stick_ratio = 0.7", "tau = 3", blocks)).err().map(|error| error.to_string());
+    let words = error.unwrap_or_default();
+    assert!(words.starts_with("loading.blocks: ") && words.contains("make the blocks longer"), "{words}");
+}
