@@ -201,9 +201,9 @@ impl Draw {
     }
 
     fn half_space(&mut self, sizes: &mut Sizes) -> String {
-        let grading = match self.below(3) {
+        let grading = match self.below(4) {
             0 => self.one_of(&[0.0, 0.5, -0.5, 0.3, -0.3]),
-            1 => self.between(-0.6, 0.6),
+            1 | 2 => self.between(-0.3, 0.9),
             _ => self.between(-0.99, 0.99),
         };
         sizes.grading = grading;
@@ -475,12 +475,12 @@ impl Draw {
     fn numerics(&mut self, length: Length) -> String {
         let mut text = String::from("[numerics]\n");
         let short = length == Length::Short;
-        if self.chance(0.6) {
-            let finest = if short { 1e-4 } else { 1e-6 };
+        if self.chance(0.6) || short {
+            let finest = if short { 1e-3 } else { 1e-6 };
             text += &format!("accuracy = {:?}\n", self.scale(finest, 0.1));
         }
         if self.chance(0.25) {
-            let most = if short { 30.0 } else { 200.0 };
+            let most = if short { 70.0 } else { 200.0 };
             text += &format!("springs = {}\n", self.scale(8.0, most) as usize);
         }
         if self.chance(0.2) {
@@ -493,8 +493,9 @@ impl Draw {
         if self.chance(0.15) {
             text += &format!("cycle = \"{}\"\n", self.one_of(&["resolved", "resolved", "closed-form"]));
         }
-        if self.chance(0.2) {
-            text += &format!("substeps = {}\n", self.scale(2.0, 200.0) as usize);
+        if self.chance(0.2) || short {
+            let most = if short { 16.0 } else { 200.0 };
+            text += &format!("substeps = {}\n", self.scale(2.0, most) as usize);
         }
         if self.chance(0.05) {
             text += &format!("wear_from = \"{}\"\n", self.one_of(&["shakedown", "first-cycle"]));
