@@ -548,12 +548,12 @@ fn what_is_refused_after_reading_is_shown_at_its_line_too() {
             "numerics.stepper: \"every-cycle\"",
         ),
         ("amplitude = \"1 um\"", "amplitude = 0", "amplitude = 0", "loading.amplitude: 0e0 m leaves"),
-        // Keys that are left out: the innermost table that is there.
+        // Where several keys decide: the table of the first.
         (
-            "amplitude = \"1 um\"\ncycles = 1e6",
-            "amplitude = \"1 mm\"\ncycles = 1e6\n[numerics]\naccuracy = 0.1",
-            "[numerics]",
-            "numerics.springs: ",
+            "coefficient = \"1e-14 1/Pa\"",
+            "coefficient = 1e305",
+            "[wear.archard]",
+            "wear: the dimensionless time per cycle",
         ),
     ] {
         assert_eq!(BASE.matches(old).count(), 1, "{old}");

@@ -353,7 +353,11 @@ fn a_contact_that_would_split_into_rings_is_refused_with_the_radii() {
         let top = g.largest_radius();
         assert!((0.6..0.8).contains(&top), "k = {grading}: {top}");
         let message = g.radius_at(1.001 * g.value(top)).unwrap_err().to_string();
-        for words in ["split into rings", &format!("between {top:e} m and "), "smooth the profile"] {
+        for words in [
+            "split into rings",
+            &format!("between its rows at r = {top:e} m and "),
+            "as indenter.table.smoothing",
+        ] {
             assert!(message.contains(words), "k = {grading}: {words:?} not in {message}");
         }
         let limit = |contact_radius: f64| {
@@ -362,7 +366,7 @@ fn a_contact_that_would_split_into_rings_is_refused_with_the_radii() {
         // Well inside the groove has no say, be `g` there what it may; nearer, the limit would touch its far side, or reach into it.
         assert!(limit(0.1).is_ok(), "k = {grading}: {}", limit(0.1).unwrap_err());
         for (contact_radius, words) in
-            [(0.48, "would touch again at r = "), (0.999 * top, "would touch beyond")]
+            [(0.48, "would touch again at its row r = "), (0.999 * top, "would touch beyond")]
         {
             let message = limit(contact_radius).map(drop).unwrap_err().to_string();
             assert!(
