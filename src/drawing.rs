@@ -19,7 +19,7 @@ pub use colour::{Colour, DISTINCT, graded};
 pub use layout::Frame;
 pub use letters::{escaped, html, plain, without_markup};
 pub use picture::png;
-pub use svg::Drawing;
+pub use svg::{BEGINNING, Drawing};
 pub use ticks::{Tick, ticks};
 
 use serde::Serialize;

@@ -3,6 +3,7 @@
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::{Args, Parser, Subcommand};
 use fretwear::figures::FigureFile;
@@ -11,9 +12,10 @@ use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, Ru
 use fretwear::run::{Resumed, RunResult};
 use fretwear::scene::{MapScene, Scene, Study};
 use fretwear::simulation::Observer;
-use fretwear::snapshot::{ArraySummary, StopReason};
+use fretwear::snapshot::{ArraySummary, Mark, StopReason, check_distinct, check_own};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result};
+use signal_hook::consts::SIGXFSZ;
 
 #[path = "main/completions.rs"]
 mod completions;
@@ -209,6 +211,8 @@ struct Info {
 }
 
 fn main() -> ExitCode {
+    // A file that grows beyond `ulimit -f` is then an error that names it, and not the end of the program.
+    let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     let outcome = match Cli::parse().command {
         Command::Run(arguments) => run(&arguments),
         Command::Limit(arguments) => limit(&arguments).map(done),
@@ -251,7 +255,12 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
         arguments.plot.as_ref().map(|named| run_picture(arguments, named.as_deref())).transpose()?;
     let run = match (&arguments.scene, &arguments.resume) {
         (_, Some(file)) => match fretwear::run::Run::resume(file)? {
-            Resumed::Run(run) => *run,
+            Resumed::Run(run) => {
+                if !arguments.quiet {
+                    complain("note", &format!("goes on with the scene that is in {}", file.display()));
+                }
+                *run
+            }
             Resumed::Complete(result) => {
                 complain("note", &format!("{} is complete, nothing is left to do", file.display()));
                 picture.map(|picture| plot::draw_run(file, picture)).transpose()?;
@@ -261,6 +270,10 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
         (Some(path), None) => {
             let scene = read(path)?;
             let output = arguments.output.clone().unwrap_or_else(|| default_output(path));
+            check_distinct(&output, path)?;
+            if arguments.output.is_none() && arguments.force {
+                check_own(&output, Mark::Results)?;
+            }
             fretwear::run::Run::new(&scene, &output, arguments.force).map_err(at(&scene, path))?
         }
         (None, None) => unreachable!("clap requires one of the two"),
@@ -293,7 +306,13 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
 fn run_picture(arguments: &Run, named: Option<&Path>) -> Result<FigureFile> {
     let result = arguments.resume.clone().or_else(|| arguments.output.clone());
     let result = result.or_else(|| arguments.scene.as_deref().map(default_output)).unwrap_or_default();
-    FigureFile::new(&named.map_or_else(|| result.with_extension("svg"), Path::to_owned), arguments.force)
+    let path = named.map_or_else(|| result.with_extension("svg"), Path::to_owned);
+    check_distinct(&path, &result)?;
+    arguments.scene.as_deref().map_or(Ok(()), |scene| check_distinct(&path, scene))?;
+    if named.is_none() && arguments.force {
+        check_own(&path, Mark::Words(fretwear::drawing::BEGINNING))?;
+    }
+    FigureFile::new(&path, arguments.force)
 }
 
 /// The scene's name with `.h5`, in the current directory.
@@ -307,6 +326,7 @@ fn default_output(scene: &Path) -> PathBuf {
 fn limit(arguments: &Limit) -> Result<String> {
     let scene = read(&arguments.scene)?;
     let radii = arguments.at.as_deref().map(report::parse_radii).transpose()?;
+    arguments.csv.as_deref().map_or(Ok(()), |path| check_distinct(path, &arguments.scene))?;
     let table = arguments.csv.as_deref().map(|path| TableFile::new(path, arguments.force)).transpose()?;
     let report = LimitReport::new(&scene, radii.as_deref()).map_err(at(&scene, &arguments.scene))?;
     if let Some(table) = table {

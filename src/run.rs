@@ -15,7 +15,7 @@ use crate::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice, WearFrom};
 use crate::simulation::{End, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
-    Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
+    Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason, scene_hash,
 };
 use crate::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
 use crate::stick_slip::Regime;
@@ -160,15 +160,25 @@ impl Run {
     /// # Errors
     /// [`Error::File`] if the file is none of a run, or holds no checkpoint that fits its scene.
     pub fn resume(path: &Path) -> Result<Resumed> {
-        Self::go_on(path, &Shared::with_signals()?, |file| file.into_writer(path))
+        Self::go_on(RunFile::open(path)?, path, &Shared::with_signals()?, |file| file.into_writer(path))
     }
 
     /// Prepares a run as [`Run::one_of_many`] that goes on from the checkpoint in `from`, and writes its own to `checkpoint`.
     ///
     /// # Errors
-    /// As [`Run::resume`].
-    pub fn resume_one_of_many(from: &Path, checkpoint: &Path, shared: &Shared) -> Result<Resumed> {
-        let resumed = Self::go_on(from, shared, |file| Ok(file.into_deferred_writer(checkpoint)))?;
+    /// As [`Run::resume`]; [`Error::File`] if what is in `from` was computed from another scene.
+    pub fn resume_one_of_many(
+        scene: &Scene,
+        from: &Path,
+        checkpoint: &Path,
+        shared: &Shared,
+    ) -> Result<Resumed> {
+        let file = RunFile::open(from)?;
+        if !is_of(&file, scene) {
+            let why = "was computed from another scene, or by another version of the program".into();
+            return Err(Error::File { path: from.to_owned(), why });
+        }
+        let resumed = Self::go_on(file, from, shared, |file| Ok(file.into_deferred_writer(checkpoint)))?;
         Ok(match resumed {
             Resumed::Run(mut run) => {
                 run.recorder.saves_result = false;
@@ -179,12 +189,24 @@ impl Run {
     }
 
     fn go_on(
+        file: RunFile,
         path: &Path,
         shared: &Shared,
         writer: impl FnOnce(RunFile) -> Result<RunWriter>,
     ) -> Result<Resumed> {
-        let file = RunFile::open(path)?;
         let unusable = |why: &str| Error::File { path: path.to_owned(), why: why.to_owned() };
+        if !file.complete && file.program_version != env!("CARGO_PKG_VERSION") {
+            return Err(unusable(&format!(
+                "its checkpoint is of fretwear {}, and this is {}; go on with that one, or run its scene again",
+                file.program_version,
+                env!("CARGO_PKG_VERSION")
+            )));
+        }
+        if !file.complete && file.scene_hash.is_none() {
+            return Err(unusable(
+                "does not tell what its checkpoint was computed from (no attribute scene_hash); run its scene again",
+            ));
+        }
         let checkpoint =
             file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
         let name = format!("{} (its scene)", path.display());
@@ -327,6 +349,17 @@ fn wanting(
         Err(_) => return None,
     };
     knob::refined(model.springs(), error, accuracy)
+}
+
+/// Whether a file was computed from this scene, with its rows and numerics, by this version of the program.
+pub(crate) fn is_of(file: &RunFile, scene: &Scene) -> bool {
+    file.scene_hash == Some(hash_of(scene))
+}
+
+/// What a run of a scene is computed from, as one word.
+pub(crate) fn hash_of(scene: &Scene) -> String {
+    let (table, path) = (scene.table().map(Arc::as_ref), scene.path().map(Arc::as_ref));
+    scene_hash(env!("CARGO_PKG_VERSION"), scene.text(), table, path)
 }
 
 /// What of a run does not change.

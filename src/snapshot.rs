@@ -9,11 +9,13 @@
 mod arrays;
 mod atomic;
 mod encode;
+mod fingerprint;
 mod folder;
 mod format;
 mod labelled;
 pub mod layout;
 mod reader;
+mod scratch;
 mod shard;
 mod stored;
 mod surface;
@@ -21,10 +23,13 @@ mod tables;
 mod writer;
 
 pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray, TextColumn};
-pub(crate) use atomic::{AtomicFile, remove_abandoned};
-pub(crate) use folder::{cell, check_folder, make_folder, quoted, table};
+pub(crate) use atomic::{AtomicFile, failure, remove_abandoned};
+pub(crate) use fingerprint::{Fingerprint, scene_hash};
+pub use folder::{Mark, check_distinct, check_own, make_folder};
+pub(crate) use folder::{cell, check_can_be_made, check_folder, quoted, table};
 pub use format::Format;
 pub use reader::RunFile;
+pub(crate) use scratch::Scratch;
 pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
 pub use stored::{StoredArray, StoredArrays, format_of};
 pub use surface::SurfaceSeries;
@@ -56,6 +61,14 @@ pub struct RunHeader {
     pub table: Option<Arc<TabulatedProfile>>,
     /// The rows of a recorded path, if the indenter follows one.
     pub path: Option<Arc<RecordedPath>>,
+}
+
+impl RunHeader {
+    /// SHA-256 of all that the results depend on, in hexadecimal digits: version of the program and of the format, the scene with its
+    /// numerics, the rows of a measured profile and of a recorded path.
+    pub fn scene_hash(&self, program_version: &str) -> String {
+        scene_hash(program_version, &self.scene, self.table.as_deref(), self.path.as_deref())
+    }
 }
 
 /// The limiting shape on the nodes of a run [S, Eqs. (3) and (9)].

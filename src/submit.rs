@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 use crate::scene::{Study, Task};
+use crate::snapshot::SweepFile;
 use crate::sweep;
 
 /// What is asked of `fretwear submit` besides study and directory.
@@ -84,15 +85,17 @@ pub fn submit(study: &Path, folder: &Path, options: &Options) -> Result<Submissi
     if !options.dry_run {
         options.engine.check_presence()?;
     }
-    scripts::check_absence(options.engine, folder, options.overwrite)?;
+    scripts::check(&paths, options.engine, options.overwrite)?;
     let description = Study::read(study)?;
     sweep::validate_all(&description)?;
+    let shards = shards_so_far(folder, &description, options.wishes.shards)?;
+    check_merged(&paths.merged(), &description)?;
     let measurement = match options.seconds_per_scene {
         Some(seconds) => Measurement::told(seconds),
         None => Measurement::new(&description)?,
     };
     let largest_array = options.engine.largest_array();
-    let wishes = Wishes { shards: shards_so_far(folder, options.wishes.shards)?, ..options.wishes };
+    let wishes = Wishes { shards, ..options.wishes };
     let proposal = Proposal::new(description.count(), &measurement, &wishes, largest_array)?;
     let merged = paths.merged();
     let files = scripts::write(&paths, options, &proposal, &measurement, description.count())?;
@@ -113,9 +116,20 @@ pub fn submit(study: &Path, folder: &Path, options: &Options) -> Result<Submissi
     })
 }
 
+/// Refuses a directory in which the file of the merge, which the scripts replace, is of something else.
+fn check_merged(path: &Path, study: &Study) -> Result<()> {
+    match path.exists() && !SweepFile::read_header(path).is_ok_and(|it| it.study_hash == study.hash()) {
+        false => Ok(()),
+        true => Err(Error::File {
+            path: path.to_owned(),
+            why: "is not the merged file of this study, and the scripts would replace it; move it away, or use another directory".into(),
+        }),
+    }
+}
+
 /// The number of shards that is asked for, or that results in the directory dictate.
-fn shards_so_far(folder: &Path, asked: Option<u64>) -> Result<Option<u64>> {
-    match (sweep::shards_in(folder)?, asked) {
+fn shards_so_far(folder: &Path, study: &Study, asked: Option<u64>) -> Result<Option<u64>> {
+    match (sweep::shards_in(folder, study)?, asked) {
         (Some(there), Some(asked)) if there != asked => Err(Error::File {
             path: folder.to_owned(),
             why: format!(

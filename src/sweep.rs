@@ -11,6 +11,9 @@
 //! DIR/parts/3-of-10.ATTEMPT.SEQUENCE.h5     rows of a shard that is not
 //! DIR/parts/scene-417.ATTEMPT.h5            a scene that takes longer than the checkpoint interval
 //! ```
+//!
+//! Every file carries the hash of what it was computed from. Rows of another study are refused; the checkpoint of another scene, which had the same
+//! number before the study was edited, is not used, and gives way when the scene is done.
 
 mod folder;
 mod gathering;
@@ -183,7 +186,7 @@ impl<'a> Sweep<'a> {
         }
         let worker = Worker { study, schema, folder, shared, progress };
         let interval = shared.checkpoint_interval.unwrap_or_default();
-        let collector = Collector::new(folder, schema, interval);
+        let collector = Collector::new(study, folder, schema, interval);
         let finished = pool.install(|| {
             missing.par_iter().try_for_each(|&scene| match worker.row(scene) {
                 Ok(Some(row)) => collector.add(row).map_err(Some),
@@ -295,29 +298,31 @@ impl Worker<'_> {
 
     /// None if a signal came first.
     fn run(&self, scene: u64) -> Result<Option<(Results, Option<RunFile>)>> {
-        let own = self.folder.checkpoint(scene);
-        let run = self.folder.checkpoints(scene).iter().find_map(|from| {
-            // One that cannot be used is of no use: the scene is begun anew.
-            match Run::resume_one_of_many(from, &own, self.shared) {
+        let (number, scene) = (scene, self.study.scene(scene)?);
+        let own = self.folder.checkpoint(number);
+        let run = self.folder.checkpoints(number).iter().find_map(|from| {
+            // One that cannot be used, or is of another scene under the same number, is of no use: the scene is begun anew.
+            match Run::resume_one_of_many(&scene, from, &own, self.shared) {
                 Ok(Resumed::Run(run)) => Some(*run),
                 _ => None,
             }
         });
         let run = match run {
             Some(run) => run,
-            None => Run::one_of_many(&self.study.scene(scene)?, &own, self.shared)?,
+            None => Run::one_of_many(&scene, &own, self.shared)?,
         };
         let (result, file) = run.execute_keeping(None)?;
         if result.stop_reason == StopReason::Interrupted {
             return Ok(None);
         }
-        let kept = self.study.snapshots().contain(scene).then_some(file);
+        let kept = self.study.snapshots().contain(number).then_some(file);
         Ok(Some((self.schema.results(Some(&RunReport::new(&result))), kept)))
     }
 }
 
 /// Takes rows from all threads and writes parts.
 struct Collector<'a> {
+    study: &'a Study,
     folder: &'a Folder,
     schema: &'a Schema,
     interval: Duration,
@@ -334,9 +339,10 @@ struct Waiting {
 }
 
 impl<'a> Collector<'a> {
-    fn new(folder: &'a Folder, schema: &'a Schema, interval: f64) -> Self {
+    fn new(study: &'a Study, folder: &'a Folder, schema: &'a Schema, interval: f64) -> Self {
         let waiting = Waiting { rows: vec![], runs: 0, saved: Instant::now(), done: 0, failed: 0 };
-        Self { folder, schema, interval: Duration::from_secs_f64(interval), waiting: Mutex::new(waiting) }
+        let (interval, waiting) = (Duration::from_secs_f64(interval), Mutex::new(waiting));
+        Self { study, folder, schema, interval, waiting }
     }
 
     fn add(&self, row: Row) -> Result<()> {
@@ -359,6 +365,15 @@ impl<'a> Collector<'a> {
     fn write(&self, rows: Vec<Row>) -> Result<()> {
         if rows.is_empty() {
             return Ok(());
+        }
+        // Scenes read these files when they begin, and each is to have read the same.
+        if !self.folder.is_of(self.study) {
+            return Err(Error::Inconsistent {
+                what: "sweep",
+                why: "the file of a measured profile or of a recorded path was changed meanwhile; rows since the last checkpoint are dropped: \
+                      give the file its old content, or use another directory"
+                    .into(),
+            });
         }
         let scenes: Vec<u64> = rows.iter().map(|row| row.scene).collect();
         self.folder.write_part(self.schema, rows)?;

@@ -5,7 +5,8 @@
 //! closed-form limit, the Gibson transient where `1 - k` is tiny, or two runs finer than any candidate, whose difference is their
 //! uncertainty. An error below three times the uncertainty of its judge is given as a bound.
 //!
-//! Runs that are done are kept in `DIR/runs` until all are: a measurement that was stopped goes on with the same command.
+//! Runs that are done are kept in a hidden directory of the program's own inside `DIR` until all are: a measurement that was stopped goes on with the
+//! same command. After the end, or an error, that directory is gone.
 
 mod candidates;
 mod files;
@@ -30,7 +31,11 @@ use crate::error::{Error, Result};
 use crate::progress::SceneProgress;
 use crate::run::{Run, Shared};
 use crate::scene::{Output, Scene, Stepper};
+use crate::snapshot::{Mark, check_folder};
 use measure::Runs;
+
+/// Where copies of the runs are put.
+const RUNS: &str = "runs";
 
 /// Most snapshots of a scene that is measured.
 const MOST_SNAPSHOTS: usize = 1000;
@@ -53,7 +58,7 @@ pub struct Options {
     pub most_seconds: f64,
     /// Most runs of a candidate for its wall time, one after the other; short ones are run twice more after all others, unless this is 1.
     pub repeats: usize,
-    /// Whether the runs stay in `DIR/runs`.
+    /// Whether copies of the runs are put into `DIR/runs`.
     pub keep_runs: bool,
     /// Whether files that exist may be replaced.
     pub overwrite: bool,
@@ -214,6 +219,11 @@ impl<'a> Tradeoff<'a> {
         let plain = scene.varied(&knob.numerics(scene), "")?;
         drop(Run::one_of_many(&plain, &folder.join("none.h5"), &Shared::default())?);
         files::check_folder(folder, options.overwrite)?;
+        if options.keep_runs {
+            let names: Vec<String> = run_names(candidates.len()).map(|it| format!("{it}.h5")).collect();
+            let names: Vec<_> = names.iter().map(|name| (name.as_str(), Mark::Results)).collect();
+            check_folder(&folder.join(RUNS), &names, options.overwrite)?;
+        }
         Ok(Self { scene, folder: folder.to_owned(), options, candidates, shared, started })
     }
 
@@ -233,12 +243,20 @@ impl<'a> Tradeoff<'a> {
     /// [`Error::File`] if files cannot be written, [`Error::NotConverged`] if nothing could be run that would judge the candidates.
     pub fn execute(self, progress: Option<&SceneProgress>) -> Result<Option<Outcome>> {
         let runs = Runs::new(&self.folder, &self.shared, self.options.repeats)?;
+        let outcome = self.execute_in(&runs, progress)?;
+        if outcome.is_none() {
+            runs.keep();
+        }
+        Ok(outcome)
+    }
+
+    fn execute_in(&self, runs: &Runs, progress: Option<&SceneProgress>) -> Result<Option<Outcome>> {
         if let Some(progress) = progress {
             progress.begin(self.candidates.len() as u64);
         }
-        let Some(measured) = self.measure(&runs, progress)? else { return Ok(None) };
+        let Some(measured) = self.measure(runs, progress)? else { return Ok(None) };
         let most_seconds = self.options.most_seconds;
-        let Some((judge, reference)) = reference::judge(self.scene, &runs, &measured, most_seconds)? else {
+        let Some((judge, reference)) = reference::judge(self.scene, runs, &measured, most_seconds)? else {
             return Ok(None);
         };
         let mut rows = vec![];
@@ -260,8 +278,10 @@ impl<'a> Tradeoff<'a> {
             wall_seconds: self.started.elapsed().as_secs_f64(),
         };
         outcome.files = files::write(self.scene, &outcome, &self.folder, self.options.overwrite)?;
-        if !self.options.keep_runs {
-            runs.remove();
+        if self.options.keep_runs {
+            for name in run_names(self.candidates.len()).filter(|name| runs.read(name).is_ok()) {
+                runs.copy(&name, &self.folder.join(RUNS), self.options.overwrite)?;
+            }
         }
         Ok(Some(outcome))
     }
@@ -287,8 +307,9 @@ impl<'a> Tradeoff<'a> {
             measured.push((*candidate, measurement));
         }
         for _ in 0..AGAIN {
-            for (number, (_, measurement)) in measured.iter_mut().enumerate() {
-                if !runs.measure_again(&name(number), &self.candidates[number].1, measurement)? {
+            for (number, (candidate, measurement)) in measured.iter_mut().enumerate() {
+                let (scene, patience) = (&self.candidates[number].1, self.patience(candidate));
+                if !runs.measure_again(&name(number), scene, patience, measurement)? {
                     return Ok(None);
                 }
             }
@@ -299,6 +320,11 @@ impl<'a> Tradeoff<'a> {
 
 fn name(number: usize) -> String {
     format!("candidate{number}")
+}
+
+/// Names of all runs that there may be.
+fn run_names(candidates: usize) -> impl Iterator<Item = String> {
+    (0..candidates).map(name).chain((0..2).map(reference::name))
 }
 
 /// Why a candidate would take longer than is allowed, as far as coarser ones tell.

@@ -5,8 +5,9 @@
 //! permanent stick radius, which is the smallest of all snapshots, and the largest indentation of all snapshots. Whether the distance is
 //! within a tolerance is compared with what was predicted.
 //!
-//! Cases are run in parallel, each on one core. Until all are done, each finished run is kept in `DIR/runs`; a study that was stopped or
-//! killed goes on from there with the same command, and its results are the same to the last bit, wall times aside.
+//! Cases are run in parallel, each on one core. Until all are done, each finished run is kept in a hidden directory of the program's own inside
+//! `DIR`; a study that was stopped or killed goes on from there with the same command, and its results are the same to the last bit, wall times
+//! aside. After the end, or an error, that directory is gone.
 
 mod files;
 mod judge;
@@ -125,25 +126,26 @@ impl<'a> Universality<'a> {
             progress.begin(jobs.len() as u64);
         }
         let runs = Runs::new(folder, shared)?;
-        let one = |(number, job): (usize, &Job)| {
-            let end = runs.end(number, job).map_err(Some)?.ok_or(None)?;
+        let one = |job: &Job| {
+            let end = runs.end(job).map_err(Some)?.ok_or(None)?;
             if let Some(progress) = progress {
                 progress.done(end.is_err());
             }
             Ok(end)
         };
         // One job at a time, whoever is free: nobody knows beforehand which take long.
-        let ends = pool.install(|| {
-            jobs.par_iter().enumerate().with_max_len(1).map(one).collect::<std::result::Result<Vec<_>, _>>()
-        });
+        let ends = pool
+            .install(|| jobs.par_iter().with_max_len(1).map(one).collect::<std::result::Result<Vec<_>, _>>());
         let ends = match ends {
             Err(Some(error)) => return Err(error),
-            Err(None) => return Ok(None),
+            Err(None) => {
+                runs.keep();
+                return Ok(None);
+            }
             Ok(ends) => ends,
         };
         let rows = rows(study, jobs, ends);
         let files = files::write(study, &rows, folder, self.overwrite)?;
-        runs.remove();
         let wall_seconds = self.started.elapsed().as_secs_f64();
         Ok(Some(Outcome { rows, files, wall_seconds }))
     }

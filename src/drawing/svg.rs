@@ -16,6 +16,9 @@ const HAIRLINE: f64 = 0.8;
 /// Height of capital letters relative to the size of letters.
 const CAPITALS: f64 = 0.73;
 
+/// What stands between the title and the letters of every SVG of this program.
+pub const BEGINNING: &str = "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<defs>\n";
+
 /// A figure laid out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
@@ -69,7 +72,7 @@ impl Page<'_> {
         let width = number(WIDTH);
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-             role=\"img\" aria-label=\"{0}\">\n<title>{0}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<defs>\n",
+             role=\"img\" aria-label=\"{0}\">\n<title>{0}</title>\n{BEGINNING}",
             escaped(&without_markup(title))
         );
         for (glyph, name) in &self.glyphs {

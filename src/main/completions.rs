@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
 use fretwear::report::TableFile;
+use fretwear::snapshot::{Mark, check_own, make_folder};
 use fretwear::{Error, Result};
 
 #[derive(Args)]
@@ -41,14 +42,13 @@ pub fn man<C: CommandFactory>(arguments: &Man) -> Result<String> {
         .map(|it| (format!("fretwear-{}.1", it.get_name()), it.clone()))
         .chain([("fretwear.1".to_owned(), command.clone())])
         .collect();
-    std::fs::create_dir_all(folder).map_err(|error| Error::File {
-        path: folder.clone(),
-        why: format!("the directory cannot be made: {error}"),
-    })?;
-    let files: Vec<TableFile> = pages
-        .iter()
-        .map(|(name, _)| TableFile::new(&folder.join(name), arguments.force))
-        .collect::<Result<_>>()?;
+    make_folder(folder)?;
+    let file = |name: &String| {
+        let path = folder.join(name);
+        let file = TableFile::new(&path, arguments.force)?;
+        check_own(&path, Mark::Words(".TH fretwear")).map(|()| file)
+    };
+    let files: Vec<TableFile> = pages.iter().map(|(name, _)| file(name)).collect::<Result<_>>()?;
     for (file, (_, command)) in files.into_iter().zip(pages) {
         file.write(&page(command)?)?;
     }

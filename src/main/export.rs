@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use fretwear::export::worn_surface;
 use fretwear::report::TableFile;
-use fretwear::snapshot::ResultTables;
+use fretwear::snapshot::{ResultTables, check_distinct};
 use fretwear::{Error, Result};
 
 /// Points around the axis.
@@ -38,12 +38,15 @@ pub fn export(arguments: &Export) -> Result<String> {
     }
     let table = arguments.table.as_deref();
     let Some(output) = &arguments.output else { return ResultTables::csv(&arguments.file, table) };
+    check_distinct(output, &arguments.file)?;
     match output.extension().and_then(|it| it.to_str()) {
         Some("csv") => {
             let file = TableFile::new(output, arguments.force)?;
             file.write(&ResultTables::csv(&arguments.file, table)?)?;
         }
         Some("vtkhdf") if table.is_none() => {
+            // Before the surface is made.
+            drop(TableFile::new(output, arguments.force)?);
             worn_surface(&arguments.file, SECTORS)?.write(output, arguments.force)?;
         }
         Some("vtkhdf") => return Err(refused(output, "a surface has no table; leave out --table")),

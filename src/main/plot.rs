@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fretwear::Result;
 use fretwear::figures::{FigureFile, Kind, Results};
+use fretwear::snapshot::check_distinct;
 
 /// The file a figure is made of, and where it goes.
 #[derive(Args)]
@@ -35,6 +36,7 @@ pub fn kind(word: &str) -> std::result::Result<Kind, String> {
 }
 
 pub fn plot(arguments: &Plot) -> Result<String> {
+    check_distinct(&arguments.output, &arguments.file)?;
     let file = FigureFile::new(&arguments.output, arguments.force)?;
     let results = Results::read(&arguments.file)?;
     // A result file that can be read has at least one kind but for a run without a snapshot, whose profile says so.

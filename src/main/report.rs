@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use fretwear::figures::Results;
 use fretwear::report::TableFile;
+use fretwear::snapshot::check_distinct;
 use fretwear::{Result, page};
 
 /// The file a page is made of, and where it goes.
@@ -22,6 +23,7 @@ pub struct Report {
 }
 
 pub fn report(arguments: &Report) -> Result<String> {
+    check_distinct(&arguments.output, &arguments.file)?;
     let file = TableFile::new(&arguments.output, arguments.force)?;
     let results = Results::read(&arguments.file)?;
     file.write(&page::report(&results, &arguments.file)?)?;

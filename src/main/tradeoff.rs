@@ -39,7 +39,7 @@ pub struct Tradeoff {
     /// Runs of which the least wall time is taken, fewer where a run takes long
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
-    /// Leave the run of every candidate in DIR/runs
+    /// Put the run of every candidate into DIR/runs
     #[arg(long)]
     keep_runs: bool,
     /// Print one JSON object

@@ -4,7 +4,6 @@ mod reading;
 
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
 use super::document::{Section, Source};
@@ -13,6 +12,8 @@ use super::sampling::{Distribution, UnitCube};
 use super::unit::Unit;
 use super::{LARGEST, Rows, Scene, read_text};
 use crate::error::{Error, Result};
+use crate::snapshot::layout::FORMAT_VERSION;
+use crate::snapshot::{Fingerprint, SweepFile};
 
 /// Most scenes of a study.
 pub const MOST_SCENES: u64 = 10_000_000;
@@ -196,20 +197,21 @@ impl Study {
         &self.base_text
     }
 
-    /// SHA-256 of everything that a result depends on, in hexadecimal digits: version of the program, study, base scene, and the files of
+    /// SHA-256 of everything that a result depends on, in hexadecimal digits: version of the program and of its formats, study, base scene, and the files of
     /// measured profiles and recorded paths that the scenes name.
     pub fn hash(&self) -> String {
-        let mut hasher = Sha256::new();
-        let mut add = |part: &[u8]| {
-            hasher.update((part.len() as u64).to_le_bytes());
-            hasher.update(part);
-        };
-        [env!("CARGO_PKG_VERSION"), &self.text, &self.base_text].iter().for_each(|part| add(part.as_bytes()));
+        let mut parts = Fingerprint::default()
+            .add(env!("CARGO_PKG_VERSION").as_bytes())
+            .add(&FORMAT_VERSION.to_le_bytes())
+            .add(&SweepFile::FORMAT_VERSION.to_le_bytes())
+            .add(self.text.as_bytes())
+            .add(self.base_text.as_bytes());
         for file in self.files() {
             // A file that cannot be read is an error of the scenes that name it.
-            add(&std::fs::read(self.folder.join(file)).unwrap_or_default());
+            let file = Some(self.folder.join(file)).filter(|it| it.is_file());
+            parts = parts.add(&file.and_then(|it| std::fs::read(it).ok()).unwrap_or_default());
         }
-        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        parts.finish()
     }
 
     /// The files of measured profiles and recorded paths, of the base scene and along the axes.

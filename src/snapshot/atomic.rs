@@ -1,59 +1,63 @@
 //! Files that are replaced as a whole: whoever opens one sees the old content or the new one, even after a crash.
 
-use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use super::scratch::{CONTENT, Scratch, remove_leftovers};
 use crate::error::{Error, Result};
 
 const CHOOSE: &str = "choose another output";
 
-/// One output file and the temporary beside it, `.NAME.PID.tmp`.
+/// One output file, and the temporary in a directory of its own beside it.
 #[derive(Debug)]
 pub(crate) struct AtomicFile {
     path: PathBuf,
     folder: PathBuf,
-    prefix: OsString,
+    name: String,
     may_replace: bool,
 }
 
 impl AtomicFile {
     /// Checks that `path` can be written, and clears what killed runs left beside it; creates nothing.
     ///
-    /// An existing file is replaced only with `overwrite`. A link is followed: the file it points to is replaced.
+    /// An existing file is replaced only with `overwrite`. A link is followed: the file it points to is replaced, or made if it is missing.
     ///
     /// # Errors
     /// [`Error::File`] names the path and the cure.
     pub(crate) fn new(path: &Path, overwrite: bool) -> Result<Self> {
         let refuse = |why: &str| Err(Error::File { path: path.to_owned(), why: why.to_owned() });
-        let mut target = path.to_owned();
-        match fs::metadata(path) {
+        let target = match fs::metadata(path) {
             Ok(found) if found.is_dir() => return refuse("is a directory; name a file in it"),
             Ok(found) if !found.is_file() => return refuse(&format!("is not a regular file; {CHOOSE}")),
             Ok(_) if !overwrite => {
                 return refuse(&format!("exists already; give --force to overwrite it, or {CHOOSE}"));
             }
-            Ok(_) => target = fs::canonicalize(path).map_err(|error| failure(path, &error))?,
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            Err(error) => return Err(failure(path, &error)),
-        }
-        let Some(name) = target.file_name() else {
-            return refuse("is not the name of a file; name one");
+            Ok(_) => fs::canonicalize(path),
+            Err(error) if error.kind() == ErrorKind::NotFound => end_of_links(path),
+            Err(error) => Err(error),
         };
-        if target.to_str().is_none() {
-            return refuse("is not valid UTF-8, which the HDF5 library needs; rename it");
+        let target = target.map_err(|error| failure(path, &error))?;
+        if target.file_name().is_none() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+            return refuse("is not the name of a file; name one");
         }
-        let mut prefix = OsString::from(".");
-        prefix.push(name);
-        prefix.push(".");
+        let Some(name) = target.to_str().and(target.file_name()).and_then(|name| name.to_str()) else {
+            return refuse("is not valid UTF-8, which the HDF5 library needs; rename it");
+        };
+        let name = name.to_owned();
         let folder = match target.parent() {
             Some(parent) if parent != Path::new("") => parent.to_owned(),
             _ => PathBuf::from("."),
         };
-        remove_abandoned(&folder, |file| OsStr::new(file) == name);
-        let this = Self { path: target, folder, prefix, may_replace: overwrite };
-        drop(this.temporary().map_err(|error| failure(path, &error))?);
+        remove_abandoned(&folder, |file| file == name);
+        let this = Self { path: target, folder, name, may_replace: overwrite };
+        let tried = this.temporary().map_err(|error| failure(&this.path, &error))?;
+        if !tried.may_replace(&this) {
+            return refuse(&format!(
+                "belongs to another user, and its directory lets nobody else replace it; {CHOOSE}"
+            ));
+        }
+        drop(tried);
         Ok(this)
     }
 
@@ -104,6 +108,10 @@ impl AtomicFile {
     fn replace(&self, temporary: Temporary) -> io::Result<()> {
         temporary.file.sync_all()?;
         if self.may_replace {
+            if let Ok(found) = fs::metadata(&self.path) {
+                // Who may read it stays as it was; where that cannot be, the file is still the user's.
+                let _ = temporary.file.set_permissions(found.permissions());
+            }
             fs::rename(&temporary.path, &self.path)?;
         } else {
             // A link, other than a renaming, fails where a file has appeared meanwhile.
@@ -114,9 +122,6 @@ impl AtomicFile {
                 Err(_) => fs::rename(&temporary.path, &self.path)?,
             }
         }
-        // The lock was to keep the temporary from being cleared away; other programs that read the file respect it, and a child
-        // process started meanwhile would hold on to it.
-        let _ = temporary.file.unlock();
         drop(temporary);
         self.synchronise_folder()
     }
@@ -132,56 +137,60 @@ impl AtomicFile {
         }
     }
 
-    /// An empty temporary, locked so that nobody takes it for a leftover.
+    /// An empty temporary.
     fn temporary(&self) -> io::Result<Temporary> {
-        let mut name = self.prefix.clone();
-        name.push(format!("{}.tmp", std::process::id()));
-        let path = self.folder.join(name);
-        let create = || OpenOptions::new().write(true).create_new(true).open(&path);
-        let file = match create() {
-            // A killed process had the same number.
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                fs::remove_file(&path)?;
-                create()
-            }
-            other => other,
-        }?;
-        let temporary = Temporary { file, path };
-        // Without locks on this file system leftovers stay, which does no harm.
-        let _ = temporary.file.try_lock();
-        Ok(temporary)
+        let scratch = Scratch::new(&self.folder, &purpose(&self.name))?;
+        let path = scratch.path().join(CONTENT);
+        let file = OpenOptions::new().write(true).create_new(true).open(&path)?;
+        Ok(Temporary { file, path, _scratch: scratch })
     }
 }
 
-/// Removes the temporaries in a folder whose processes are gone, their locks with them, of the files whose names satisfy a condition.
+/// What the directory of a temporary is for.
+fn purpose(name: &str) -> String {
+    format!("temporary of {name}")
+}
+
+/// Removes the temporaries in a folder whose processes are gone, of the files whose names satisfy a condition.
 pub(crate) fn remove_abandoned(folder: &Path, belongs: impl Fn(&str) -> bool) {
-    for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
-        let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
-        let file = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(".tmp"));
-        let is_process = |digits: &str| !digits.is_empty() && digits.bytes().all(|it| it.is_ascii_digit());
-        let file = file.and_then(|rest| rest.rsplit_once('.')).filter(|(_, process)| is_process(process));
-        if file.is_some_and(|(file, _)| belongs(file)) && is_abandoned(&path) {
-            // Failing to remove it is no reason to fail, and somebody else may have done so.
-            let _ = fs::remove_file(&path);
+    remove_leftovers(folder, |found| found.strip_prefix(&purpose("")).is_some_and(&belongs));
+}
+
+/// The place that links lead to, where there is nothing.
+fn end_of_links(path: &Path) -> io::Result<PathBuf> {
+    const MOST_LINKS: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&path) {
+            Ok(next) => path = path.parent().unwrap_or(Path::new("")).join(next),
+            Err(_) => return Ok(path),
         }
     }
+    Err(io::Error::other("is a link that leads nowhere"))
 }
 
-/// Whether nobody holds the lock of a temporary.
-fn is_abandoned(path: &Path) -> bool {
-    OpenOptions::new().write(true).open(path).is_ok_and(|file| file.try_lock().is_ok())
-}
-
-/// A temporary that is removed when dropped, unless it has been renamed by then.
+/// A temporary that is removed with its directory when dropped, unless it has been renamed by then.
 struct Temporary {
     file: File,
     path: PathBuf,
+    _scratch: Scratch,
 }
 
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        // After a renaming there is nothing of this name to remove.
-        let _ = fs::remove_file(&self.path);
+impl Temporary {
+    /// Whether it can take the place of the file that is there: in a directory such as /tmp only owners can do that.
+    #[cfg(unix)]
+    fn may_replace(&self, target: &AtomicFile) -> bool {
+        use std::os::unix::fs::MetadataExt;
+        const STICKY: u32 = 0o1000;
+        let found = [fs::metadata(&target.path), fs::metadata(&target.folder), self.file.metadata()];
+        let [Ok(there), Ok(folder), Ok(own)] = found else { return true };
+        let user = own.uid();
+        folder.mode() & STICKY == 0 || [0, there.uid(), folder.uid()].contains(&user)
+    }
+
+    #[cfg(not(unix))]
+    fn may_replace(&self, _: &AtomicFile) -> bool {
+        true
     }
 }
 

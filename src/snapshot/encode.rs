@@ -39,6 +39,7 @@ impl Run<'_> {
         put_integer(file, "format_version", FORMAT_VERSION)?;
         put_text(file, "program_version", env!("CARGO_PKG_VERSION"))?;
         put_text(file, "scene", &self.header.scene)?;
+        put_text(file, SCENE_HASH, &self.header.scene_hash(env!("CARGO_PKG_VERSION")))?;
         put_text(file, "stop_reason", self.stop_reason.name())?;
         put_integer(file, "complete", self.complete.into())
     }

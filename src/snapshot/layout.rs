@@ -5,6 +5,8 @@ use crate::model::{Linearised, PastPoint, StickEdge};
 
 /// Value of the root attribute `format_version` that this program writes and reads.
 pub const FORMAT_VERSION: i32 = 3;
+/// Root attribute of what the run was computed from, [`RunHeader::scene_hash`](super::RunHeader::scene_hash).
+pub const SCENE_HASH: &str = "scene_hash";
 /// Group that holds what a restart needs.
 pub const CHECKPOINT: &str = "checkpoint";
 

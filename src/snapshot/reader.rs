@@ -39,6 +39,8 @@ pub struct RunFile {
     pub complete: bool,
     /// Version of the program that wrote the file.
     pub program_version: String,
+    /// What it was computed from, [`RunHeader::scene_hash`]; none in files of earlier programs.
+    pub scene_hash: Option<String>,
 }
 
 impl RunFile {
@@ -62,7 +64,12 @@ impl RunFile {
             .ok_or_else(|| source.error(format!("stop_reason = {reason:?} is not known; {WRITE_AGAIN}")))?;
         let complete = source.integer(file, "complete")? != 0;
         let program_version = source.text(file, "program_version")?;
-        Ok(Self { header, snapshots, checkpoint, stop_reason, complete, program_version })
+        let scene_hash = file.attr(SCENE_HASH).is_ok().then(|| source.text(file, SCENE_HASH)).transpose()?;
+        if scene_hash.as_ref().is_some_and(|it| *it != header.scene_hash(&program_version)) {
+            let why = "is not the one that checkpoint and snapshots were computed from";
+            return Err(source.damaged("its scene", &why));
+        }
+        Ok(Self { header, snapshots, checkpoint, stop_reason, complete, program_version, scene_hash })
     }
 
     /// A writer that goes on after the snapshots of this file and replaces `path` at its first save.

@@ -134,7 +134,8 @@ pub struct SweepFile {
 }
 
 impl SweepFile {
-    const FORMAT_VERSION: i32 = 1;
+    /// Version of the layout, the root attribute `format_version`.
+    pub const FORMAT_VERSION: i32 = 1;
 
     /// A file as this program writes it.
     ///
@@ -299,9 +300,11 @@ impl RunFile {
         checkpoint: super::Checkpoint,
         stop_reason: StopReason,
     ) -> Self {
-        let program_version = env!("CARGO_PKG_VERSION").into();
+        let program_version: String = env!("CARGO_PKG_VERSION").into();
         let complete = stop_reason != StopReason::Interrupted;
-        Self { header, snapshots, checkpoint: Some(checkpoint), stop_reason, complete, program_version }
+        let scene_hash = Some(header.scene_hash(&program_version));
+        let checkpoint = Some(checkpoint);
+        Self { header, snapshots, checkpoint, stop_reason, complete, program_version, scene_hash }
     }
 }
 

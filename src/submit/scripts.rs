@@ -6,7 +6,7 @@ use super::measure::Measurement;
 use super::proposal::Proposal;
 use super::{Engine, Options, shell};
 use crate::error::{Error, Result};
-use crate::snapshot::AtomicFile;
+use crate::snapshot::{AtomicFile, Mark, check_can_be_made, check_own, make_folder};
 
 /// A script: its name and its template, in which `@NAME@` stands for a value.
 type Script = (&'static str, &'static str);
@@ -82,17 +82,35 @@ fn scripts(engine: Engine) -> &'static [Script] {
     }
 }
 
-/// Refuses to overwrite scripts, which a user may have edited.
-pub(super) fn check_absence(engine: Engine, folder: &Path, overwrite: bool) -> Result<()> {
-    let exists = scripts(engine).iter().map(|(name, _)| folder.join(name)).find(|path| path.exists());
-    match exists {
-        Some(path) if !overwrite => {
+/// How scripts are known.
+const MARK: Mark = Mark::Words("written by `fretwear submit`");
+
+/// Refuses to overwrite scripts, which a user may have edited, and a directory that cannot be written; makes nothing.
+pub(super) fn check(paths: &Paths, engine: Engine, overwrite: bool) -> Result<()> {
+    let folder = Path::new(&paths.folder);
+    if !folder.exists() {
+        return check_can_be_made(folder);
+    }
+    if !folder.is_dir() {
+        return make_folder(folder);
+    }
+    let [log, merged] = [folder.join("log"), paths.merged()];
+    match log.symlink_metadata() {
+        Ok(_) => make_folder(&log)?,
+        Err(_) => check_can_be_made(&log)?,
+    }
+    AtomicFile::new(&merged, true)?;
+    for (name, _) in scripts(engine) {
+        let path = folder.join(name);
+        if path.exists() && !overwrite {
             let why =
                 "exists already; `bash submit.sh` beside it hands in what is there, --force writes it anew";
-            Err(Error::File { path, why: why.into() })
+            return Err(Error::File { path, why: why.into() });
         }
-        _ => Ok(()),
+        AtomicFile::new(&path, true)?;
+        check_own(&path, MARK)?;
     }
+    Ok(())
 }
 
 /// Writes the scripts of an engine into the directory, which is made if it is missing; returns their paths.
@@ -105,10 +123,7 @@ pub(super) fn write(
 ) -> Result<Vec<PathBuf>> {
     let folder = Path::new(&paths.folder);
     // Slurm does not make the directory of a log, and a job without it fails in silence.
-    std::fs::create_dir_all(folder.join("log")).map_err(|error| Error::File {
-        path: folder.to_owned(),
-        why: format!("the directory cannot be made: {error}"),
-    })?;
+    make_folder(&folder.join("log"))?;
     let values = values(paths, options, proposal, measurement, scenes);
     let write = |(name, template): &Script| {
         let path = folder.join(name);

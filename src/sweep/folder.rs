@@ -6,16 +6,20 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
 
-use sha2::{Digest, Sha256};
-
 use super::Done;
 use super::gathering::{Gathering, fold_files};
 use super::rows::{Row, Schema};
 use crate::error::{Error, Result};
-use crate::snapshot::{SweepFile, SweepHeader, remove_abandoned};
+use crate::scene::Study;
+use crate::snapshot::{
+    AtomicFile, Fingerprint, RunFile, SweepFile, SweepHeader, make_folder, remove_abandoned,
+};
 
 /// Folder of the parts.
 const PARTS: &str = "parts";
+
+/// Digits of the name of an attempt.
+const ATTEMPT_DIGITS: usize = 12;
 
 /// The directory of a sweep, for one attempt at one shard.
 pub(super) struct Folder {
@@ -65,11 +69,19 @@ impl Folder {
         Error::File { path: path.to_owned(), why: why.to_owned() }
     }
 
-    /// Makes the directory.
+    /// Makes the directory, and checks that the files of this shard can be written.
     pub(super) fn create(&self) -> Result<()> {
-        let parts = self.path.join(PARTS);
-        fs::create_dir_all(&parts)
-            .map_err(|error| self.error(&parts, &format!("the directory cannot be made: {error}")))
+        make_folder(&self.path.join(PARTS))?;
+        // What is there under this name was read as rows of this very study, or there is nothing.
+        AtomicFile::new(&self.shard_file(), true)?;
+        AtomicFile::new(&self.part_file(), true).map(drop)
+    }
+
+    /// A part that this attempt has not written yet.
+    fn part_file(&self) -> PathBuf {
+        let sequence = self.sequence.fetch_add(1, Ordering::Relaxed);
+        let name = format!("{}-of-{}.{}.{sequence}.h5", self.header.shard, self.header.shards, self.attempt);
+        self.path.join(PARTS).join(name)
     }
 
     fn shard_file(&self) -> PathBuf {
@@ -101,17 +113,13 @@ impl Folder {
 
     /// Refuses a file of another study or version.
     fn checked(&self, path: &Path, file: SweepFile) -> Result<SweepFile> {
-        if file.header.study_hash == self.header.study_hash {
-            return Ok(file);
-        }
-        let what = if file.header.study != self.header.study {
-            "another study"
-        } else if file.header.base_scene != self.header.base_scene {
-            "another base scene"
-        } else {
-            "another version of the program, or another measured profile"
-        };
-        Err(self.error(path, &format!("holds results of {what}; use another directory, or remove this one")))
+        let Self { header: SweepHeader { study, base_scene, study_hash, .. }, .. } = self;
+        check_study(path, &file.header, study, base_scene, study_hash).map(|()| file)
+    }
+
+    /// Whether a study, with the files that it names as they are now, is that of this directory.
+    pub(super) fn is_of(&self, study: &Study) -> bool {
+        study.hash() == self.header.study_hash
     }
 
     /// Scenes of this shard that have a row.
@@ -122,9 +130,7 @@ impl Folder {
 
     /// Writes rows as a new part.
     pub(super) fn write_part(&self, schema: &Schema, rows: Vec<Row>) -> Result<()> {
-        let sequence = self.sequence.fetch_add(1, Ordering::Relaxed);
-        let name = format!("{}-of-{}.{}.{sequence}.h5", self.header.shard, self.header.shards, self.attempt);
-        schema.file(self.header.clone(), false, rows).write(&self.path.join(PARTS).join(name), true)
+        schema.file(self.header.clone(), false, rows).write(&self.part_file(), false)
     }
 
     /// Makes one file of all parts, and removes them.
@@ -163,11 +169,33 @@ impl Folder {
     /// Removes all checkpoints of a scene that has a row.
     pub(super) fn remove_checkpoints(&self, scene: u64) {
         let others = self.checkpoints.get(&scene).into_iter().flatten();
-        for path in others.chain([&self.checkpoint(scene)]) {
+        let others = others.filter(|path| is_checkpoint(path)).cloned();
+        for path in others.chain([self.checkpoint(scene)]) {
             // Most scenes have none.
             let _ = fs::remove_file(path);
         }
     }
+}
+
+/// Whether a file under the name of a checkpoint is one: the unfinished run of some scene.
+fn is_checkpoint(path: &Path) -> bool {
+    RunFile::open(path).is_ok_and(|run| !run.complete)
+}
+
+/// Refuses a file whose rows are not those of a study.
+fn check_study(path: &Path, file: &SweepHeader, study: &str, base_scene: &str, hash: &str) -> Result<()> {
+    if file.study_hash == hash {
+        return Ok(());
+    }
+    let what = if file.study != study {
+        "another study"
+    } else if file.base_scene != base_scene {
+        "another base scene"
+    } else {
+        "another version of the program, or another measured profile or recorded path"
+    };
+    let why = format!("holds results of {what}; use another directory, or remove this file");
+    Err(Error::File { path: path.to_owned(), why })
 }
 
 /// The files of a directory by name, temporaries aside; none if it is missing.
@@ -197,9 +225,12 @@ fn name_of(path: &Path) -> &str {
     path.file_name().and_then(|name| name.to_str()).unwrap_or_default()
 }
 
-/// Number of the scene in the name of its checkpoint.
+/// Number of the scene in the name of its checkpoint, `scene-NUMBER.ATTEMPT.h5`.
 fn scene_of(name: &str) -> Option<u64> {
-    name.strip_prefix("scene-")?.split('.').next()?.parse().ok()
+    let (number, attempt) = name.strip_prefix("scene-")?.strip_suffix(".h5")?.split_once('.')?;
+    let is_digit = |it: u8| it.is_ascii_digit() || (b'a'..=b'f').contains(&it);
+    let is_attempt = attempt.len() == ATTEMPT_DIGITS && attempt.bytes().all(is_digit);
+    number.parse().ok().filter(|_| is_attempt)
 }
 
 /// Number and count of shards in the name of a shard's file.
@@ -208,12 +239,16 @@ pub(super) fn shard_of(path: &Path) -> Option<(u64, u64)> {
     Some((shard.parse().ok()?, shards.parse().ok()?))
 }
 
-/// Number of shards by which the results in a directory are cut; none where there are none.
+/// Number of shards by which the results of a study in a directory are cut; none where there are none.
 ///
 /// # Errors
-/// [`Error::File`] if the directory cannot be read.
-pub fn shards_in(folder: &Path) -> Result<Option<u64>> {
-    Ok(counts(folder)?.first().map(|(_, shards)| *shards))
+/// [`Error::File`] if the directory cannot be read, or holds results of another study or version.
+pub fn shards_in(folder: &Path, study: &Study) -> Result<Option<u64>> {
+    let (files, hash) = (counts(folder)?, study.hash());
+    for (path, _) in &files {
+        check_study(path, &SweepFile::read_header(path)?, study.text(), study.base_text(), &hash)?;
+    }
+    Ok(files.first().map(|(_, shards)| *shards))
 }
 
 /// The files of whole shards and of parts, each with the number of shards of its sweep.
@@ -242,7 +277,6 @@ pub(super) fn is_part(path: &Path) -> bool {
 fn attempt() -> String {
     let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let time = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |it| it.as_nanos());
-    let mut hasher = Sha256::new();
-    hasher.update(format!("{host} {} {time} {:p}", std::process::id(), &host));
-    hasher.finalize().iter().take(6).map(|byte| format!("{byte:02x}")).collect()
+    let parts = format!("{host} {} {time} {:p}", std::process::id(), &host);
+    Fingerprint::default().add(parts.as_bytes()).finish()[..ATTEMPT_DIGITS].to_owned()
 }

@@ -6,7 +6,7 @@ use super::folder::{files, is_part, parts_folder, shard_of};
 use super::gathering::{Gathering, fold_files};
 use super::shard_range;
 use crate::error::{Error, Result};
-use crate::snapshot::SweepHeader;
+use crate::snapshot::{AtomicFile, SweepHeader, check_distinct};
 
 /// What is in a merged file, or is missing for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,9 @@ pub fn merge(folder: &Path, output: &Path, overwrite: bool) -> Result<Merged> {
         paths.extend(files(&parts_folder(folder))?.into_iter().filter(|path| is_part(path)));
         Ok(paths)
     };
+    // Before hundreds of files are read.
+    AtomicFile::new(output, overwrite)?;
+    list()?.iter().try_for_each(|input| check_distinct(output, input))?;
     let mut header: Option<SweepHeader> = None;
     let (gathered, paths) = fold_files(list, Gathering::default, |gathered, path, file| {
         let first = header.get_or_insert_with(|| file.header.clone());

@@ -6,7 +6,7 @@ use super::{Cost, Errors, FRONTS, Measured, Outcome, Row, Source, Worst};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, TextArray, TextColumn};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, Mark, TextArray, TextColumn};
 
 const ARRAYS: &str = "tradeoff.h5";
 const TABLE: &str = "tradeoff.csv";
@@ -203,7 +203,8 @@ fn number_of(source: Source) -> f64 {
 
 /// Makes the directory if it is missing, and checks that all files can be written there; creates no file.
 pub(super) fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
-    snapshot::check_folder(folder, &[ARRAYS, TABLE, OBJECT], overwrite)
+    let (table, object) = (Mark::Words("stepper,cycle,status,reason,"), Mark::Words("\"volume_scale\":"));
+    snapshot::check_folder(folder, &[(ARRAYS, Mark::Results), (TABLE, table), (OBJECT, object)], overwrite)
 }
 
 /// Writes both files, each as a whole or not at all; returns their paths.
@@ -213,6 +214,8 @@ pub(super) fn write(
     folder: &Path,
     overwrite: bool,
 ) -> Result<Vec<PathBuf>> {
+    // Once more, for what has come in the time of the runs.
+    check_folder(folder, overwrite)?;
     let [arrays, table] = [ARRAYS, TABLE].map(|name| folder.join(name));
     array_file(scene, outcome).write(&arrays, overwrite)?;
     AtomicFile::new(&table, overwrite)?.write(csv(&outcome.rows).as_bytes())?;

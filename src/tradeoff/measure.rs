@@ -9,10 +9,13 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::run::{Run, Shared, operator_bytes};
+use crate::run::{Run, Shared, hash_of, is_of, operator_bytes};
 use crate::scene::Scene;
 use crate::simulation::{Flow, Observer, Simulation};
-use crate::snapshot::{AtomicFile, RunFile, StopReason, make_folder};
+use crate::snapshot::{AtomicFile, Fingerprint, RunFile, Scratch, StopReason, failure};
+
+/// What the directory of runs is for.
+const PURPOSE: &str = "runs of a trade-off";
 
 /// Time after which a run is not repeated, s, all repeats together.
 const ENOUGH: f64 = 0.3;
@@ -84,28 +87,47 @@ impl Measurement {
 /// What is kept of a candidate until all are done, beside its run.
 #[derive(Serialize, Deserialize)]
 struct Record {
-    program_version: String,
-    scene: String,
+    /// What was measured, and how: [`Runs::hash`].
+    hash: String,
     measurement: Measurement,
 }
 
-/// Does runs, or finds them done, and keeps them in a folder.
+/// Does runs, or finds them done by a call that was stopped; what is kept of them goes with this.
 pub(super) struct Runs<'a> {
-    folder: PathBuf,
+    scratch: Scratch,
     shared: &'a Shared,
     repeats: usize,
 }
 
 impl<'a> Runs<'a> {
     pub(super) fn new(folder: &Path, shared: &'a Shared, repeats: usize) -> Result<Self> {
-        let folder = folder.join("runs");
-        make_folder(&folder)?;
-        Ok(Self { folder, shared, repeats })
+        let scratch = Scratch::take_up(folder, PURPOSE).map_err(|error| failure(folder, &error))?;
+        Ok(Self { scratch, shared, repeats })
     }
 
-    /// Removes what was kept. What cannot be removed is in nobody's way.
-    pub(super) fn remove(&self) {
-        let _ = std::fs::remove_dir_all(&self.folder);
+    /// Keeps the runs for the next call.
+    pub(super) fn keep(self) {
+        self.scratch.keep();
+    }
+
+    /// SHA-256 of all that a measurement depends on: the scene, the patience with it, the repeats, the machine.
+    fn hash(&self, scene: &Scene, most_seconds: f64) -> String {
+        let host = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+        Fingerprint::default()
+            .add(b"measurement")
+            .add(hash_of(scene).as_bytes())
+            .add_numbers(&[most_seconds, self.repeats as f64])
+            .add(host.as_bytes())
+            .finish()
+    }
+
+    /// Puts a copy of a run that is done into a directory.
+    pub(super) fn copy(&self, name: &str, folder: &Path, overwrite: bool) -> Result<()> {
+        let (from, to) = (self.file(name), folder.join(format!("{name}.h5")));
+        let copied = |temporary: &Path| {
+            std::fs::copy(&from, temporary).map(drop).map_err(|error| failure(&to, &error))
+        };
+        AtomicFile::new(&to, overwrite)?.write_with(copied)
     }
 
     /// A run that is done.
@@ -114,7 +136,7 @@ impl<'a> Runs<'a> {
     }
 
     fn file(&self, name: &str) -> PathBuf {
-        self.folder.join(format!("{name}.h5"))
+        self.scratch.path().join(format!("{name}.h5"))
     }
 
     /// Measures a scene, or finds it measured; none if a signal came.
@@ -127,12 +149,12 @@ impl<'a> Runs<'a> {
         scene: &Scene,
         most_seconds: f64,
     ) -> Result<Option<Measurement>> {
-        let path = self.folder.join(format!("{name}.json"));
+        let path = self.scratch.path().join(format!("{name}.json"));
         let before = std::fs::read(&path).ok().and_then(|text| serde_json::from_slice::<Record>(&text).ok());
+        let hash = self.hash(scene, most_seconds);
         let fits = |it: &Record| {
-            let same = it.scene == scene.text() && it.program_version == env!("CARGO_PKG_VERSION");
-            same && (it.measurement.cost().is_none()
-                || self.read(name).is_ok_and(|run| run.header.scene == it.scene))
+            let has_run = || self.read(name).is_ok_and(|run| is_of(&run, scene));
+            it.hash == hash && (it.measurement.cost().is_none() || has_run())
         };
         if let Some(before) = before.filter(fits) {
             return Ok(Some(before.measurement));
@@ -145,17 +167,15 @@ impl<'a> Runs<'a> {
             Ok(Err(error)) => Measurement::Failed(error.to_string()),
             Err(_) => Measurement::Failed("the program panicked; please report this scene".into()),
         };
-        self.note(name, scene, &measured)?;
+        self.note(name, hash, &measured)?;
         Ok(Some(measured))
     }
 
-    fn note(&self, name: &str, scene: &Scene, measurement: &Measurement) -> Result<()> {
-        let program_version = env!("CARGO_PKG_VERSION").to_owned();
-        let record =
-            Record { program_version, scene: scene.text().to_owned(), measurement: measurement.clone() };
+    fn note(&self, name: &str, hash: String, measurement: &Measurement) -> Result<()> {
+        let record = Record { hash, measurement: measurement.clone() };
         let text =
             serde_json::to_vec_pretty(&record).expect("a record has string keys and plain values only");
-        AtomicFile::new(&self.folder.join(format!("{name}.json")), true)?.write(&text)
+        AtomicFile::new(&self.scratch.path().join(format!("{name}.json")), true)?.write(&text)
     }
 
     /// Measures once more what took little time, at another moment: other programs may have been busy at the first. False if a signal came.
@@ -166,6 +186,7 @@ impl<'a> Runs<'a> {
         &self,
         name: &str,
         scene: &Scene,
+        most_seconds: f64,
         measurement: &mut Measurement,
     ) -> Result<bool> {
         let Measurement::Done(cost) = measurement else { return Ok(true) };
@@ -177,7 +198,7 @@ impl<'a> Runs<'a> {
             Some(_) => {}
             None => return Ok(false),
         }
-        self.note(name, scene, measurement)?;
+        self.note(name, self.hash(scene, most_seconds), measurement)?;
         Ok(true)
     }
 
@@ -198,7 +219,7 @@ impl<'a> Runs<'a> {
 
     /// One run, which is kept; none if a signal came.
     fn once(&self, name: &str, scene: &Scene, most_seconds: f64) -> Result<Option<Measurement>> {
-        let (started, stopped) = (Instant::now(), self.folder.join("stopped.h5"));
+        let (started, stopped) = (Instant::now(), self.scratch.path().join("stopped.h5"));
         // Each forms its own operators, as a user's run does, and saves nothing before its end.
         let shared = Shared {
             stop: Arc::clone(&self.shared.stop),

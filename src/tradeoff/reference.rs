@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::candidates::{Candidate, Choice, cycles};
 use super::judge::Judge;
 use super::measure::{Cost, Measurement, Runs};
-use super::name;
+use super::name as candidate_name;
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Stepper};
 use crate::snapshot::SAME_CYCLES;
@@ -35,6 +35,11 @@ pub struct Reference {
     pub wall_seconds: [f64; 2],
     /// Their largest differences over all snapshots, in volume and profile, relative as errors are.
     pub uncertainty: [f64; 2],
+}
+
+/// Name of the finer run, or of the other.
+pub(super) fn name(number: usize) -> String {
+    format!("reference{number}")
 }
 
 /// The judge of all candidates; none if a signal came.
@@ -127,7 +132,9 @@ fn affordable(finest: &Cost, springs: f64, smallest: f64, power: f64, seconds: f
 fn times(runs: &Runs, measured: &[(Candidate, Measurement)]) -> Result<Vec<f64>> {
     let mut times = vec![];
     for (number, _) in measured.iter().enumerate().filter(|(_, it)| it.1.cost().is_some()) {
-        times.extend(runs.read(&name(number))?.snapshots.iter().map(|it| it.cycles).filter(|it| *it > 0.0));
+        times.extend(
+            runs.read(&candidate_name(number))?.snapshots.iter().map(|it| it.cycles).filter(|it| *it > 0.0),
+        );
     }
     times.sort_by(f64::total_cmp);
     times.dedup_by(|later, earlier| *later - *earlier <= SAME_CYCLES * *later);
@@ -161,7 +168,7 @@ impl Plan {
             let choice = Choice::Hand { springs, tolerance };
             let candidate = Candidate { choice, stepper: Stepper::default(), cycle: cycles(scene)[0] };
             let scene = scene.varied(&candidate.numerics(scene), &patch)?;
-            let name = format!("reference{number}");
+            let name = self::name(number);
             let Some(measurement) = runs.measure(&name, &scene, self.most_seconds)? else { return Ok(None) };
             match measurement {
                 Measurement::Done(cost) => costs.push(cost),

@@ -6,7 +6,7 @@ use super::{CURVE_POINTS, Judgement, Row};
 use crate::error::Result;
 use crate::scene::UniversalityStudy;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, TextArray, TextColumn};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, Mark, TextArray, TextColumn};
 
 const ARRAYS: &str = "universality.h5";
 const TABLE: &str = "universality.csv";
@@ -95,7 +95,8 @@ fn of(row: &Row, number: impl Fn(&Judgement) -> f64) -> f64 {
 
 /// Makes the directory if it is missing, and checks that both files can be written there; creates no file.
 pub(super) fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
-    snapshot::check_folder(folder, &[ARRAYS, TABLE], overwrite)
+    let table = Mark::Words("name,medium,wear,friction,mode,predicted,verdict,");
+    snapshot::check_folder(folder, &[(ARRAYS, Mark::Results), (TABLE, table)], overwrite)
 }
 
 /// Writes both files, each as a whole or not at all; returns their paths.
@@ -105,6 +106,8 @@ pub(super) fn write(
     folder: &Path,
     overwrite: bool,
 ) -> Result<Vec<PathBuf>> {
+    // Once more, for what has come in the time of the runs.
+    check_folder(folder, overwrite)?;
     let [arrays, table] = [ARRAYS, TABLE].map(|name| folder.join(name));
     array_file(study, rows).write(&arrays, overwrite)?;
     AtomicFile::new(&table, overwrite)?.write(csv(rows).as_bytes())?;

@@ -1,14 +1,17 @@
 //! The runs of a study, and what is kept of them until all are done.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use super::Judgement;
 use crate::error::{Error, Result};
-use crate::run::{Resumed, Run, Shared};
+use crate::run::{Resumed, Run, Shared, hash_of, is_of};
 use crate::scene::Scene;
-use crate::snapshot::{RunFile, StopReason, make_folder};
+use crate::snapshot::{RunFile, Scratch, StopReason, failure};
+
+/// What the directory of runs is for.
+const PURPOSE: &str = "runs of a universality study";
 
 /// One run.
 pub(super) struct Job {
@@ -19,39 +22,34 @@ pub(super) struct Job {
     pub(super) scene: Scene,
 }
 
-/// Does runs, or finds them done.
+/// Does runs, or finds them done by a call that was stopped; what is kept of them goes with this.
 pub(super) struct Runs<'a> {
-    folder: PathBuf,
+    scratch: Scratch,
     shared: &'a Shared,
 }
 
 impl<'a> Runs<'a> {
     pub(super) fn new(folder: &Path, shared: &'a Shared) -> Result<Self> {
-        let folder = folder.join("runs");
-        make_folder(&folder)?;
-        Ok(Self { folder, shared })
+        let scratch = Scratch::take_up(folder, PURPOSE).map_err(|error| failure(folder, &error))?;
+        Ok(Self { scratch, shared })
     }
 
-    /// Removes what was kept. What cannot be removed is in nobody's way.
-    pub(super) fn remove(&self) {
-        let _ = std::fs::remove_dir_all(&self.folder);
+    /// Keeps the runs for the next call.
+    pub(super) fn keep(self) {
+        self.scratch.keep();
     }
 
     /// The end of a run, or why it has none; none if a signal came first.
     ///
     /// # Errors
     /// [`Error::File`] concerns all runs: the disk is full, a directory has vanished.
-    pub(super) fn end(
-        &self,
-        number: usize,
-        job: &Job,
-    ) -> Result<Option<std::result::Result<Judgement, String>>> {
+    pub(super) fn end(&self, job: &Job) -> Result<Option<std::result::Result<Judgement, String>>> {
         if self.shared.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         // A fault of the program in one run must not cost the others.
         let done = catch_unwind(AssertUnwindSafe(|| {
-            let run = self.run(number, &job.scene)?;
+            let run = self.run(&job.scene)?;
             run.map(|run| Judgement::new(&job.scene, &run)).transpose()
         }));
         match done {
@@ -63,20 +61,17 @@ impl<'a> Runs<'a> {
     }
 
     /// A run from its start, or on from where it was stopped; none if a signal comes.
-    fn run(&self, number: usize, scene: &Scene) -> Result<Option<RunFile>> {
-        let path = self.folder.join(format!("{number}.h5"));
-        let before = RunFile::open(&path).ok().filter(|it| {
-            let same_scene = it.header.scene == scene.text() && it.header.table.as_ref() == scene.table();
-            same_scene && it.program_version == env!("CARGO_PKG_VERSION")
-        });
-        let run = match before {
-            Some(complete) if complete.complete => return Ok(Some(complete)),
-            // A checkpoint that cannot be used is of no use: the run is begun anew.
-            Some(_) => match Run::resume_one_of_many(&path, &path, self.shared) {
-                Ok(Resumed::Run(run)) => *run,
-                _ => Run::one_of_many(scene, &path, self.shared)?,
-            },
-            None => Run::one_of_many(scene, &path, self.shared)?,
+    fn run(&self, scene: &Scene) -> Result<Option<RunFile>> {
+        // Under this name lies no other scene, however the study was edited in between.
+        let path = self.scratch.path().join(format!("{}.h5", hash_of(scene)));
+        let complete = RunFile::open(&path).ok().filter(|it| it.complete && is_of(it, scene));
+        if complete.is_some() {
+            return Ok(complete);
+        }
+        let run = match Run::resume_one_of_many(scene, &path, &path, self.shared) {
+            Ok(Resumed::Run(run)) => *run,
+            // There is none, or one that cannot be used.
+            _ => Run::one_of_many(scene, &path, self.shared)?,
         };
         let (result, file) = run.execute_keeping(None)?;
         if result.stop_reason == StopReason::Interrupted {

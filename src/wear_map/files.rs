@@ -7,7 +7,7 @@ use super::{Control, Isoline, MapStudy, OptimumCurve};
 use crate::error::Result;
 use crate::scene::MapScene;
 use crate::snapshot::layout::{Label, label};
-use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, cell};
+use crate::snapshot::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, Mark, cell};
 
 const GRADING: Label<'static> = label("grading", "1", "grading k of E = E0 (z/z0)^k");
 const AMPLITUDE: Label<'static> =
@@ -23,16 +23,16 @@ const PROFILE_GRADING: Label<'static> = label("profile_grading", "1", "grading o
 const PROFILE_RADIUS: Label<'static> =
     label("profile_radius", "1", "radius over (d/(n A))^(1/n), which is sqrt(R d) for a paraboloid");
 
-/// Name of a file and how its text is made.
-type Table = (&'static str, fn(&MapStudy) -> String);
+/// Name of a file, what its first line begins with, and how its text is made.
+type Table = (&'static str, &'static str, fn(&MapStudy) -> String);
 
 /// Tables written beside `map.h5`.
 const TABLES: [Table; 5] = [
-    ("map.csv", map_table),
-    ("full_sliding.csv", full_sliding_table),
-    ("isolines.csv", isoline_table),
-    ("optimum.csv", optimum_table),
-    ("profiles.csv", profile_table),
+    ("map.csv", "grading,amplitude_ratio,wear_volume,", map_table),
+    ("full_sliding.csv", "grading,full_sliding_amplitude_ratio\n", full_sliding_table),
+    ("isolines.csv", "form,line,wear_volume_ratio,", isoline_table),
+    ("optimum.csv", "control,reference_depth,amplitude_ratio,", optimum_table),
+    ("profiles.csv", "grading,radius,initial_profile,", profile_table),
 ];
 
 const ARRAYS: &str = "map.h5";
@@ -42,8 +42,9 @@ const ARRAYS: &str = "map.h5";
 /// # Errors
 /// [`Error::File`](crate::Error::File) names the file or the directory and the cure.
 pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
-    let names: Vec<&str> = TABLES.iter().map(|(name, _)| *name).chain([ARRAYS]).collect();
-    snapshot::check_folder(folder, &names, overwrite)
+    let tables = TABLES.iter().map(|(name, start, _)| (*name, Mark::Words(start)));
+    let files: Vec<_> = tables.chain([(ARRAYS, Mark::Results)]).collect();
+    snapshot::check_folder(folder, &files, overwrite)
 }
 
 /// Writes `map.h5` and the tables `map.csv`, `full_sliding.csv`, `isolines.csv`, `optimum.csv` and `profiles.csv` into a directory that
@@ -55,7 +56,7 @@ pub fn write(scene: &MapScene, study: &MapStudy, folder: &Path, overwrite: bool)
     let arrays = folder.join(ARRAYS);
     array_file(scene, study).write(&arrays, overwrite)?;
     let mut written = vec![arrays];
-    for (name, table) in TABLES {
+    for (name, _, table) in TABLES {
         let path = folder.join(name);
         AtomicFile::new(&path, overwrite)?.write(table(study).as_bytes())?;
         written.push(path);
