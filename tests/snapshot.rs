@@ -486,19 +486,39 @@ fn a_failed_save_leaves_the_previous_one_and_no_litter() {
 
 #[test]
 fn leftovers_of_killed_runs_are_removed_and_others_kept() {
+    const OWN: &str =
+        "This directory is fretwear's own. It holds what is not finished, and is removed by the program.\n";
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("run.h5");
-    let busy = folder.path().join(".run.h5.2.tmp");
-    for name in [".run.h5.1.tmp", ".run.h5.2.tmp", ".other.h5.1.tmp", ".run.h5.notes.tmp", "run.h5.1.tmp"] {
-        fs::write(folder.path().join(name), "torn").expect("a file");
-    }
-    fs::write(folder.path().join(format!(".run.h5.{}.tmp", std::process::id())), "torn").expect("a file");
-    let lock = fs::File::open(busy).expect("a file");
+    let put = |name: &str, marker: &str, others: &[&str]| {
+        let inside = folder.path().join(name);
+        fs::create_dir(&inside).expect("a folder");
+        fs::write(inside.join("marker"), marker).expect("a file");
+        others.iter().for_each(|name| fs::write(inside.join(name), "torn").expect("a file"));
+        inside
+    };
+    let own = format!("{OWN}temporary of run.h5");
+    put(".fretwear-killed", &own, &["content"]);
+    put(".fretwear-killed-at-once", "", &[]);
+    fs::create_dir(folder.path().join(".fretwear-empty")).expect("a folder");
+    let busy = put(".fretwear-busy", &own, &["content"]);
+    put(".fretwear-other", &format!("{OWN}temporary of other.h5"), &["content"]);
+    put(".fretwear-users", "a folder of mine", &["content"]);
+    put(".fretwear-more", &own, &["content", "thesis.txt"]);
+    // As an earlier version called them: nothing in them tells whose they are.
+    fs::write(folder.path().join(".run.h5.1.tmp"), "torn").expect("a file");
+    let lock = fs::File::open(busy.join("marker")).expect("a file");
     lock.lock().expect("a lock");
     written(&path, 3, 1);
     let mut found = names(folder.path());
     found.sort();
-    assert_eq!(found, [".other.h5.1.tmp", ".run.h5.2.tmp", ".run.h5.notes.tmp", "run.h5", "run.h5.1.tmp"]);
+    let kept =
+        [".fretwear-busy", ".fretwear-more", ".fretwear-other", ".fretwear-users", ".run.h5.1.tmp", "run.h5"];
+    assert_eq!(found, kept);
+    let mut more = names(&folder.path().join(".fretwear-more"));
+    more.sort();
+    assert_eq!(more, ["marker", "thesis.txt"], "a directory with anything else in it stays");
+    assert_eq!(names(&folder.path().join(".fretwear-users")).len(), 2);
 }
 
 #[cfg(unix)]

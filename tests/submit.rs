@@ -255,8 +255,14 @@ fn scripts_are_not_overwritten_unasked() {
     let message = place.refused(&[&SLURM[..], &["--dry-run"]].concat());
     assert!(message.contains("sweep.sbatch: exists already") && message.contains("--force"), "{message}");
     assert_eq!(place.read("out/sweep.sbatch"), "mine");
+    // Nor is one that this program did not write.
+    let message = place.refused(&[&SLURM[..], &["--dry-run", "--force"]].concat());
+    assert!(message.contains("sweep.sbatch") && message.contains("not written by fretwear"), "{message}");
+    let edited = place.read("out/merge.sbatch").replace("--time=60", "--time=90");
+    std::fs::write(place.path("out/merge.sbatch"), &edited).unwrap();
+    std::fs::remove_file(place.path("out/sweep.sbatch")).unwrap();
     place.object(&[&SLURM[..], &["--force"]].concat());
-    assert_ne!(place.read("out/sweep.sbatch"), "mine");
+    assert_ne!(place.read("out/merge.sbatch"), edited);
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn a_shard_that_ends_leaves_the_others_alone() {
     let mut second = start("1/2");
     assert_eq!([&mut first, &mut second].map(|child| child.wait().unwrap().code()), [Some(0), Some(0)]);
     assert_eq!(place.merged("out").scenes.len(), 1000);
-    assert_eq!(fretwear::sweep::shards_in(&place.path("out")).unwrap(), Some(2));
+    assert_eq!(fretwear::sweep::shards_in(&place.path("out"), &place.study()).unwrap(), Some(2));
 }
 
 #[test]
