@@ -338,6 +338,10 @@ fn outputs_that_cannot_be_written_are_refused_before_the_run() {
     refused(at, &["run", "scene.toml", "--resume", "scene.h5"], 2, &["cannot be used with"]);
     refused(at, &["run"], 2, &["SCENE.toml"]);
     assert_eq!(names(at), ["scene.h5", "scene.toml"]);
+    // Nobody named it, and it is none of this program's.
+    refused(at, &["run", "scene.toml", "--json", "--force"], 2, &["scene.h5", "not written by fretwear"]);
+    assert_eq!(fs::read(at.join("scene.h5")).unwrap(), b"mine");
+    object(at, &["run", "scene.toml", "-o", "scene.h5", "--json", "--force"]);
     object(at, &["run", "scene.toml", "--json", "--force"]);
     assert!(RunFile::open(&at.join("scene.h5")).unwrap().complete);
 }
