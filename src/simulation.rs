@@ -7,7 +7,10 @@ use crate::grid::Clustering;
 use crate::loading::has_come;
 use crate::model::{CycleFields, Fields, Model, MovingStick, RadialFields, State};
 use crate::stepper::Stepper;
-use crate::wear::WearLaw;
+
+mod failure;
+
+use failure::{STEPPING, nothing_wears};
 
 /// Safety factor and bounds of the choice of steps.
 const SAFETY: f64 = 0.9;
@@ -520,55 +523,6 @@ impl Simulation {
             best.clamp(SMALLEST_FACTOR * step, 0.5 * step)
         };
     }
-
-    /// The moment at which a run cannot go on, and what can be done.
-    fn stuck(&self, why: &str) -> Error {
-        let (model, cycles) = (&self.model, self.state.cycles);
-        let tau = cycles * model.contact().tau_per_cycle();
-        let [stick, edge] = [model.without_core(self.cycle.stick_radius), model.contact_radius(&self.state)];
-        let healed = self.healed_at.map_or(String::new(), |radius| {
-            format!(", for at the radius {radius:.4e} m wear depth would become less")
-        });
-        let springs = model.springs();
-        let cure = if cycles > 0.0 {
-            format!("or end before (loading.tau below {tau:.4})")
-        } else {
-            "or for another loading.amplitude".into()
-        };
-        Error::NotConverged {
-            what: STEPPING,
-            why: format!(
-                "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}; \
-                 ask for {} springs (numerics.springs; there were {springs}), {cure}",
-                2 * springs
-            ),
-        }
-    }
-}
-
-/// What of a run does not converge.
-const STEPPING: &str = "time stepping";
-
-/// Why a run cannot begin.
-fn nothing_wears(model: &Model) -> Error {
-    let (what, why) = match model.schedule().conditions().wear {
-        WearLaw::Threshold { pressure, .. } => (
-            "wear.threshold.pressure",
-            format!(
-                "{pressure:e} Pa is not exceeded where springs slip in the first cycles, so that nothing wears (the mean pressure is {:e} Pa); \
-                 ask for less, or press harder",
-                model.contact().mean_pressure()
-            ),
-        ),
-        _ => (
-            "loading.amplitude",
-            format!(
-                "at an amplitude of {:e} m the wear of the first cycles is nothing that can be computed with; ask for another",
-                model.contact().amplitude()
-            ),
-        ),
-    };
-    Error::Inconsistent { what, why }
 }
 
 /// Worn volume per cycle, m³, at least the part of it that is certain.

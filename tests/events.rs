@@ -8,8 +8,8 @@ use std::fs;
 use fretwear::Error;
 use fretwear::run::{Run, RunResult, Shared};
 use fretwear::scene::Scene;
-use fretwear::simulation::{End, Plan};
-use fretwear::snapshot::RunFile;
+use fretwear::simulation::{End, Flow, Observer, Plan, Simulation};
+use fretwear::snapshot::{RunFile, StopReason};
 use fretwear::stepper::Implicit;
 use support::{Case, command};
 
@@ -130,4 +130,74 @@ fn what_would_need_a_step_for_each_of_too_many_blocks_is_refused() {
     let error = run(&scene("stick_ratio = 0.7", "tau = 3", blocks)).err().map(|error| error.to_string());
     let words = error.unwrap_or_default();
     assert!(words.starts_with("loading.blocks: ") && words.contains("make the blocks longer"), "{words}");
+}
+
+/// Stops what does not end.
+struct Steps(u64);
+
+impl Observer for Steps {
+    fn step(&mut self, simulation: &Simulation) -> fretwear::Result<Flow> {
+        Ok(if simulation.progress().steps < self.0 { Flow::Continue } else { Flow::Stop })
+    }
+}
+
+#[test]
+fn the_smallest_rate_that_may_be_asked_for_is_reached_under_every_law() {
+    let laws = [
+        ("plain", "", ""),
+        (
+            "power law, 0.6",
+            "[wear.power-law]\ncoefficient = 1e-12\npressure_exponent = 0.6\nslip_exponent = 1.0\n",
+            "",
+        ),
+        (
+            "power law, 1.5",
+            "[wear.power-law]\ncoefficient = 1e-16\npressure_exponent = 1.5\nslip_exponent = 1.0\n",
+            "",
+        ),
+        ("threshold", "[wear.threshold]\ncoefficient = 1.667e-13\npressure = \"5 MPa\"\n", ""),
+        ("non-local", "[wear.non-local]\ncoefficient = 1.667e-13\nlength = \"50 um\"\n", ""),
+        ("wear that ceases", "", "[wear.history]\nfinal_factor = 0\ntau = 5\n"),
+        ("friction that rises", "", "[friction.history]\nfactors = [1.0, 1.1]\nat_tau = [0.0, 1.0]\n"),
+        ("friction that falls", "", "[friction.history]\nfactors = [1.0, 0.9]\nat_tau = [0.0, 1.0]\n"),
+        (
+            "blocks",
+            "",
+            "repeat = true\n[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 0.9\n",
+        ),
+        (
+            "a normal oscillation",
+            "",
+            "[loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = 1\nphase = \"90 deg\"\n",
+        ),
+        ("gross slip", "amplitude", ""),
+    ];
+    for (name, law, more) in laws {
+        let amplitude = if law == "amplitude" { "amplitude_ratio = 2" } else { "stick_ratio = 0.7" };
+        let at = |rate: &str| {
+            let text =
+                scene(amplitude, &format!("until_rate = {rate}"), &format!("{more}[output]\nat_tau = []\n"));
+            let text = if law.starts_with('[') {
+                text.replace("[wear.archard]\ncoefficient = 1.667e-13\n", law)
+            } else {
+                text
+            };
+            let folder = tempfile::tempdir().expect("a folder");
+            let scene = Scene::from_toml(&text, "rate.toml").unwrap();
+            let run = Run::one_of_many(&scene, &folder.path().join("run.h5"), &Shared::default()).unwrap();
+            let result =
+                run.execute(Some(&mut Steps(3000))).unwrap_or_else(|error| panic!("{name}: {error}"));
+            println!(
+                "{name}, {rate}: {:?} at τ = {:.3e}, {} steps, {:e} m³",
+                result.stop_reason,
+                result.last.tau,
+                result.checkpoint.progress.steps,
+                result.last.wear_volume
+            );
+            assert_ne!(result.stop_reason, StopReason::Interrupted, "{name}: no end after 3000 steps");
+            result.last.wear_volume
+        };
+        let [late, last] = [at("1e-11"), at("1e-14")];
+        assert!((late / last - 1.0).abs() < 1e-3, "{name}: {late:e} and {last:e} m³");
+    }
 }

@@ -134,6 +134,10 @@ fn judge_all(seeds: Range<u64>, length: impl Fn(u64) -> Length, patience: Durati
         let seconds = begun.elapsed().as_secs_f64();
         if few || judged.is_err() {
             println!("seed {seed}, {seconds:.2} s: {judged:?}\n{}", random.text);
+        } else if let Ok((end, words)) = &judged
+            && *end != End::Ran
+        {
+            println!("seed {seed}, {seconds:.2} s: {end:?} {words}");
         }
         match judged {
             Ok(_) if seconds > BOUND.as_secs_f64() => {
