@@ -1,11 +1,10 @@
 //! Results for other programs: any table of a file as CSV, and the worn surface for ParaView.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::snapshot::{RunFile, SurfaceSeries};
+use crate::snapshot::{ResultPath, RunFile, SurfaceSeries};
 
 /// Most points of a surface over all times: some 50 bytes each.
 const MOST_POINTS: usize = 20_000_000;
@@ -20,7 +19,7 @@ const INNER_CIRCLES: usize = 12;
 /// the indenter of the scene, and pressure is not a number.
 ///
 /// # Arguments
-/// * `path` -- the file of the run
+/// * `file` -- that of the run
 /// * `sectors` -- points around the axis, at least 3
 ///
 /// # Errors
@@ -29,9 +28,10 @@ const INNER_CIRCLES: usize = 12;
 ///
 /// # Panics
 /// For fewer than 3 sectors.
-pub fn worn_surface(path: &Path, sectors: usize) -> Result<SurfaceSeries> {
+pub fn worn_surface<'a>(file: impl Into<ResultPath<'a>>, sectors: usize) -> Result<SurfaceSeries> {
     assert!(sectors >= 3, "{sectors} sectors");
-    let run = RunFile::open(path)?;
+    let file = file.into();
+    let (run, path) = (RunFile::open(file)?, file.path());
     let header = &run.header;
     let name = path.display().to_string();
     let scene = Scene::from_stored(&header.scene, &name, header.table.clone(), header.path.clone())?;

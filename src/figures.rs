@@ -41,11 +41,9 @@ mod worn_profiles;
 pub use output::FigureFile;
 pub use run::RunResults;
 
-use std::path::Path;
-
 use crate::drawing::Figure;
 use crate::error::{Error, Result};
-use crate::snapshot::{Format, RunFile, StoredArrays, SweepFile, format_of};
+use crate::snapshot::{Format, ResultPath, RunFile, StoredArrays, SweepFile, format_of};
 
 /// What a figure shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,15 +126,16 @@ impl Results {
     ///
     /// # Errors
     /// [`Error::File`] names the file, what in it cannot be used, and the cure; [`Error::Scene`] if the scene in it is not valid.
-    pub fn read(path: &Path) -> Result<Self> {
-        let format = format_of(path)?;
-        let arrays = |kind: fn(StoredArrays) -> Self| StoredArrays::read(path, format).map(kind);
+    pub fn read<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
+        let file = file.into().ready()?;
+        let format = format_of(file)?;
+        let arrays = |kind: fn(StoredArrays) -> Self| StoredArrays::read(file, format).map(kind);
         match format {
-            Format::Run => RunResults::new(RunFile::open(path)?, path).map(Box::new).map(Self::Run),
+            Format::Run => RunResults::new(RunFile::open(file)?, file.path()).map(Box::new).map(Self::Run),
             Format::Map => arrays(Self::Map),
             Format::Universality => arrays(Self::Universality),
             Format::Tradeoff => arrays(Self::Tradeoff),
-            Format::Sweep => SweepFile::read(path).map(Box::new).map(Self::Sweep),
+            Format::Sweep => SweepFile::read(file).map(Box::new).map(Self::Sweep),
         }
     }
 

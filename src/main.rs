@@ -9,10 +9,10 @@ use clap::{Args, Parser, Subcommand};
 use fretwear::figures::FigureFile;
 use fretwear::progress::{Progress, SceneProgress};
 use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile};
-use fretwear::run::{Resumed, RunResult};
+use fretwear::run::{Resumed, RunResult, most_threads};
 use fretwear::scene::{MapScene, Scene, Study};
 use fretwear::simulation::Observer;
-use fretwear::snapshot::{ArraySummary, Mark, StopReason, check_distinct, check_own};
+use fretwear::snapshot::{ArraySummary, Mark, ResultPath, StopReason, check_distinct, check_own};
 use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result};
 use signal_hook::consts::SIGXFSZ;
@@ -109,6 +109,9 @@ struct Run {
     /// Overwrite the result file, and the picture, if they exist
     #[arg(long)]
     force: bool,
+    /// Go on even if the result file does not fit its checksum or has none; a damaged one may hang or end this program
+    #[arg(long, requires = "resume")]
+    unchecked: bool,
 }
 
 #[derive(Args)]
@@ -141,7 +144,7 @@ struct Sweep {
     /// Do shard I of N only, I from 0; all shards need the same N
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<(u64, u64)>,
-    /// Threads, each of which runs one scene at a time; by default all cores
+    /// Threads, each of which runs one scene at a time; at most, and by default, one for each core
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Failed scenes up to which the exit code is 0
@@ -208,6 +211,9 @@ struct Info {
     /// Print one JSON object in SI units
     #[arg(long)]
     json: bool,
+    /// Read the file even if it does not fit its checksum or has none; a damaged one may hang or end this program
+    #[arg(long, visible_alias = "force")]
+    unchecked: bool,
 }
 
 fn main() -> ExitCode {
@@ -254,7 +260,7 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
     let picture =
         arguments.plot.as_ref().map(|named| run_picture(arguments, named.as_deref())).transpose()?;
     let run = match (&arguments.scene, &arguments.resume) {
-        (_, Some(file)) => match fretwear::run::Run::resume(file)? {
+        (_, Some(file)) => match fretwear::run::Run::resume(result_file(file, arguments.unchecked)?)? {
             Resumed::Run(run) => {
                 if !arguments.quiet {
                     complain("note", &format!("goes on with the scene that is in {}", file.display()));
@@ -361,7 +367,7 @@ fn sweep(arguments: &Sweep) -> Result<(String, ExitCode)> {
     let options = SweepOptions {
         shard,
         shards,
-        threads: arguments.threads.map(usize::from),
+        threads: threads(arguments.threads),
         checkpoint_interval: arguments.checkpoint_interval,
     };
     let shown = !arguments.quiet && !arguments.json;
@@ -418,11 +424,30 @@ fn check(arguments: &Check) -> Result<String> {
 }
 
 fn info(arguments: &Info) -> Result<String> {
-    if let Some(summary) = ArraySummary::read(&arguments.file)? {
+    let file = result_file(&arguments.file, arguments.unchecked)?;
+    if let Some(summary) = ArraySummary::read(file)? {
         return Ok(if arguments.json { report::json(&summary) } else { report::arrays_text(&summary) });
     }
-    let report = InfoReport::read(&arguments.file)?;
+    let report = InfoReport::read(file)?;
     Ok(if arguments.json { report::json(&report) } else { report.text() })
+}
+
+/// Threads asked for, as many of them as there are cores.
+fn threads(asked: Option<u16>) -> Option<usize> {
+    let most = most_threads();
+    let asked = asked.map(usize::from);
+    if let Some(asked) = asked.filter(|asked| *asked > most) {
+        complain(
+            "note",
+            &format!("--threads {asked}: this process may use {most} cores, so {most} threads are started"),
+        );
+    }
+    asked.map(|asked| asked.min(most))
+}
+
+/// A result file, checked once for all that is read from it unless the user wants it as it is.
+fn result_file(path: &Path, unchecked: bool) -> Result<ResultPath<'_>> {
+    if unchecked { Ok(ResultPath::unchecked(path)) } else { ResultPath::checked(path) }
 }
 
 /// Reads a scene and passes its warnings on.

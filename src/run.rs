@@ -15,7 +15,8 @@ use crate::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice, WearFrom};
 use crate::simulation::{End, Observer, Outcome, Plan, Simulation};
 use crate::snapshot::{
-    Checkpoint, LimitCurves, LimitDistance, RunFile, RunHeader, RunWriter, Snapshot, StopReason, scene_hash,
+    Checkpoint, LimitCurves, LimitDistance, ResultPath, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
+    scene_hash,
 };
 use crate::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
 use crate::stick_slip::Regime;
@@ -25,11 +26,14 @@ mod knob;
 mod mesh;
 mod ready;
 mod recorder;
+mod threads;
 
 pub(crate) use mesh::operator_bytes;
 pub use ready::Expected;
 use ready::Ready;
 use recorder::{Recorder, snapshot};
+pub use threads::most_threads;
+pub(crate) use threads::thread_pool;
 
 /// Part of the run at which the first of geometrically spread snapshots is taken.
 const FIRST_SNAPSHOT: f64 = 1e-4;
@@ -159,8 +163,10 @@ impl Run {
     ///
     /// # Errors
     /// [`Error::File`] if the file is none of a run, or holds no checkpoint that fits its scene.
-    pub fn resume(path: &Path) -> Result<Resumed> {
-        Self::go_on(RunFile::open(path)?, path, &Shared::with_signals()?, |file| file.into_writer(path))
+    pub fn resume<'a>(file: impl Into<ResultPath<'a>>) -> Result<Resumed> {
+        let file = file.into();
+        let path = file.path();
+        Self::go_on(RunFile::open(file)?, path, &Shared::with_signals()?, |run| run.into_writer(path))
     }
 
     /// Prepares a run as [`Run::one_of_many`] that goes on from the checkpoint in `from`, and writes its own to `checkpoint`.

@@ -28,8 +28,6 @@
 //! # Ok::<(), fretwear::Error>(())
 //! ```
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -44,6 +42,7 @@ use crate::wear::Archard;
 
 mod columns;
 mod document;
+pub(crate) mod input;
 mod laws;
 mod map;
 mod motion;
@@ -59,6 +58,7 @@ mod study;
 mod unit;
 mod universality;
 
+use input::{Pipes, Unread};
 pub use map::MapScene;
 pub use study::{Input, KeptSnapshots, MOST_SCENES, Study, Task};
 pub use universality::{
@@ -386,22 +386,14 @@ impl Scene {
 
 /// Reads a TOML file, bounded in size.
 fn read_text(path: &Path) -> Result<String> {
-    let failed = |why: String| Error::File { path: path.to_path_buf(), why };
-    let reason = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => failed("there is no such file".into()),
-        std::io::ErrorKind::IsADirectory => failed("is a directory, not a file".into()),
-        _ => failed(format!("cannot be read: {error}")),
-    };
-    let file = File::open(path).map_err(reason)?;
-    let mut bytes = Vec::new();
-    // One byte past the limit tells a file that is too large from one that just fits.
-    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(reason)?;
-    if bytes.len() as u64 > LARGEST {
-        return Err(failed(format!("is larger than {LARGEST} bytes, which no such file is")));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
-        failed(format!("line {line} is not UTF-8 text; it must be a TOML file in UTF-8"))
+    let read = input::bytes(path, LARGEST, Pipes::Read).and_then(input::text);
+    read.map_err(|unread| {
+        let cure = match unread {
+            Unread::Missing => "",
+            Unread::TooLarge(_) => ", which no such file is",
+            Unread::NotText(_) => "; it must be a TOML file in UTF-8",
+            _ => "; name a TOML file",
+        };
+        Error::File { path: path.to_path_buf(), why: format!("{unread}{cure}") }
     })
 }

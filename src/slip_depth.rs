@@ -153,7 +153,7 @@ impl UnwornSlip {
         let limit_edge = squared * logarithm.exp_m1();
         let end = (MARGIN * limit_edge / squared).ln_1p();
         let slip = match &transform.table {
-            Some(table) => SlipSeries::Table { series: table.series(logarithm), factor: transform.factor },
+            Some(table) => SlipSeries::Table { series: table.series(logarithm)?, factor: transform.factor },
             None => {
                 let growth = (transform.slip(end) / transform.slip(AT_STICK * end)).ln() / end;
                 let series = Chebyshev::fit(|l| transform.slip(l) * (-growth * l).exp(), end);

@@ -39,7 +39,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::progress::SceneProgress;
 use crate::report::{LimitReport, RunReport};
-use crate::run::{Resumed, Run, Shared};
+use crate::run::{Resumed, Run, Shared, thread_pool};
 use crate::scene::{Study, Task};
 use crate::snapshot::{RunFile, StopReason, SweepHeader};
 use folder::Folder;
@@ -58,7 +58,7 @@ pub struct SweepOptions {
     pub shard: u64,
     /// Number of shards that the study is cut into.
     pub shards: u64,
-    /// Threads; all cores if none.
+    /// Threads, at most [`most_threads`](crate::run::most_threads); all cores if none.
     pub threads: Option<usize>,
     /// Wall time between checkpoints, s.
     pub checkpoint_interval: f64,
@@ -150,8 +150,7 @@ impl<'a> Sweep<'a> {
                 ),
             });
         }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
-        let pool = pool.map_err(|error| Error::Inconsistent { what: "--threads", why: error.to_string() })?;
+        let pool = thread_pool(options.threads)?;
         let header = SweepHeader {
             title: study.title().unwrap_or_default().into(),
             task: study.task().name().into(),

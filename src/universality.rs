@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::progress::SceneProgress;
-use crate::run::Shared;
+use crate::run::{Shared, thread_pool};
 use crate::scene::{Case, Prediction, Scene, UniversalityStudy};
 use runs::{Job, Runs};
 
@@ -103,8 +103,7 @@ impl<'a> Universality<'a> {
         // A run is kept where it is stopped and where it ends, not in between.
         const NEVER: f64 = 1e9;
         let shared = Shared { checkpoint_interval: Some(NEVER), ..Shared::with_signals()? };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
-        let pool = pool.map_err(|error| Error::Inconsistent { what: "--threads", why: error.to_string() })?;
+        let pool = thread_pool(options.threads)?;
         files::check_folder(folder, options.overwrite)?;
         let (folder, overwrite) = (folder.to_owned(), options.overwrite);
         Ok(Self { study, folder, overwrite, jobs, shared, pool, started })

@@ -435,7 +435,9 @@ fn files_that_cannot_be_resumed_are_refused_and_left_alone() {
         ("absent.h5", "absent.h5"),
     ] {
         let before = fs::read(at.join(name)).ok();
-        refused(at, &["run", "--resume", name, "--json"], 2, &[name, word]);
+        refused(at, &["run", "--resume", name, "--json", "--unchecked"], 2, &[name, word]);
+        let checked = ["absent.h5", "garbage.h5"].contains(&name).then_some(word).unwrap_or("no checksum");
+        refused(at, &["run", "--resume", name, "--json"], 2, &[name, checked]);
         assert_eq!(fs::read(at.join(name)).ok(), before, "{name}");
     }
 }

@@ -15,8 +15,8 @@ use fretwear::model::{Linearised, Past, PastPoint, State, StickEdge};
 use fretwear::simulation::Progress;
 use fretwear::snapshot::layout::label;
 use fretwear::snapshot::{
-    ArrayFile, Checkpoint, Column, Coordinate, Format, LimitCurves, ResultTables, RunFile, RunHeader,
-    RunWriter, Snapshot, StopReason, StoredArrays, SweepFile, SweepHeader, TextArray, Values,
+    ArrayFile, Checkpoint, Column, Coordinate, Format, LimitCurves, ResultPath, ResultTables, RunFile,
+    RunHeader, RunWriter, Snapshot, StopReason, StoredArrays, SweepFile, SweepHeader, TextArray, Values,
 };
 use fretwear::stick_slip::Regime;
 use hdf5::types::VarLenUnicode;
@@ -209,6 +209,14 @@ fn edit(path: &Path, change: impl FnOnce(&hdf5::File) -> hdf5::Result<()>) -> hd
 fn message(path: &Path) -> String {
     let _guard = EDITING.lock().unwrap_or_else(PoisonError::into_inner);
     RunFile::open(path).expect_err("this file must be refused").to_string()
+}
+
+/// The same of a file that was edited, and so has lost its checksum.
+fn edited_message(path: &Path) -> String {
+    let without = message(path);
+    assert!(without.contains("has no checksum at its end"), "{without}");
+    let _guard = EDITING.lock().unwrap_or_else(PoisonError::into_inner);
+    RunFile::open(ResultPath::unchecked(path)).expect_err("this file must be refused").to_string()
 }
 
 #[test]
@@ -546,7 +554,7 @@ fn foreign_and_damaged_files_are_refused_with_a_reason() {
     assert!(message(&path).contains("not an HDF5 file"));
     fs::remove_file(&path).expect("the file");
     edit(&path, |_| Ok(())).expect("a file");
-    assert!(message(&path).contains("no attribute format"), "{}", message(&path));
+    assert!(edited_message(&path).contains("no attribute format"), "{}", edited_message(&path));
     fs::remove_file(&path).expect("the file");
 
     written(&path, 31, 12);
@@ -626,7 +634,7 @@ fn edited_files_are_refused_by_the_name_of_what_is_wrong() {
     for (words, change) in edits {
         fs::write(&path, &bytes).expect("a file");
         edit(&path, change).unwrap_or_else(|error| panic!("{words}: {error}"));
-        let found = message(&path);
+        let found = edited_message(&path);
         assert!(
             found.contains(words) && found.starts_with(&*path.to_string_lossy()),
             "{found}\nlacks {words}"
@@ -646,7 +654,7 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
         bytes[place + 2] = 0xff;
         fs::write(path, bytes).expect("a file");
         let _guard = EDITING.lock().unwrap_or_else(PoisonError::into_inner);
-        let table = ResultTables::csv(path, None).expect("a table");
+        let table = ResultTables::csv(ResultPath::unchecked(path), None).expect("a table");
         assert!(table.trim_end().ends_with(&format!(",{READ}")), "{table}");
     };
 
@@ -660,7 +668,7 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
     let header = SweepHeader::default();
     SweepFile::new(header, true, vec![0], vec![column], vec![]).write(&sweep, false).expect("written");
     damage(&sweep);
-    let column = SweepFile::read(&sweep).expect("readable").columns.remove(0);
+    let column = SweepFile::read(ResultPath::unchecked(&sweep)).expect("readable").columns.remove(0);
     assert_eq!(column.values, Values::Texts([READ].into_iter().collect()));
 
     let study = folder.path().join("study.h5");
@@ -677,7 +685,7 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
     };
     file.write(&study, false).expect("written");
     damage(&study);
-    let stored = StoredArrays::read(&study, file.format).expect("readable");
+    let stored = StoredArrays::read(ResultPath::unchecked(&study), file.format).expect("readable");
     assert_eq!(stored.words("verdict", 1).expect("one"), [READ]);
 }
 

@@ -413,3 +413,40 @@ fn large_tables_carry_what_the_sphere_does_that_they_sample() {
         }
     }
 }
+
+/// Rows a few roundings apart were once walked between for ever.
+#[test]
+fn rows_as_close_as_numbers_can_be_are_followed_or_refused_by_name() {
+    let mut refused = 0;
+    for (place, apart) in (0..40).flat_map(|place| [1, 2, 3, 7, 40].map(|apart| (place, apart))) {
+        let close = 1e-4 * (1.0 + 0.137 * f64::from(place)) / 3.0;
+        let mut radius = even(40, 1e-3);
+        let mut next = close;
+        for _ in 0..4 {
+            radius.push(next);
+            (0..apart).for_each(|_| next = next.next_up());
+        }
+        radius.sort_by(f64::total_cmp);
+        radius.dedup();
+        let indenter = table(radius.clone(), radius.iter().map(|r| 50.0 * r * r).collect());
+        for grading in [-0.9, 0.0, 0.5, 0.99] {
+            match LimitingShape::from_stick_ratio(&indenter, grading, 1e-6, 0.7) {
+                Ok(shape) => {
+                    let exact = Indenter::paraboloid(0.01).unwrap();
+                    let exact = LimitingShape::from_stick_ratio(&exact, grading, 1e-6, 0.7).unwrap();
+                    let error = relative(shape.wear_volume(), exact.wear_volume());
+                    assert!(error < 1e-6, "{apart} apart at {close:e} m, k = {grading}: {error:e}");
+                }
+                Err(error) => {
+                    refused += 1;
+                    let message = error.to_string();
+                    assert!(
+                        message.contains("as close as numbers can be") || message.contains("rings"),
+                        "{apart} apart at {close:e} m, k = {grading}: {message}"
+                    );
+                }
+            }
+        }
+    }
+    println!("{refused} of 800 refused");
+}

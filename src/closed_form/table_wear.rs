@@ -51,7 +51,7 @@ impl TableWear {
     /// * `end` -- `ℓ` at the limiting contact radius
     /// * `uniform` -- `G_1` as a function of `ℓ`
     pub(super) fn deepest(&self, end: f64, uniform: impl Fn(f64) -> f64) -> Result<f64> {
-        let series = self.transform.series(end);
+        let series = self.transform.series(end)?;
         let depth = |l: f64| l.powf(self.mu) * (self.compression * uniform(l) - l * series.value(l));
         let pieces = series.edges().windows(2).filter(|pair| pair[0] < end);
         let places = pieces.flat_map(|pair| {

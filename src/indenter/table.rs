@@ -34,7 +34,7 @@ pub struct TabulatedProfile {
     equivalent: Known,
 }
 
-/// The equivalent profile that was last asked for: every contact of a scene needs the same, and it takes seconds for very many rows.
+/// The equivalent profile that was last asked for: every contact of a scene needs the same, and it takes a second for very many rows.
 #[derive(Debug, Default)]
 struct Known(Mutex<Option<Arc<TabulatedEquivalent>>>);
 
@@ -55,8 +55,8 @@ impl TabulatedProfile {
     /// Fewest rows of a table.
     pub const FEWEST_ROWS: usize = 4;
 
-    /// Most rows of a table.
-    pub const MOST_ROWS: usize = 1_000_000;
+    /// Most rows of a table: so many take a second or two to be prepared, and are more than any number of springs resolves.
+    pub const MOST_ROWS: usize = 100_000;
 
     /// Profile through rows.
     ///

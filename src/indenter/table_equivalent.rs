@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use rayon::prelude::*;
+
 use super::cubic::Cubic;
 use super::power_law_factor;
 use super::table::TabulatedProfile;
@@ -13,6 +15,9 @@ use crate::roots;
 
 /// Fall of `g` from one knot to the next, relative, that is rounding: where a wave is flat, a million rows rise by less.
 const ROUNDING: f64 = 1e-13;
+
+/// Distance of two rows, relative to their radius, of which a few roundings leave nothing.
+const CLOSEST: f64 = 16.0 * f64::EPSILON;
 
 /// Pieces of `g` to one of `f`.
 const DIVISIONS: usize = 2;
@@ -54,10 +59,14 @@ impl TabulatedEquivalent {
         knots.push(0.0);
         values.push(0.0);
         slopes.push(power_law_factor(1.0, grading) * table.profile_derivative(0.0));
+        let share = |part: usize| part as f64 / DIVISIONS as f64;
+        // Each by itself, so that threads change nothing; a few rows are not worth one.
+        let pieces = (0..radii.len() - 1).into_par_iter().with_min_len(256);
+        let found: Vec<[[f64; 2]; DIVISIONS]> =
+            pieces.map(|piece| std::array::from_fn(|part| transform.at(piece, share(part + 1)))).collect();
         for (piece, pair) in radii.windows(2).enumerate() {
             for part in 1..=DIVISIONS {
-                let share = part as f64 / DIVISIONS as f64;
-                let [value, slope] = transform.at(piece, share);
+                let (share, [value, slope]) = (share(part), found[piece][part - 1]);
                 let knot = if part == DIVISIONS { pair[1] } else { pair[0] + share * (pair[1] - pair[0]) };
                 // Rows as close as numbers can be have none between them.
                 if knot > knots[knots.len() - 1] && (part == DIVISIONS || knot < pair[1]) {
@@ -71,10 +80,16 @@ impl TabulatedEquivalent {
         let curve = Cubic::new(knots, &values, slopes);
         let last = values.len() - 1;
         if !(0..=last).all(|i| curve.piece(i).iter().all(|it| it.is_finite())) {
-            return Err(Error::Inconsistent {
-                what: "indenter.table",
-                why: "its equivalent profile is too large to compute with; check the units".into(),
-            });
+            let close = radii.windows(2).find(|pair| pair[1] - pair[0] <= CLOSEST * pair[1]);
+            let why = match close {
+                Some([one, other]) => {
+                    format!(
+                        "its rows at {one:e} m and {other:e} m are as close as numbers can be; remove one"
+                    )
+                }
+                _ => "its equivalent profile is too large to compute with; check the units".into(),
+            };
+            return Err(Error::Inconsistent { what: "indenter.table", why });
         }
         let rises = |i: &usize| values[i + 1] > values[*i] || values[i + 1] == 0.0;
         let rising = (0..last).take_while(rises).count();

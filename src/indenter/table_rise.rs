@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::cubic::Cubic;
 use crate::chebyshev::PiecewiseChebyshev;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::quadrature::Rule;
 
 /// Nodes for a kernel that is singular at least one width away: its error falls as 5.8^(-2n), and as 5.8^-n where it is interpolated.
@@ -24,6 +24,14 @@ const BEYOND: f64 = 0.2;
 
 /// To what the series resolve the transform, relative, where the kinks of the table let them.
 const ACCURACY: f64 = 1e-11;
+
+/// Pieces up to which they do. Rough rows would take several for each row, and minutes: beyond, a coarser accuracy is enough, up to most pieces.
+const MANY_PIECES: usize = 2048;
+const ENOUGH: f64 = 1e-8;
+const MOST_PIECES: usize = 4096;
+
+/// What may be left unresolved by them.
+const COARSEST: f64 = 1e-6;
 
 /// Steps between the ends of series, as a factor: those who need nearly the same share one.
 const STEP: f64 = 1.25;
@@ -196,22 +204,37 @@ impl RiseTransform {
     }
 
     /// Series of [`RiseTransform::mean`] up to [`RiseTransform::MARGIN`] of `r² - c²` at a logarithm, or farther.
-    pub(crate) fn series(&self, logarithm: f64) -> Arc<PiecewiseChebyshev> {
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] where rows are too rough for as many pieces as can be had in a second.
+    pub(crate) fn series(&self, logarithm: f64) -> Result<Arc<PiecewiseChebyshev>> {
         let least = (Self::MARGIN * logarithm.exp_m1()).ln_1p();
         let step = (least.ln() / STEP.ln()).ceil();
         let end = STEP.powf(step).min(self.knots[self.knots.len() - 1]).max(least);
         let known = || self.series.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(series) = known().as_ref().filter(|series| series.edges().last() == Some(&end)) {
-            return Arc::clone(series);
+            return Ok(Arc::clone(series));
         }
         let narrowest = |place: f64| {
             let piece = self.piece(place);
             self.knots[piece + 1] - self.knots[piece]
         };
         // Not under the lock, as for the transform itself.
-        let series = Arc::new(PiecewiseChebyshev::fit(|l| self.mean(l), end, ACCURACY, narrowest));
+        let series = PiecewiseChebyshev::fit(|l| self.mean(l), end, accuracy, narrowest);
+        if series.unresolved() > COARSEST {
+            return Err(Error::Inconsistent {
+                what: "indenter.table",
+                why: format!(
+                    "its rows are so rough that {MOST_PIECES} pieces leave {:.1e} of the wear unresolved between the edge of stick and {} m; \
+                     smooth it, or give fewer rows",
+                    series.unresolved(),
+                    self.radius * (0.5 * end).exp()
+                ),
+            });
+        }
+        let series = Arc::new(series);
         *known() = Some(Arc::clone(&series));
-        series
+        Ok(series)
     }
 
     /// The piece that holds a logarithm.
@@ -319,6 +342,15 @@ impl RiseTransform {
         }
         self.blocks.push(block);
         self.blocks.len() - 1
+    }
+}
+
+/// What so many pieces of a series are to resolve.
+fn accuracy(pieces: usize) -> f64 {
+    match pieces {
+        ..MANY_PIECES => ACCURACY,
+        ..MOST_PIECES => ENOUGH,
+        _ => f64::INFINITY,
     }
 }
 

@@ -73,6 +73,10 @@ impl Transform {
         let left = self.knots[piece];
         let width = (self.knots[piece + 1] - left) * share;
         let x = left + width;
+        // Of rows as close as numbers can be, nothing lies between: the end of the piece before is the singular one.
+        if x <= left && piece > 0 {
+            return self.at(piece - 1, 1.0);
+        }
         let scale = width.powf(self.nu) / self.nu;
         let mut sum = [0.0; 2];
         for (node, weight) in self.end_rule.nodes.iter().zip(&self.end_rule.weights) {
@@ -125,6 +129,9 @@ impl Transform {
         while high > left {
             let low = left.max(high - (x - high));
             let width = high - low;
+            if width <= 0.0 {
+                break;
+            }
             for (node, weight) in self.rule.nodes.iter().zip(&self.rule.weights) {
                 let r = low + width * node;
                 self.add(piece, r - left, width * weight * self.kernel(x, r), sum);

@@ -8,6 +8,8 @@ use fretwear::report::TableFile;
 use fretwear::snapshot::{ResultTables, check_distinct};
 use fretwear::{Error, Result};
 
+use super::result_file;
+
 /// Points around the axis.
 const SECTORS: usize = 72;
 
@@ -29,6 +31,9 @@ pub struct Export {
     /// Overwrite the output if it exists
     #[arg(long, requires = "output")]
     force: bool,
+    /// Read the result file even if it does not fit its checksum or has none; a damaged one may hang or end this program
+    #[arg(long)]
+    unchecked: bool,
 }
 
 /// Writes what was asked for; what is left to print.
@@ -37,17 +42,18 @@ pub fn export(arguments: &Export) -> Result<String> {
         return list(arguments);
     }
     let table = arguments.table.as_deref();
-    let Some(output) = &arguments.output else { return ResultTables::csv(&arguments.file, table) };
+    let source = || result_file(&arguments.file, arguments.unchecked);
+    let Some(output) = &arguments.output else { return ResultTables::csv(source()?, table) };
     check_distinct(output, &arguments.file)?;
     match output.extension().and_then(|it| it.to_str()) {
         Some("csv") => {
             let file = TableFile::new(output, arguments.force)?;
-            file.write(&ResultTables::csv(&arguments.file, table)?)?;
+            file.write(&ResultTables::csv(source()?, table)?)?;
         }
         Some("vtkhdf") if table.is_none() => {
             // Before the surface is made.
             drop(TableFile::new(output, arguments.force)?);
-            worn_surface(&arguments.file, SECTORS)?.write(output, arguments.force)?;
+            worn_surface(source()?, SECTORS)?.write(output, arguments.force)?;
         }
         Some("vtkhdf") => return Err(refused(output, "a surface has no table; leave out --table")),
         _ => {
@@ -63,7 +69,7 @@ fn refused(output: &std::path::Path, why: &str) -> Error {
 }
 
 fn list(arguments: &Export) -> Result<String> {
-    let tables = ResultTables::open(&arguments.file)?;
+    let tables = ResultTables::open(result_file(&arguments.file, arguments.unchecked)?)?;
     let mut text = String::new();
     for table in tables.summaries() {
         let usual = if table.name == tables.usual() { ", the one taken by default" } else { "" };

@@ -8,6 +8,8 @@ use fretwear::report::TableFile;
 use fretwear::snapshot::check_distinct;
 use fretwear::{Result, page};
 
+use super::result_file;
+
 /// The file a page is made of, and where it goes.
 #[derive(Args)]
 pub struct Report {
@@ -20,12 +22,15 @@ pub struct Report {
     /// Overwrite the page if it exists
     #[arg(long)]
     force: bool,
+    /// Read the result file even if it does not fit its checksum or has none; a damaged one may hang or end this program
+    #[arg(long)]
+    unchecked: bool,
 }
 
 pub fn report(arguments: &Report) -> Result<String> {
     check_distinct(&arguments.output, &arguments.file)?;
     let file = TableFile::new(&arguments.output, arguments.force)?;
-    let results = Results::read(&arguments.file)?;
+    let results = Results::read(result_file(&arguments.file, arguments.unchecked)?)?;
     file.write(&page::report(&results, &arguments.file)?)?;
     Ok(String::new())
 }

@@ -9,7 +9,7 @@ use fretwear::report::{self, UniversalityReport};
 use fretwear::scene::UniversalityStudy;
 use fretwear::{Result, universality};
 
-use super::{INTERRUPTED, complain, done};
+use super::{INTERRUPTED, complain, done, threads};
 
 /// The study and where its results go.
 #[derive(Args)]
@@ -26,7 +26,7 @@ pub struct Universality {
     /// Print the complete scene of a case, and run nothing
     #[arg(long, value_name = "CASE", conflicts_with = "output")]
     scene: Option<String>,
-    /// Threads, each of which runs one case at a time; by default all cores
+    /// Threads, each of which runs one case at a time; at most, and by default, one for each core
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Print one JSON object
@@ -50,8 +50,7 @@ pub fn universality(arguments: &Universality) -> Result<(String, ExitCode)> {
         let lines = study.cases().iter().map(|case| format!("{}: {}\n", case.predicted.name(), case.name));
         return Ok(done(lines.collect()));
     };
-    let options =
-        universality::Options { threads: arguments.threads.map(usize::from), overwrite: arguments.force };
+    let options = universality::Options { threads: threads(arguments.threads), overwrite: arguments.force };
     let ready = universality::Universality::new(&study, folder, &options)?;
     let shown = !arguments.quiet && !arguments.json;
     if shown {

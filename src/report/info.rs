@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::text::{Rows, Scale, number, recorded_path, table};
 use crate::error::Result;
-use crate::snapshot::{ArraySummary, Checkpoint, LimitDistance, RunFile, Snapshot, largest};
+use crate::snapshot::{ArraySummary, Checkpoint, LimitDistance, ResultPath, RunFile, Snapshot, largest};
 
 /// The content of a result file in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -80,8 +80,9 @@ impl InfoReport {
     ///
     /// # Errors
     /// As [`RunFile::open`].
-    pub fn read(path: &Path) -> Result<Self> {
-        Ok(Self::new(path, &RunFile::open(path)?))
+    pub fn read<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
+        let file = file.into();
+        Ok(Self::new(file.path(), &RunFile::open(file)?))
     }
 
     /// Describes a run that has been read from `path`.

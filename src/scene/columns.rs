@@ -1,16 +1,15 @@
 //! Files of columns: text with one row of numbers a line, as instruments and spreadsheets write it.
 
-use std::fs::{self, File};
-use std::io::Read;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
 use super::document::printable;
+use super::input::{self, Pipes, Unread};
 use super::quantity::{Dimension, parse};
 use crate::error::{Error, Result};
 
 /// Size of the largest file read, bytes: a million rows of a hundred characters.
-const LARGEST: u64 = 100_000_000;
+pub(super) const LARGEST: u64 = 100_000_000;
 
 /// What stands in a file, for the reader and for its messages.
 pub(super) struct Kind<'a> {
@@ -69,28 +68,18 @@ impl Kind<'_> {
     }
 
     fn text_of(&self, path: &Path) -> std::result::Result<String, String> {
-        let reason = |error: std::io::Error| match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                format!("there is no such file; {} is taken relative to the folder of the scene", self.key)
-            }
-            _ => format!("cannot be read: {error}"),
+        let refused = |unread: Unread| {
+            let cure = match unread {
+                Unread::Missing => format!("{} is taken relative to the folder of the scene", self.key),
+                Unread::TooLarge(_) => {
+                    format!("{} has {} columns, and fewer rows will do", self.what, self.columns[0])
+                }
+                Unread::NotText(_) => "save the file in UTF-8".into(),
+                _ => format!("name a file of {}", self.columns()),
+            };
+            format!("{unread}; {cure}")
         };
-        let found = fs::metadata(path).map_err(reason)?;
-        if found.is_dir() {
-            return Err(format!("is a directory; name a file of {}", self.columns()));
-        }
-        if !found.is_file() {
-            return Err(format!("is not a regular file; name a file of {}", self.columns()));
-        }
-        let mut bytes = Vec::new();
-        // One byte past the limit tells a file that is too large from one that just fits.
-        File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes)).map_err(reason)?;
-        if bytes.len() as u64 > LARGEST {
-            let (what, columns) = (self.what, self.columns[0]);
-            return Err(format!(
-                "is larger than {LARGEST} bytes; {what} has {columns} columns, and fewer rows will do"
-            ));
-        }
+        let bytes = input::bytes(path, LARGEST, Pipes::Refused).map_err(refused)?;
         if bytes.contains(&0) {
             let name = self.what.rsplit(' ').next().unwrap_or_default();
             return Err(format!(
@@ -98,11 +87,7 @@ impl Kind<'_> {
                 self.columns()
             ));
         }
-        String::from_utf8(bytes).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
-            format!("line {line} is not UTF-8 text; save the file in UTF-8")
-        })
+        input::text(bytes).map_err(refused)
     }
 
     fn rows(&self, text: &str) -> std::result::Result<Vec<Row>, String> {

@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::document::{Section, Source};
+use super::input::{self, Pipes};
 use super::quantity::split_number;
 use super::sampling::{Distribution, UnitCube};
 use super::unit::Unit;
-use super::{LARGEST, Rows, Scene, read_text};
+use super::{LARGEST, Rows, Scene, columns, read_text};
 use crate::error::{Error, Result};
 use crate::snapshot::layout::FORMAT_VERSION;
 use crate::snapshot::{Fingerprint, SweepFile};
@@ -208,8 +209,8 @@ impl Study {
             .add(self.base_text.as_bytes());
         for file in self.files() {
             // A file that cannot be read is an error of the scenes that name it.
-            let file = Some(self.folder.join(file)).filter(|it| it.is_file());
-            parts = parts.add(&file.and_then(|it| std::fs::read(it).ok()).unwrap_or_default());
+            let read = input::bytes(&self.folder.join(file), columns::LARGEST, Pipes::Refused);
+            parts = parts.add(&read.unwrap_or_default());
         }
         parts.finish()
     }

@@ -10,6 +10,7 @@ use super::atomic::AtomicFile;
 use super::labelled::{Dimension, laid_out, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader;
+use super::seal::{ResultPath, sealed};
 use super::shard::unicode;
 use crate::error::Result;
 
@@ -87,7 +88,7 @@ impl ArrayFile {
     /// If an array names a coordinate that is not there, or does not have the product of their lengths as its own.
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
         let mut file = AtomicFile::new(path, overwrite)?;
-        file.write(&laid_out(path, |file| self.put_into(file))?)
+        file.write(&sealed(laid_out(path, |file| self.put_into(file))?))
     }
 
     fn put_into(&self, file: &File) -> Hdf5Result<()> {
@@ -154,8 +155,8 @@ impl ArraySummary {
     ///
     /// # Errors
     /// [`Error::File`](crate::Error::File) if it is no HDF5 file or damaged.
-    pub fn read(path: &Path) -> Result<Option<Self>> {
-        let (source, file) = reader::open(path)?;
+    pub fn read<'a>(file: impl Into<ResultPath<'a>>) -> Result<Option<Self>> {
+        let (source, file) = reader::open(file)?;
         let Some(format) = source.format(&file)?.filter(|format| *format != Format::Run) else {
             return Ok(None);
         };

@@ -1,15 +1,13 @@
 //! Reading the file of a run; nothing in a file is trusted.
 
-use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File, Group, H5Type, Location};
 
-use super::atomic::failure;
 use super::layout::*;
+use super::seal::ResultPath;
 use super::{Checkpoint, Format, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::indenter::TabulatedProfile;
@@ -17,7 +15,6 @@ use crate::loading::RecordedPath;
 use crate::model::{Linearised, Past, PastPoint, StickEdge};
 use crate::stick_slip::Regime;
 
-const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 const NOT_A_RUN: &str = "give a file that `fretwear run` wrote";
 const WRITE_AGAIN: &str = "the file is damaged or was edited, write it again with the command that wrote it";
 
@@ -48,8 +45,8 @@ impl RunFile {
     ///
     /// # Errors
     /// [`Error::File`] names the file, the dataset or attribute that cannot be used, and the cure.
-    pub fn open(path: &Path) -> Result<Self> {
-        let (source, file) = open(path)?;
+    pub fn open<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
+        let (source, file) = open(file)?;
         Self::from_group(&source, &file)
     }
 
@@ -90,9 +87,9 @@ impl RunFile {
     }
 }
 
-/// Opens an HDF5 file for reading.
-pub(super) fn open(path: &Path) -> Result<(Source, File)> {
-    check_signature(path)?;
+/// Opens an HDF5 file for reading, the one way to the library: what is damaged does not get there.
+pub(super) fn open<'a>(file: impl Into<ResultPath<'a>>) -> Result<(Source, File)> {
+    let path = file.into().ready()?.path();
     let source = Source { path: path.to_owned() };
     // No lock is needed: a file is replaced as a whole, so what is opened here never changes.
     let file = File::with_options()
@@ -100,23 +97,6 @@ pub(super) fn open(path: &Path) -> Result<(Source, File)> {
         .open(path)
         .map_err(|error| source.error(format!("is damaged or cut short ({error}); {WRITE_AGAIN}")))?;
     Ok((source, file))
-}
-
-/// Tells missing and foreign files apart before the HDF5 library sees them.
-fn check_signature(path: &Path) -> Result<()> {
-    let refuse = |why: &str| Err(Error::File { path: path.to_owned(), why: format!("{why}; {NOT_A_RUN}") });
-    let found = fs::metadata(path).map_err(|error| failure(path, &error))?;
-    if !found.is_file() {
-        return refuse("is not a file");
-    }
-    let mut start = Vec::new();
-    let file = fs::File::open(path).map_err(|error| failure(path, &error))?;
-    file.take(SIGNATURE.len() as u64).read_to_end(&mut start).map_err(|error| failure(path, &error))?;
-    match start.as_slice() {
-        [] => refuse("is empty"),
-        start if start != SIGNATURE => refuse("is not an HDF5 file"),
-        _ => Ok(()),
-    }
 }
 
 /// The file that is read, for its name in errors.

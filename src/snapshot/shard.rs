@@ -12,6 +12,7 @@ use super::encode::Run;
 use super::labelled::{Dimension, create_group, file_on_disk, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader::{self, Source};
+use super::seal::{ResultPath, seal};
 use super::{Format, RunFile, StopReason};
 use crate::error::{Error, Result};
 
@@ -177,6 +178,7 @@ impl SweepFile {
                 why: format!("could not be written, is the disk full? ({})", first_line(error)),
             };
             self.lay_out(temporary).map_err(|error| failed(&error))?;
+            seal(temporary).map_err(|error| failed(&error))?;
             // The library has lost errors of a full disk.
             let (source, file) = reader::open(temporary).map_err(|error| failed(&error))?;
             let rows: Vec<i64> = source.values(&file, SCENE, &[Some(self.scenes.len())])?;
@@ -246,8 +248,8 @@ impl SweepFile {
     ///
     /// # Errors
     /// [`Error::File`] names the file and what is wrong with it.
-    pub fn read(path: &Path) -> Result<Self> {
-        let (source, file) = reader::open(path)?;
+    pub fn read<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
+        let (source, file) = reader::open(file)?;
         let header = header(&source, &file)?;
         let program_version = source.text(&file, "program_version")?;
         let complete = source.integer(&file, "complete")? != 0;

@@ -1,7 +1,7 @@
 //! Reading a file of labelled arrays; nothing in a file is trusted.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File};
@@ -9,6 +9,7 @@ use hdf5::{Dataset, File};
 use super::Format;
 use super::arrays::ArrayFile;
 use super::reader::{self, Source};
+use super::seal::ResultPath;
 use crate::error::{Error, Result};
 
 /// Most dimensions that an array of this program has.
@@ -18,8 +19,8 @@ const MOST_DIMENSIONS: usize = 2;
 ///
 /// # Errors
 /// [`Error::File`] if it is no HDF5 file, is damaged or was not written by this program.
-pub fn format_of(path: &Path) -> Result<Format> {
-    let (source, file) = reader::open(path)?;
+pub fn format_of<'a>(file: impl Into<ResultPath<'a>>) -> Result<Format> {
+    let (source, file) = reader::open(file)?;
     source.format(&file)?.ok_or_else(|| {
         let why = "is an HDF5 file, but not one of this program; give a result file that fretwear wrote";
         source.error(why.into())
@@ -59,8 +60,10 @@ impl StoredArrays {
     ///
     /// # Errors
     /// [`Error::File`] names the file, what in it cannot be used, and the cure.
-    pub fn read(path: &Path, format: Format) -> Result<Self> {
-        let (source, file) = reader::open(path)?;
+    pub fn read<'a>(file: impl Into<ResultPath<'a>>, format: Format) -> Result<Self> {
+        let file = file.into();
+        let path = file.path();
+        let (source, file) = reader::open(file)?;
         source.check_format(
             &file,
             format,

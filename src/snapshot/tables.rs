@@ -1,7 +1,5 @@
 //! Result files of every kind as tables: variables over the same dimensions stand beside each other, one row for each place along them.
 
-use std::path::Path;
-
 use hdf5::{Dataset, File, Group, IndexType, IterationOrder};
 
 use super::Format;
@@ -9,6 +7,7 @@ use super::folder::{cell, quoted, table};
 use super::labelled::{is_dimension, runs_along};
 use super::layout::FLAG_MEANINGS;
 use super::reader::{self, Source};
+use super::seal::ResultPath;
 use super::shard::RUNS;
 use crate::error::{Error, Result, most_alike};
 
@@ -69,8 +68,8 @@ impl ResultTables {
     ///
     /// # Errors
     /// [`Error::File`] if it is no HDF5 file, not one of this program's, or damaged.
-    pub fn open(path: &Path) -> Result<Self> {
-        let (source, file) = reader::open(path)?;
+    pub fn open<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
+        let (source, file) = reader::open(file)?;
         let usual = match source.format(&file)? {
             Some(Format::Run) => "time",
             Some(Format::Sweep) => "scene",
@@ -91,12 +90,13 @@ impl ResultTables {
     ///
     /// # Errors
     /// As [`ResultTables::open`]; also if there is no such table.
-    pub fn csv(path: &Path, name: Option<&str>) -> Result<String> {
-        let mut this = Self::open(path)?;
+    pub fn csv<'a>(file: impl Into<ResultPath<'a>>, name: Option<&str>) -> Result<String> {
+        let file = file.into().ready()?;
+        let mut this = Self::open(file)?;
         let name = name.unwrap_or(this.usual);
         let run = name.strip_prefix("runs/").and_then(|rest| rest.split('/').next());
         if let Some(run) = run.filter(|run| this.runs.iter().skip(1).any(|other| other == run)) {
-            this.walk_run(&reader::open(path)?.1, run)?;
+            this.walk_run(&reader::open(file)?.1, run)?;
         }
         match this.tables.iter().find(|table| table.name == name) {
             Some(table) => this.text(table),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::atomic::AtomicFile;
 use super::encode::Run;
 use super::labelled::laid_out;
+use super::seal::sealed;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
 use crate::error::Result;
 
@@ -143,7 +144,7 @@ impl RunWriter {
     /// [`Error::File`](crate::Error::File) names the file and the cure; the previous save is then still there.
     pub fn save(&mut self, checkpoint: &Checkpoint, stop_reason: StopReason, complete: bool) -> Result<()> {
         let run = Run { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
-        let bytes = laid_out(self.path(), |file| run.put_into(file))?;
+        let bytes = sealed(laid_out(self.path(), |file| run.put_into(file))?);
         if let Target::Later(path) = &self.file {
             self.file = Target::Ready(AtomicFile::new(path, true)?);
         }

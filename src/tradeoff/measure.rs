@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::run::{Run, Shared, hash_of, is_of, operator_bytes};
 use crate::scene::Scene;
+use crate::scene::input::{self, Pipes};
 use crate::simulation::{Flow, Observer, Simulation};
 use crate::snapshot::{AtomicFile, Fingerprint, RunFile, Scratch, StopReason, failure};
 
@@ -19,6 +20,9 @@ const PURPOSE: &str = "runs of a trade-off";
 
 /// Time after which a run is not repeated, s, all repeats together.
 const ENOUGH: f64 = 0.3;
+
+/// Size of the largest record read, bytes: one holds a scene.
+const LARGEST_RECORD: u64 = 100_000_000;
 
 /// What a candidate cost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -150,7 +154,9 @@ impl<'a> Runs<'a> {
         most_seconds: f64,
     ) -> Result<Option<Measurement>> {
         let path = self.scratch.path().join(format!("{name}.json"));
-        let before = std::fs::read(&path).ok().and_then(|text| serde_json::from_slice::<Record>(&text).ok());
+        let before = input::bytes(&path, LARGEST_RECORD, Pipes::Refused)
+            .ok()
+            .and_then(|text| serde_json::from_slice::<Record>(&text).ok());
         let hash = self.hash(scene, most_seconds);
         let fits = |it: &Record| {
             let has_run = || self.read(name).is_ok_and(|run| is_of(&run, scene));

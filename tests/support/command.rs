@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 use serde_json::Value;
 
@@ -63,4 +64,20 @@ pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
+}
+
+/// Its answer, which must come: a program that does not end is killed, and fails the test.
+pub fn ended(mut command: Command) -> Output {
+    const PATIENCE: Duration = Duration::from_secs(60);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+    let process = child.id().to_string();
+    let (sender, receiver) = std::sync::mpsc::channel();
+    std::thread::spawn(move || sender.send(child.wait_with_output()));
+    match receiver.recv_timeout(PATIENCE) {
+        Ok(output) => output.expect("an answer"),
+        Err(_) => {
+            let _ = Command::new("kill").args(["-9", &process]).status();
+            panic!("{command:?} does not end");
+        }
+    }
 }
