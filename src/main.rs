@@ -110,7 +110,7 @@ struct Run {
     #[arg(long)]
     force: bool,
     /// Go on even if the result file does not fit its checksum or has none; a damaged one may hang or end this program
-    #[arg(long, requires = "resume")]
+    #[arg(long, conflicts_with = "scene")]
     unchecked: bool,
 }
 

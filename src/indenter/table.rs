@@ -7,6 +7,9 @@ use super::table_equivalent::TabulatedEquivalent;
 use crate::error::{Error, Result};
 use crate::grid::lagrange_derivative;
 
+/// Least distance of neighbouring rows, relative to their radius: the slope between them has an error of a millionth then, by rounding alone.
+const CLOSEST: f64 = 1e-10;
+
 /// Points of the polynomials whose slopes are taken at the rows.
 const POINTS: usize = 5;
 
@@ -166,6 +169,13 @@ fn check(radius: &[f64], height: &[f64]) -> std::result::Result<(), String> {
             "radius {:e} m follows {:e} m; they must increase",
             radius[row],
             radius[row - 1]
+        ));
+    }
+    if let Some(row) = (1..rows).find(|&i| radius[i] - radius[i - 1] <= CLOSEST * radius[i]) {
+        return Err(format!(
+            "its rows at r = {:e} m and r = {:e} m are so close that rounding decides the slope between them; remove one",
+            radius[row - 1],
+            radius[row]
         ));
     }
     if let Some(row) = (0..rows).find(|&i| height[i] < 0.0) {

@@ -16,9 +16,6 @@ use crate::roots;
 /// Fall of `g` from one knot to the next, relative, that is rounding: where a wave is flat, a million rows rise by less.
 const ROUNDING: f64 = 1e-13;
 
-/// Distance of two rows, relative to their radius, of which a few roundings leave nothing.
-const CLOSEST: f64 = 16.0 * f64::EPSILON;
-
 /// Pieces of `g` to one of `f`.
 const DIVISIONS: usize = 2;
 
@@ -80,16 +77,10 @@ impl TabulatedEquivalent {
         let curve = Cubic::new(knots, &values, slopes);
         let last = values.len() - 1;
         if !(0..=last).all(|i| curve.piece(i).iter().all(|it| it.is_finite())) {
-            let close = radii.windows(2).find(|pair| pair[1] - pair[0] <= CLOSEST * pair[1]);
-            let why = match close {
-                Some([one, other]) => {
-                    format!(
-                        "its rows at {one:e} m and {other:e} m are as close as numbers can be; remove one"
-                    )
-                }
-                _ => "its equivalent profile is too large to compute with; check the units".into(),
-            };
-            return Err(Error::Inconsistent { what: "indenter.table", why });
+            return Err(Error::Inconsistent {
+                what: "indenter.table",
+                why: "its equivalent profile is too large to compute with; check the units".into(),
+            });
         }
         let rises = |i: &usize| values[i + 1] > values[*i] || values[i + 1] == 0.0;
         let rising = (0..last).take_while(rises).count();
