@@ -416,33 +416,16 @@ fn large_tables_carry_what_the_sphere_does_that_they_sample() {
 
 /// Rows a few roundings apart were once walked between for ever, or their rounding gave a slope and with it a wrong volume.
 #[test]
-fn rows_too_close_for_a_slope_are_refused_and_others_do_no_harm() {
-    let mut worst = 0.0f64;
+fn rows_too_close_for_a_slope_are_refused() {
     for place in 0..8 {
         let close = 1e-4 * (1.0 + 0.137 * f64::from(place)) / 3.0;
-        for apart in [f64::EPSILON, 5.0 * f64::EPSILON, 1e-13, 9e-11, 1.1e-10, 1e-8] {
+        for apart in [f64::EPSILON, 5.0 * f64::EPSILON, 1e-13, 9e-11] {
             let mut radius = even(40, 1e-3);
             radius.extend((0..4).map(|row| close * (1.0 + f64::from(row) * apart)));
             radius.sort_by(f64::total_cmp);
             let height: Vec<f64> = radius.iter().map(|r| 50.0 * r * r).collect();
-            let profile = TabulatedProfile::new("rows", radius, height);
-            if apart < 1e-10 {
-                let message = profile.expect_err("too close").to_string();
-                assert!(
-                    message.starts_with("indenter.table: ") && message.contains("remove one"),
-                    "{message}"
-                );
-                continue;
-            }
-            let indenter = Indenter::Table(Arc::new(profile.expect("rows")));
-            for grading in [-0.9, 0.0, 0.5, 0.99] {
-                let volume = |indenter: &Indenter| {
-                    LimitingShape::from_stick_ratio(indenter, grading, 1e-6, 0.7).unwrap().wear_volume()
-                };
-                worst = worst.max(relative(volume(&indenter), volume(&Indenter::paraboloid(0.01).unwrap())));
-            }
+            let message = TabulatedProfile::new("rows", radius, height).expect_err("too close").to_string();
+            assert!(message.starts_with("indenter.table: ") && message.contains("remove one"), "{message}");
         }
     }
-    println!("{worst:e}");
-    assert!(worst < 1e-6, "{worst:e}");
 }
