@@ -235,6 +235,8 @@ pub enum Style {
         /// From 0 to 1.
         opacity: f64,
     },
+    /// Filled rings as those of a region, white with oblique lines: of what is there nothing is known.
+    Hatched,
 }
 
 /// Pattern of a line.

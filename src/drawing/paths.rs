@@ -14,8 +14,8 @@ pub(super) fn path_data(style: &Style, points: &[[f64; 2]]) -> String {
                 .filter(|point| is_there(point))
                 .for_each(|point| data += &symbol(*shape, *radius, *point));
         }
-        Style::Line { .. } | Style::Region { .. } => {
-            let closed = matches!(style, Style::Region { .. });
+        Style::Line { .. } | Style::Region { .. } | Style::Hatched => {
+            let closed = !matches!(style, Style::Line { .. });
             for run in points.split(|point| !is_there(point)).filter(|run| !run.is_empty()) {
                 for (place, [x, y]) in run.iter().enumerate() {
                     let command = if place == 0 { 'M' } else { 'L' };

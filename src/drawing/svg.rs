@@ -13,6 +13,8 @@ use super::{Bar, Colour, Dash, Figure, Frame, Label, Series, Style};
 
 /// Width of frames and ticks, px.
 const HAIRLINE: f64 = 0.8;
+/// Distance of hatching lines, px.
+const HATCH: f64 = 5.0;
 /// Height of capital letters relative to the size of letters.
 const CAPITALS: f64 = 0.73;
 
@@ -37,7 +39,8 @@ impl Drawing {
     pub fn new(figure: &Figure, name: &str) -> Self {
         let letters = Letters::new();
         let layout = Layout::new(figure, &letters);
-        let mut page = Page { letters, name, body: String::new(), glyphs: BTreeMap::new() };
+        let mut page =
+            Page { letters, name, body: String::new(), glyphs: BTreeMap::new(), patterns: BTreeMap::new() };
         if let Some(title) = &figure.title {
             page.text(title, [MARGIN, MARGIN + TITLE], TITLE, 0.0, Colour::BLACK);
         }
@@ -60,6 +63,8 @@ struct Page<'a> {
     body: String,
     /// The letters that have been used, and their names.
     glyphs: BTreeMap<Glyph, String>,
+    /// The hatchings that have been used, by their names.
+    patterns: BTreeMap<String, String>,
 }
 
 impl Page<'_> {
@@ -78,6 +83,7 @@ impl Page<'_> {
         for (glyph, name) in &self.glyphs {
             let _ = writeln!(svg, "<path id=\"{name}\" d=\"{}\"/>", self.letters.outline(*glyph));
         }
+        self.patterns.values().for_each(|pattern| svg += pattern);
         svg + "</defs>\n" + &self.body + "</svg>\n"
     }
 
@@ -257,7 +263,7 @@ impl Page<'_> {
         let points = match series.style {
             Style::Line { .. } => vec![[x, y], [x + SWATCH, y]],
             Style::Points { .. } => vec![[x + 0.5 * SWATCH, y]],
-            Style::Region { .. } => {
+            Style::Region { .. } | Style::Hatched => {
                 vec![[x, y - 4.5], [x + SWATCH, y - 4.5], [x + SWATCH, y + 4.5], [x, y + 4.5]]
             }
         };
@@ -294,8 +300,24 @@ impl Page<'_> {
                     self.put(format_args!(" fill-opacity=\"{opacity}\""));
                 }
             }
+            Style::Hatched => {
+                let pattern = self.hatch(colour);
+                self.put(format_args!(" fill=\"url(#{pattern})\" fill-rule=\"evenodd\""));
+            }
         }
         self.put(format_args!("/>\n"));
+    }
+
+    /// The name of oblique lines of a colour on white.
+    fn hatch(&mut self, colour: Colour) -> String {
+        let name = format!("{}hatch{}", self.name, colour.to_string().trim_start_matches('#'));
+        let pattern = format!(
+            "<pattern id=\"{name}\" patternUnits=\"userSpaceOnUse\" width=\"{HATCH}\" height=\"{HATCH}\" \
+             patternTransform=\"rotate(45)\"><rect width=\"{HATCH}\" height=\"{HATCH}\" fill=\"#fff\"/>\
+             <rect width=\"1.3\" height=\"{HATCH}\" fill=\"{colour}\"/></pattern>\n"
+        );
+        self.patterns.insert(name.clone(), pattern);
+        name
     }
 
     fn label(&mut self, label: &Label, [x, y]: [f64; 2]) {

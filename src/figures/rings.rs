@@ -10,16 +10,21 @@ pub(super) struct Grid<'a> {
     /// Coordinates, shapes `(n,)` and `(m,)`, increasing.
     pub first: &'a [f64],
     pub second: &'a [f64],
-    /// Shape `(n, m)`, finite.
+    /// Shape `(n, m)`; not a number where there is none.
     pub values: &'a [f64],
 }
 
 impl Grid<'_> {
     /// The rings around where the values, taken as linear along the edges of the grid, reach a level; after each a point that is not a number.
+    ///
+    /// Cells with a corner that has no value are left out; [`Grid::gaps`] are they.
     pub(super) fn rings(&self, level: f64) -> Vec<[f64; 2]> {
         let mut sides: BTreeMap<(Key, Key), usize> = BTreeMap::new();
         for i in 1..self.first.len() {
             for j in 1..self.second.len() {
+                if self.lacks(i, j) {
+                    continue;
+                }
                 let part = self.part_of_cell(i, j, level);
                 for (place, from) in part.iter().enumerate() {
                     let to = part[(place + 1) % part.len()];
@@ -33,6 +38,35 @@ impl Grid<'_> {
         }
         sides.retain(|(from, to), count| *count > 0 && from != to);
         joined(sides)
+    }
+
+    /// Whether a corner of a cell has no value.
+    fn lacks(&self, i: usize, j: usize) -> bool {
+        let value = |i: usize, j: usize| self.values[i * self.second.len() + j];
+        [value(i - 1, j - 1), value(i, j - 1), value(i, j), value(i - 1, j)].iter().any(|it| it.is_nan())
+    }
+
+    /// The cells with a corner that has no value, as rectangles; after each a point that is not a number.
+    pub(super) fn gaps(&self) -> Vec<[f64; 2]> {
+        let mut rings = vec![];
+        for i in 1..self.first.len() {
+            let mut next = 1;
+            while next < self.second.len() {
+                let start = next;
+                next += 1;
+                if !self.lacks(i, start) {
+                    continue;
+                }
+                // Those that follow each other are one.
+                while next < self.second.len() && self.lacks(i, next) {
+                    next += 1;
+                }
+                let ([left, right], [low, high]) =
+                    ([self.first[i - 1], self.first[i]], [self.second[start - 1], self.second[next - 1]]);
+                rings.extend([[left, low], [right, low], [right, high], [left, high], [f64::NAN; 2]]);
+            }
+        }
+        rings
     }
 
     /// Corner of the part of a cell that reaches the level, counted round.
@@ -121,5 +155,17 @@ mod tests {
         let ring = Grid { values: &bowl, ..grid };
         let found = area(&ring.rings(-0.75));
         assert!((found - 4.0 + 0.25 * std::f64::consts::PI).abs() < 2e-3, "a hole: {found}");
+    }
+
+    #[test]
+    fn cells_beside_a_gap_belong_to_no_ring_and_all_others_to_one() {
+        let axis = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let mut values = vec![1.0; 25];
+        // One in the middle, which four cells touch, and one in a corner.
+        values[12] = f64::NAN;
+        values[24] = f64::NAN;
+        let grid = Grid { first: &axis, second: &axis, values: &values };
+        let (gaps, rings) = (area(&grid.gaps()), area(&grid.rings(f64::NEG_INFINITY)));
+        assert_eq!([gaps, rings], [5.0, 11.0]);
     }
 }

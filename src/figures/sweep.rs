@@ -136,7 +136,7 @@ fn input(column: &Column) -> Option<Input<'_>> {
 /// Units of the values of a key of the scene.
 fn scale_of_key(key: &str) -> Option<Scale> {
     match key.rsplit('.').next().unwrap_or(key) {
-        "radius" | "amplitude" | "indentation" | "transverse_amplitude" | "reference_depth" => {
+        "radius" | "amplitude" | "indentation" | "transverse_amplitude" | "reference_depth" | "smoothing" => {
             Some(Scale::LENGTH)
         }
         "initial_force" | "normal_force" => Some(Scale::FORCE),
@@ -198,7 +198,8 @@ fn curves(over: &Input, each: Option<&Input>, values: &[f64], y: Axis) -> Panel 
     };
     for (place, group) in groups.into_iter().enumerate() {
         let belongs = |row: &usize| each.zip(group).is_none_or(|(each, value)| each.values[*row] == value);
-        let rows = (0..values.len()).filter(belongs).filter(|row| values[*row].is_finite());
+        // A scene without a value breaks the line.
+        let rows = (0..values.len()).filter(belongs);
         let mut points: Vec<[f64; 2]> = rows.map(|row| [over.at(row), values[row]]).collect();
         points.sort_by(|one, other| one[0].total_cmp(&other[0]));
         let colour = DISTINCT[place % DISTINCT.len()];

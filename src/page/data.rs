@@ -77,7 +77,7 @@ fn series(series: &Series) -> SeriesData {
     let (style, shape, radius) = match series.style {
         Style::Line { .. } => ("line", None, None),
         Style::Points { shape, radius } => ("points", Some(shape), Some(radius)),
-        Style::Region { .. } => ("region", None, None),
+        Style::Region { .. } | Style::Hatched => ("region", None, None),
     };
     let points = series.points.iter().map(|point| point.map(|value| value as f32)).collect();
     SeriesData { name: html(&series.name), style, shape, radius, points }
