@@ -2,7 +2,9 @@
 
 mod cubic;
 mod equivalent;
+mod smoothing;
 mod sphere;
+mod spline;
 mod table;
 mod table_equivalent;
 mod table_rise;
@@ -11,6 +13,7 @@ mod table_transform;
 use std::sync::Arc;
 
 pub use equivalent::{EquivalentProfile, power_law_factor};
+pub use smoothing::{SmoothedBy, Smoothing};
 pub use table::TabulatedProfile;
 pub(crate) use table_rise::RiseTransform;
 

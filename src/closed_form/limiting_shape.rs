@@ -169,8 +169,8 @@ impl LimitingShape {
             return Ok(());
         }
         let (edge, contact_radius) = (self.contact_radius_limit(), self.contact_radius_initial());
-        let rows = table.radii().iter().zip(table.heights());
-        let near = rows.filter(|(r, height)| **r > edge * (1.0 + 1e-6) && **height < self.indentation());
+        let near =
+            table.knots().filter(|(r, height)| *r > edge * (1.0 + 1e-6) && *height < self.indentation());
         for (r, _) in near {
             let growth = (r / contact_radius).ln();
             if self.integral.mean_compression(self.stick_logarithm + growth, growth) > 0.0 {

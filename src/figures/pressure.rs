@@ -91,7 +91,9 @@ fn panel(results: &RunResults, quantity: &Quantity) -> Panel {
 /// A quantity within the contact as a curve, m and SI.
 fn within_contact(radius: &[f64], snapshot: &Snapshot, quantity: &Quantity) -> Vec<[f64; 2]> {
     let edge = snapshot.contact_radius;
-    let inside = radius.iter().zip((quantity.of)(snapshot)).filter(|(r, _)| **r < edge);
+    // Pressure is not known where the edge of stick has passed.
+    let is_known = |(r, value): &(&f64, &f64)| **r < edge && value.is_finite();
+    let inside = radius.iter().zip((quantity.of)(snapshot)).filter(is_known);
     let (mut radii, mut values): (Vec<f64>, Vec<f64>) = inside.unzip();
     if quantity.vanishes {
         radii.push(edge);

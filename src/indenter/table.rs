@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::cubic::Cubic;
+use super::smoothing::{Smooth, Smoothing, smooth};
 use super::table_equivalent::TabulatedEquivalent;
 use crate::error::{Error, Result};
 use crate::grid::lagrange_derivative;
@@ -32,8 +33,10 @@ const POINTS: usize = 5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct TabulatedProfile {
     source: String,
+    radii: Vec<f64>,
     heights: Vec<f64>,
     curve: Cubic,
+    smoothing: Option<Smoothing>,
     equivalent: Known,
 }
 
@@ -55,6 +58,9 @@ impl PartialEq for Known {
 }
 
 impl TabulatedProfile {
+    /// Key of the standard deviation of heights that are to be smoothed.
+    pub const SMOOTHING: &str = "indenter.table.smoothing";
+
     /// Fewest rows of a table.
     pub const FEWEST_ROWS: usize = 4;
 
@@ -71,16 +77,49 @@ impl TabulatedProfile {
     /// # Errors
     /// [`Error::Inconsistent`] names `indenter.table`, the row and the value.
     pub fn new(source: impl Into<String>, radius: Vec<f64>, height: Vec<f64>) -> Result<Self> {
-        check(&radius, &height).map_err(refused)?;
-        let slopes = slopes(&radius, &height);
-        let curve = Cubic::new(radius, &height, slopes);
-        let finite = (0..height.len()).all(|i| curve.piece(i).iter().all(|it| it.is_finite()));
+        Self::smoothed(source, radius, height, 0.0)
+    }
+
+    /// Profile near rows that are noisy: the smoothest curve whose residuals are those of noise of a standard deviation, even about the axis.
+    ///
+    /// The best paraboloid where that is such a curve, else a spline of the fifth degree; see [`TabulatedProfile::smoothing`]. A
+    /// paraboloid keeps its radius of curvature on average, a sharp tip becomes round as far as the noise would hide it.
+    ///
+    /// # Arguments
+    /// * `source`, `radius`, `height` -- as [`TabulatedProfile::new`] takes them, but for heights, which may lie below the first
+    /// * `deviation` -- of the heights, m; 0 takes the rows as they are
+    ///
+    /// # Errors
+    /// As [`TabulatedProfile::new`]; [`Error::Inconsistent`] names `indenter.table.smoothing` where it is negative, not finite, not below the height of the
+    /// profile, or leaves no profile that rises.
+    pub fn smoothed(
+        source: impl Into<String>,
+        radius: Vec<f64>,
+        height: Vec<f64>,
+        deviation: f64,
+    ) -> Result<Self> {
+        check(&radius, &height, deviation > 0.0).map_err(refused)?;
+        check_deviation(&height, deviation)?;
+        let smooth = if deviation > 0.0 { smooth(&radius, &height, deviation) } else { None };
+        let (curve, smoothing) = match smooth {
+            Some(Smooth { knots, values, slopes, smoothing }) => {
+                check_smooth(&knots, &values, &smoothing)?;
+                (Cubic::new(knots, &values, slopes), Some(smoothing))
+            }
+            None => {
+                check_rows(&radius, &height).map_err(refused)?;
+                let smoothing = (deviation > 0.0).then(|| Smoothing::none(deviation));
+                (Cubic::new(radius.clone(), &height, slopes(&radius, &height)), smoothing)
+            }
+        };
+        let finite = (0..curve.knots().len()).all(|i| curve.piece(i).iter().all(|it| it.is_finite()));
         if !finite {
             return Err(refused(
                 "its rows are too close or too large to compute with; check the units".into(),
             ));
         }
-        Ok(Self { source: source.into(), heights: height, curve, equivalent: Known::default() })
+        let equivalent = Known::default();
+        Ok(Self { source: source.into(), radii: radius, heights: height, curve, smoothing, equivalent })
     }
 
     /// Where the rows come from.
@@ -90,17 +129,32 @@ impl TabulatedProfile {
 
     /// Radii of the rows, m, shape `(row,)`, increasing from 0.
     pub fn radii(&self) -> &[f64] {
-        self.curve.knots()
+        &self.radii
     }
 
-    /// Heights of the rows, m, shape `(row,)`.
+    /// Heights of the rows as measured, m, shape `(row,)`.
     pub fn heights(&self) -> &[f64] {
         &self.heights
     }
 
+    /// How the rows were smoothed; none where they are taken as they are.
+    pub fn smoothing(&self) -> Option<&Smoothing> {
+        self.smoothing.as_ref()
+    }
+
+    /// Standard deviation with which the rows were smoothed, m; 0 where they are taken as they are.
+    pub fn deviation(&self) -> f64 {
+        self.smoothing.map_or(0.0, |smoothing| smoothing.deviation)
+    }
+
+    /// Radii and heights between which the curve is a cubic: those of the rows where they are not smoothed.
+    pub(crate) fn knots(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.curve.knots().iter().enumerate().map(|(i, r)| (*r, self.curve.at_knot(i)))
+    }
+
     /// Radius of the last row, m.
     pub fn largest_radius(&self) -> f64 {
-        self.radii()[self.heights.len() - 1]
+        self.radii[self.radii.len() - 1]
     }
 
     /// Profile `f(r)`, m, at radius `r >= 0`, m; not a number beyond the last row.
@@ -115,13 +169,12 @@ impl TabulatedProfile {
 
     /// Smallest radius, m, at which the profile has risen to `height`, m; that of the last row if it never does.
     pub fn radius_at_height(&self, height: f64) -> f64 {
-        let rows = self.heights.len();
-        let above = (1..rows).find(|&i| self.heights[i] >= height).unwrap_or(rows);
-        if above == rows {
+        let knots = self.curve.knots();
+        let Some(above) = (1..knots.len()).find(|&i| self.curve.at_knot(i) >= height) else {
             return self.largest_radius();
-        }
+        };
         let [low, ..] = self.curve.piece(above - 1);
-        self.radii()[above - 1] + self.curve.climb(above - 1, height - low)
+        knots[above - 1] + self.curve.climb(above - 1, height - low)
     }
 
     /// Its equivalent profile.
@@ -146,7 +199,47 @@ fn refused(why: String) -> Error {
     Error::Inconsistent { what: "indenter.table", why }
 }
 
-fn check(radius: &[f64], height: &[f64]) -> std::result::Result<(), String> {
+/// Checks the standard deviation of heights.
+fn check_deviation(height: &[f64], deviation: f64) -> Result<()> {
+    let (low, high) =
+        height.iter().fold((0.0, 0.0), |(low, high): (f64, f64), f| (low.min(*f), high.max(*f)));
+    let why = if !(deviation >= 0.0 && deviation.is_finite()) {
+        format!("{deviation:e} m is outside [0, inf); give the standard deviation of the heights of the rows")
+    } else if deviation >= high - low {
+        format!(
+            "{deviation:e} m is not below the height of the profile, {:e} m; give the standard deviation of the noise in its heights, and check \
+             the unit",
+            high - low
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Error::Inconsistent { what: TabulatedProfile::SMOOTHING, why })
+}
+
+/// Checks a smoothed profile.
+fn check_smooth(knots: &[f64], values: &[f64], smoothing: &Smoothing) -> Result<()> {
+    let deviation = smoothing.deviation;
+    let lowest = (0..values.len()).fold(0, |low, i| if values[i] < values[low] { i } else { low });
+    let why = if !values.iter().all(|it| it.is_finite()) {
+        "the rows are too close or too large to smooth; check the units".to_owned()
+    } else if values[values.len() - 1] <= 0.0 {
+        format!(
+            "smoothed with {deviation:e} m the profile does not rise from the tip outwards; check the rows and their units"
+        )
+    } else if values[lowest] < 0.0 {
+        format!(
+            "smoothed with {deviation:e} m the profile lies {:e} m below its tip at r = {:e} m; give a larger deviation if that is noise, else \
+             measure from the lowest point",
+            -values[lowest], knots[lowest]
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Error::Inconsistent { what: TabulatedProfile::SMOOTHING, why })
+}
+
+fn check(radius: &[f64], height: &[f64], noisy: bool) -> std::result::Result<(), String> {
     let (rows, heights) = (radius.len(), height.len());
     if rows != heights {
         return Err(format!("it has {rows} radii and {heights} heights"));
@@ -171,18 +264,8 @@ fn check(radius: &[f64], height: &[f64]) -> std::result::Result<(), String> {
             radius[row - 1]
         ));
     }
-    if let Some(row) = (1..rows).find(|&i| radius[i] - radius[i - 1] <= CLOSEST * radius[i]) {
-        return Err(format!(
-            "its rows at r = {:e} m and r = {:e} m are so close that rounding decides the slope between them; remove one",
-            radius[row - 1],
-            radius[row]
-        ));
-    }
-    if let Some(row) = (0..rows).find(|&i| height[i] < 0.0) {
-        return Err(format!(
-            "at r = {:e} m it lies {:e} m below the tip at r = 0; measure from the lowest point",
-            radius[row], -height[row]
-        ));
+    if !noisy {
+        check_rows(radius, height)?;
     }
     let (largest, highest) = (radius[rows - 1], height.iter().fold(0.0, |m: f64, f| m.max(*f)));
     if highest == 0.0 {
@@ -196,6 +279,27 @@ fn check(radius: &[f64], height: &[f64]) -> std::result::Result<(), String> {
         return Err(format!("radii to {largest:e} m and heights to {highest:e} m; check the units"));
     }
     Ok(())
+}
+
+/// Checks rows that are to be taken as they are.
+fn check_rows(radius: &[f64], height: &[f64]) -> std::result::Result<(), String> {
+    if let Some(row) = (1..radius.len()).find(|&i| radius[i] - radius[i - 1] <= CLOSEST * radius[i]) {
+        return Err(format!(
+            "its rows at r = {:e} m and r = {:e} m are so close that rounding decides the slope between them; remove one",
+            radius[row - 1],
+            radius[row]
+        ));
+    }
+    match (0..height.len()).find(|&i| height[i] < 0.0) {
+        None => Ok(()),
+        Some(row) => Err(format!(
+            "at r = {:e} m it lies {:e} m below the tip at r = 0; measure from the lowest point, or give the standard deviation of its heights \
+             as {} if that is noise",
+            radius[row],
+            -height[row],
+            TabulatedProfile::SMOOTHING
+        )),
+    }
 }
 
 /// Slopes at the rows by polynomials through the nearest ones.

@@ -49,7 +49,7 @@ pub(super) struct TabulatedEquivalent {
 impl TabulatedEquivalent {
     pub(super) fn new(table: &TabulatedProfile, grading: f64) -> Result<Self> {
         let transform = Transform::new(table.curve(), grading)?;
-        let (radii, largest) = (table.radii(), table.largest_radius());
+        let (radii, largest) = (table.curve().knots(), table.largest_radius());
         let count = DIVISIONS * (radii.len() - 1) + 1;
         let (mut knots, mut values, mut slopes) = (Vec::new(), Vec::new(), Vec::new());
         knots.reserve(count);

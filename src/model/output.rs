@@ -30,7 +30,7 @@ const MIDDLE: f64 = 2.0;
 pub struct RadialFields {
     /// Wear depth, m.
     pub wear_depth: Vec<f64>,
-    /// Pressure, Pa, zero outside the contact.
+    /// Pressure, Pa, zero outside the contact; not a number where the ground has come to stick: springs tell it in the annulus alone.
     pub pressure: Vec<f64>,
     /// Slip amplitude, m, zero outside the contact.
     pub slip: Vec<f64>,
@@ -233,6 +233,9 @@ impl Model {
                 Some(worn) => *worn,
                 None => spot.as_ref().map_or(0.0, Spot::wear_depth),
             };
+            if self.sticks_at(state, *offset) {
+                radial.pressure[i] = f64::NAN;
+            }
             let Some(Spot { x, y, unworn, log_slip }) = spot else { continue };
             radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
             radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
@@ -241,6 +244,11 @@ impl Model {
             }
         }
         radial
+    }
+
+    /// Whether an edge of stick that moves outwards has passed the place `offset = r² - c²`, m², with the edge at rest.
+    fn sticks_at(&self, state: &State, offset: f64) -> bool {
+        state.stick.as_ref().is_some_and(|stick| self.place.stick_area + offset <= stick.area)
     }
 
     /// `λ_∞` on the springs.

@@ -8,7 +8,7 @@ use crate::closed_form::LimitingShape;
 use crate::conditions::Conditions;
 use crate::contact::InitialContact;
 use crate::error::Result;
-use crate::indenter::Indenter;
+use crate::indenter::{Indenter, SmoothedBy, Smoothing};
 use crate::loading::Duration;
 use crate::run::{Expected, Run};
 use crate::scene::Scene;
@@ -44,6 +44,8 @@ pub struct CheckReport {
     pub title: Option<String>,
     /// The indenter in words.
     pub indenter: String,
+    /// How the rows of a measured profile were smoothed; none where they are taken as they are.
+    pub smoothing: Option<Smoothing>,
     /// Grading `k`.
     pub grading: f64,
     /// `c_N`, N/m^(2+k).
@@ -130,6 +132,7 @@ impl CheckReport {
         Ok(Self {
             title: scene.title().map(str::to_owned),
             indenter: indenter(contact.indenter()),
+            smoothing: scene.table().and_then(|table| table.smoothing()).copied(),
             grading: half_space.grading(),
             normal_stiffness: half_space.normal_stiffness(),
             tangential_stiffness: half_space.stiffness_ratio() * half_space.normal_stiffness(),
@@ -165,6 +168,9 @@ impl CheckReport {
         let stiffness = |value: f64| format!("{} N/m^{}", number(value), number(2.0 + self.grading));
         let mut rows = Rows::titled(self.title.as_deref());
         rows.row("indenter", &self.indenter);
+        if let Some(smoothing) = &self.smoothing {
+            put_smoothing(&mut rows, smoothing);
+        }
         rows.row("grading k", number(self.grading));
         rows.row("normal stiffness c_N", stiffness(self.normal_stiffness));
         rows.row("tangential stiffness c_T", stiffness(self.tangential_stiffness));
@@ -203,6 +209,52 @@ impl CheckReport {
     }
 }
 
+/// What the rows of a measured profile were replaced by, and how far they lie from it.
+fn put_smoothing(rows: &mut Rows, smoothing: &Smoothing) {
+    let length = |value: f64| Scale::LENGTH.show(value);
+    let by = match smoothing.by {
+        SmoothedBy::Paraboloid => "the best paraboloid",
+        SmoothedBy::Spline => "a smoothing spline",
+        SmoothedBy::BoundedSpline => "a smoothing spline, kept from bending back",
+        SmoothedBy::Rows => "nothing: the rows are taken as they are",
+    };
+    rows.row("profile smoothed by", by);
+    if smoothing.by == SmoothedBy::Rows {
+        return;
+    }
+    rows.row(
+        "residual of its rows",
+        format!(
+            "rms {} of {} given, largest {} at r = {}",
+            length(smoothing.residual_rms),
+            length(smoothing.deviation),
+            length(smoothing.residual_largest),
+            length(smoothing.residual_largest_radius)
+        ),
+    );
+    rows.optional("radius of curvature at the tip", smoothing.tip_radius.map(length));
+}
+
+/// Doubts about what was given as the deviation of a measured profile.
+fn doubt_of_smoothing(smoothing: &Smoothing) -> Option<String> {
+    // The root mean square of a few dozen residuals is known to a fifth.
+    const FAR: f64 = 1.3;
+    let given = Scale::LENGTH.show(smoothing.deviation);
+    let found = Scale::LENGTH.show(smoothing.residual_rms);
+    if smoothing.by == SmoothedBy::Rows {
+        Some(format!(
+            "indenter.table.smoothing = {given} is less than a spline leaves; the rows are taken as they are"
+        ))
+    } else if smoothing.residual_rms * FAR < smoothing.deviation {
+        Some(format!(
+            "the rows lie nearer to the smoothed profile, {found} on average, than indenter.table.smoothing = {given}; give {found} if that is \
+             their noise"
+        ))
+    } else {
+        None
+    }
+}
+
 /// Where the model leaves its ground.
 fn doubts(contact: &InitialContact, limit: Option<&LimitingShape>) -> Vec<String> {
     let mut doubts = Vec::new();
@@ -226,6 +278,7 @@ fn doubts(contact: &InitialContact, limit: Option<&LimitingShape>) -> Vec<String
         ));
     }
     if let Indenter::Table(table) = contact.indenter() {
+        doubts.extend(table.smoothing().and_then(doubt_of_smoothing));
         let within = table.radii().iter().filter(|r| **r <= contact.contact_radius()).count();
         if within < FEW_ROWS {
             doubts.push(format!(

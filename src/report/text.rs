@@ -79,8 +79,11 @@ pub(super) fn indenter(indenter: &Indenter) -> String {
 
 /// `table ball.csv, 201 rows, radius 0 to 0.5 mm, f to 12 µm`.
 pub(super) fn table(table: &TabulatedProfile) -> String {
+    let smoothing = table
+        .smoothing()
+        .map_or_else(String::new, |it| format!(", smoothed with {}", Scale::LENGTH.show(it.deviation)));
     format!(
-        "table {}, {} rows, radius 0 to {}, f to {}",
+        "table {}, {} rows, radius 0 to {}, f to {}{smoothing}",
         table.source(),
         table.heights().len(),
         Scale::LENGTH.show(table.largest_radius()),

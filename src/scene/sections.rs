@@ -184,19 +184,39 @@ fn indenter(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Resul
 /// A measured profile, from its file or as it was stored.
 fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Arc<TabulatedProfile>> {
     const UNITS: [&str; 2] = ["radius_unit", "profile_unit"];
-    section.only(&["file", UNITS[0], UNITS[1]], &[])?;
+    section.only(&["file", UNITS[0], UNITS[1], "smoothing"], &[])?;
     let name = section.file_name("for example \"profile.csv\", two columns r and f")?;
     let units = [section.length_unit(UNITS[0])?, section.length_unit(UNITS[1])?];
-    match rows {
+    let smoothing = section.optional("smoothing");
+    let deviation = match &smoothing {
+        Some(entry) => entry.quantity_in(Dimension::LENGTH, "[0, inf)", |deviation| deviation >= 0.0)?,
+        None => 0.0,
+    };
+    let profile = match rows {
         Rows::In(folder) => {
             let path = section.file(folder, name)?;
-            profile_file::read(&path, name, units, warnings).map(Arc::new)
+            profile_file::read(&path, name, units, deviation, warnings)
         }
-        Rows::Stored { table: Some(table), .. } => Ok(Arc::clone(table)),
+        Rows::Stored { table: Some(table), .. } if table.deviation() == deviation => {
+            return Ok(Arc::clone(table));
+        }
+        // The scene was patched.
+        Rows::Stored { table: Some(table), .. } => TabulatedProfile::smoothed(
+            table.source(),
+            table.radii().to_vec(),
+            table.heights().to_vec(),
+            deviation,
+        ),
         Rows::Stored { table: None, .. } => {
             Err(section.error("its rows are not stored in the result; run the scene again"))
         }
-    }
+    };
+    profile.map(Arc::new).map_err(|error| match (error, &smoothing) {
+        (Error::Inconsistent { what, why }, Some(entry)) if what == TabulatedProfile::SMOOTHING => {
+            entry.explained(why)
+        }
+        (other, _) => other,
+    })
 }
 
 /// `tan θ` of a cone's flank, or `cot α` of half its apex angle `α`, which lies between axis and flank.

@@ -2,7 +2,9 @@
 
 use hdf5::{Group, Result};
 
-use super::labelled::{Dimension, create_group, put_array, put_integer, put_integers, put_text};
+use super::labelled::{
+    Dimension, create_group, put_array, put_integer, put_integers, put_missing, put_real, put_text,
+};
 use super::layout::*;
 use super::{Checkpoint, Format, RunHeader, Snapshot, StopReason};
 use crate::model::Past;
@@ -76,6 +78,9 @@ impl Run<'_> {
             self.snapshots.iter().for_each(|snapshot| values.extend_from_slice((field.of)(snapshot)));
             let dataset = put_array(file, field.label, &[time, node], &values)?;
             put_text(&dataset, "coordinates", "cycles tau radius")?;
+            if let Some((_, why)) = UNKNOWN.iter().find(|(name, _)| *name == field.label.name) {
+                put_missing(&dataset, why)?;
+            }
         }
         Ok(())
     }
@@ -86,6 +91,9 @@ impl Run<'_> {
         put_array(file, TABLE_RADIUS, &[&row], table.radii())?;
         let profile = put_array(file, TABLE_PROFILE, &[&row], table.heights())?;
         put_text(&profile, "coordinates", TABLE_RADIUS.name)?;
+        if let Some(smoothing) = table.smoothing() {
+            put_real(&profile, SMOOTHING, smoothing.deviation)?;
+        }
         put_text(&profile, SOURCE, table.source())
     }
 

@@ -130,6 +130,17 @@ pub(super) fn put_integers(place: &Location, name: &str, values: &[i32]) -> Resu
     place.new_attr::<i32>().shape(values.len()).create(name)?.write_raw(values)
 }
 
+/// Writes a real number as an attribute.
+pub(super) fn put_real(place: &Location, name: &str, value: f64) -> Result<()> {
+    place.new_attr::<f64>().create(name)?.write_scalar(&value)
+}
+
+/// Says that what is not a number in a dataset is missing, and why, in the attributes of the CF conventions.
+pub(super) fn put_missing(dataset: &Dataset, why: &str) -> Result<()> {
+    put_real(dataset, "_FillValue", f64::NAN)?;
+    put_text(dataset, "comment", why)
+}
+
 impl Dimension {
     /// Creates the index coordinate `0, 1, …` of `length` entries.
     pub(super) fn create(group: &Group, label: Label, length: usize, resizable: bool) -> Result<Self> {

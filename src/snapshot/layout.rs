@@ -56,6 +56,9 @@ pub const TABLE_RADIUS: Label = label("table_radius", "m", "radius of the rows o
 pub const TABLE_PROFILE: Label = label("table_profile", "m", "measured profile of the unworn indenter");
 /// Attribute of the heights of the rows, and of the path along x.
 pub const SOURCE: &str = "source";
+/// Attribute of the heights of the rows: standard deviation of their noise, m, with which they are smoothed; absent where they are taken as
+/// they are.
+pub const SMOOTHING: &str = "smoothing";
 /// Index coordinate along the rows of a recorded path, shape `(path_row,)`; absent, as what belongs to it, without one.
 pub const PATH_ROW: Label = label("path_row", "1", "index of the row of the recorded path");
 /// Path along x, shape `(path_row,)`; its attribute `source` names the file that the rows came from.
@@ -165,6 +168,13 @@ pub(super) const CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
     field(label("pressure", "Pa", "contact pressure"), |it| &it.pressure, |it| &mut it.pressure),
     field(label("slip", "m", "slip amplitude"), |it| &it.slip, |it| &mut it.slip),
 ];
+
+/// Those of the curves that are not known everywhere, and where they are not.
+pub(super) const UNKNOWN: [(&str, &str); 1] = [(
+    "pressure",
+    "Not a number at radii within the stick zone, where the method does not give the pressure: these slipped until the edge of stick passed them. \
+     Zero outside the contact.",
+)];
 
 /// Shape `(time, point)`, in the group of the loops; those along y only where the indenter leaves the x axis.
 pub(super) const LOOP_CURVES: [Field<Snapshot, Vec<f64>>; 4] = [

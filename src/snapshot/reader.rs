@@ -162,7 +162,11 @@ impl Source {
         let name = format!("/{}", TABLE_PROFILE.name);
         let dataset = file.dataset(TABLE_PROFILE.name).map_err(|error| self.damaged(&name, &error))?;
         let source = self.text(&dataset, SOURCE)?;
-        let table = TabulatedProfile::new(source, radius, height);
+        let deviation = match dataset.attr(SMOOTHING) {
+            Ok(attribute) => attribute.read_scalar().map_err(|error| self.damaged(&name, &error))?,
+            Err(_) => 0.0,
+        };
+        let table = TabulatedProfile::smoothed(source, radius, height, deviation);
         table.map(Arc::new).map_err(|error| self.damaged(&name, &error))
     }
 

@@ -94,13 +94,18 @@ impl Judgement {
         let wear_depth_limit = limit.wear_depth_max();
         // From the c of the run as it is, not from the one that the limit forms anew: next to c the last digit of a radius shows.
         let depth_limit = |r: f64| limit.wear_depth_at_offset((r - stick_radius) * (r + stick_radius));
-        let gaps = run.header.radius.iter().zip(&last.wear_depth).map(|(r, w)| (w - depth_limit(*r)).abs());
-        let gap = gaps.fold(0.0, f64::max);
         let positions = (0..CURVE_POINTS).map(|i| i as f64 / (CURVE_POINTS - 1) as f64);
         let radii = positions.map(|x| stick_radius + x * limit.slip_width_limit());
         let relative = |depth: f64| depth / wear_depth_limit;
-        let depth =
-            |r: f64| if r <= stick_radius { 0.0 } else { depth_at(&run.header.radius, &last.wear_depth, r) };
+        // What is between the nodes is interpolated of the distance from the limit, which is smooth and small where the limit is met: the
+        // depth itself rises too steeply at the stick radius.
+        let gaps: Vec<f64> =
+            run.header.radius.iter().zip(&last.wear_depth).map(|(r, w)| w - depth_limit(*r)).collect();
+        let gap = gaps.iter().fold(0.0, |largest: f64, gap| largest.max(gap.abs()));
+        let depth = |r: f64| match r <= stick_radius {
+            true => 0.0,
+            false => depth_limit(r) + gap_at(&run.header.radius, &gaps, r).unwrap_or(-depth_limit(r)),
+        };
         let curves = radii.map(|r| (relative(depth(r)), relative(depth_limit(r))));
         let (curve, curve_limit) = curves.unzip();
         Ok(Self {
@@ -161,14 +166,15 @@ fn limit(scene: &Scene, indentation: f64, stick_radius: f64) -> Result<LimitingS
     LimitingShape::from_stick_ratio(indenter, grading, indentation, (stick_radius / contact_radius).min(1.0))
 }
 
-/// Depth between nodes, linear; zero beyond the last, not a number before the first, of which nothing is known.
-fn depth_at(radii: &[f64], depths: &[f64], r: f64) -> f64 {
+/// Distance of the depth from that of the limit between nodes, linear; none beyond the last, where nothing is worn, and not a number before
+/// the first, of which nothing is known.
+fn gap_at(radii: &[f64], gaps: &[f64], r: f64) -> Option<f64> {
     match radii.partition_point(|node| *node <= r) {
-        0 => f64::NAN,
-        after if after == radii.len() => 0.0,
+        0 => Some(f64::NAN),
+        after if after == radii.len() => (r == radii[after - 1]).then(|| gaps[after - 1]),
         after => {
             let part = (r - radii[after - 1]) / (radii[after] - radii[after - 1]);
-            depths[after - 1] + part * (depths[after] - depths[after - 1])
+            Some(gaps[after - 1] + part * (gaps[after] - gaps[after - 1]))
         }
     }
 }

@@ -83,6 +83,16 @@ fn indenter() -> Table {
             ),
             ("radius_unit", unit("the radii")),
             ("profile_unit", unit("the heights")),
+            (
+                "smoothing",
+                quantity(
+                    "Standard deviation of the noise in the heights, m: the profile is the smoothest curve with such residuals. 0 takes the rows as \
+                     they are.",
+                    "m",
+                    at_least_zero(),
+                    "20 nm",
+                ),
+            ),
         ],
         &["file"],
     );
