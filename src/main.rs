@@ -35,7 +35,10 @@ mod tradeoff;
 mod universality;
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
-75 stopped by a signal with a checkpoint written.\nResults go to stdout, everything else to stderr.";
+3 done, but the accuracy asked for was not reached; 75 stopped by a signal with a checkpoint written.\nResults go to stdout, everything else to stderr.";
+
+/// Exit code of a run that came to its end less accurately than was asked for; its results are kept.
+const INACCURATE: u8 = 3;
 
 /// Exit code of a run that a signal stopped with a checkpoint written.
 const INTERRUPTED: u8 = 75;
@@ -270,7 +273,8 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
             Resumed::Complete(result) => {
                 complain("note", &format!("{} is complete, nothing is left to do", file.display()));
                 picture.map(|picture| plot::draw_run(file, picture)).transpose()?;
-                return Ok((report(&result), ExitCode::SUCCESS));
+                result.warning().into_iter().for_each(|warning| complain("warning", &warning));
+                return Ok((report(&result), ended(&result)));
             }
         },
         (Some(path), None) => {
@@ -305,7 +309,12 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
         complain("error", &error.to_string());
         return Ok((report(&result), ExitCode::FAILURE));
     }
-    Ok((report(&result), if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS }))
+    Ok((report(&result), if interrupted { ExitCode::from(INTERRUPTED) } else { ended(&result) }))
+}
+
+/// The exit code of a run that came to its end.
+fn ended(result: &RunResult) -> ExitCode {
+    if result.accuracy_met() == Some(false) { ExitCode::from(INACCURATE) } else { ExitCode::SUCCESS }
 }
 
 /// The picture of a run: the one named, or that beside the result file.

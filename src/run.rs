@@ -10,7 +10,7 @@ use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::indenter::Indenter;
-use crate::loading::{self, cycles_at, has_come};
+use crate::loading::{self, Mode, cycles_at, has_come};
 use crate::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice, WearFrom};
 use crate::simulation::{End, Observer, Outcome, Plan, Simulation};
@@ -23,6 +23,7 @@ use crate::stick_slip::Regime;
 
 mod effort;
 mod knob;
+mod ladder;
 mod mesh;
 mod ready;
 mod recorder;
@@ -61,21 +62,32 @@ pub struct RunResult {
     pub distance: Option<LimitDistance>,
     /// The unworn indenter.
     pub indenter: Indenter,
-    /// The accuracy that was asked for, where the program chose the springs.
-    pub accuracy: Option<f64>,
 }
 
 impl RunResult {
+    /// Whether the error is as small as was asked for; none where springs were given by hand.
+    pub fn accuracy_met(&self) -> Option<bool> {
+        self.checkpoint.accuracy_met()
+    }
+
     /// A word about an end that is less accurate than was asked for.
     pub fn warning(&self) -> Option<String> {
-        let accuracy = self.accuracy?;
+        let accuracy = self.checkpoint.accuracy?;
         let error = self.checkpoint.error_estimate.filter(|error| *error > accuracy)?;
+        let springs = self.checkpoint.state.compression.len() + 1;
         Some(format!(
-            "numerics.accuracy = {accuracy:e} was asked for, and the estimated error is {error:.1e}; ask for more springs by hand \
-             (numerics.springs; there were {})",
-            self.checkpoint.state.compression.len() + 1
+            "numerics.accuracy = {accuracy:e} was asked for, and the estimated error is {error:.1e} of the worn volume or of the largest depth; \
+             rely on no more digits than that, ask for numerics.accuracy = {:.0e}, or compare with runs of more springs by hand \
+             (numerics.springs; there were {springs})",
+            rounded_up(error)
         ))
     }
+}
+
+/// To one digit, not below the number.
+fn rounded_up(error: f64) -> f64 {
+    let unit = 10f64.powf(error.log10().floor());
+    (error / unit).ceil() * unit
 }
 
 /// A run that is ready to go.
@@ -213,7 +225,7 @@ impl Run {
                 "does not tell what its checkpoint was computed from (no attribute scene_hash); run its scene again",
             ));
         }
-        let checkpoint =
+        let mut checkpoint =
             file.checkpoint.clone().ok_or_else(|| unusable("holds no checkpoint; run its scene again"))?;
         let name = format!("{} (its scene)", path.display());
         let scene = Scene::from_stored(
@@ -222,6 +234,7 @@ impl Run {
             file.header.table.clone(),
             file.header.path.clone(),
         )?;
+        checkpoint.accuracy = scene.numerics().accuracy_asked();
         // As many springs as it came to, however often it was made anew.
         let springs = Some(checkpoint.state.compression.len() + 1);
         let parts = Parts::new(&scene, scene.numerics(), springs, &shared.operators)?;
@@ -254,7 +267,6 @@ impl Run {
                 last,
                 checkpoint,
                 limit: parts.limit,
-                accuracy: scene.numerics().accuracy_asked(),
             })));
         }
         let Checkpoint { state, progress, wall_seconds, .. } = checkpoint;
@@ -300,14 +312,14 @@ impl Run {
         let Self { mut simulation, mut recorder, mut limit, scene, store, .. } = self;
         let mut refinements = 0;
         let (outcome, checkpoint) = loop {
-            recorder.follow_pilot(&scene, &store, &simulation);
+            recorder.follow_judge(&scene, &store, &simulation, limit.is_some());
             let outcome = match progress.as_mut() {
                 Some(progress) => simulation.run(&mut [&mut recorder, &mut **progress]),
                 None => simulation.run(&mut [&mut recorder]),
             };
             let checkpoint = recorder.checkpoint(&simulation);
             if refinements < knob::REFINEMENTS
-                && let Some(springs) = wanting(&scene, &simulation, &outcome, &checkpoint)
+                && let Some(springs) = recorder.wanting(&scene, &simulation, &outcome, &checkpoint)
                 && let Ok(parts) = Parts::new(&scene, scene.numerics(), Some(springs), &store)
                 && let Ok(finer) = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)
             {
@@ -330,31 +342,8 @@ impl Run {
         let output = recorder.writer.path().to_owned();
         let (header, snapshots) = recorder.writer.into_parts();
         let file = RunFile::finished(header, snapshots, checkpoint.clone(), stop_reason);
-        let accuracy = scene.numerics().accuracy_asked();
-        Ok((RunResult { output, stop_reason, last, checkpoint, limit, distance, indenter, accuracy }, file))
+        Ok((RunResult { output, stop_reason, last, checkpoint, limit, distance, indenter }, file))
     }
-}
-
-/// Springs with which a run is to be made anew: where the program chose them, and the run found no end or may be off by more than was asked for.
-fn wanting(
-    scene: &Scene,
-    simulation: &Simulation,
-    outcome: &Result<Outcome>,
-    checkpoint: &Checkpoint,
-) -> Option<usize> {
-    let numerics = scene.numerics();
-    let (model, accuracy) = (simulation.model(), numerics.accuracy);
-    if !knob::serves(numerics, model) {
-        return None;
-    }
-    let error = match outcome {
-        Ok(Outcome::Interrupted) => return None,
-        Ok(_) => Some(checkpoint.error_estimate.filter(|error| *error > knob::SURE * accuracy)?),
-        // More springs may find an end where few do not.
-        Err(Error::NotConverged { .. }) => None,
-        Err(_) => return None,
-    };
-    knob::refined(model.springs(), error, accuracy)
 }
 
 /// Whether a file was computed from this scene, with its rows and numerics, by this version of the program.
@@ -406,12 +395,23 @@ impl Parts {
     /// * `numerics` -- those of the scene, or coarser ones
     /// * `wanted` -- springs where none are given by hand, instead of those for the accuracy
     fn new(scene: &Scene, numerics: &Numerics, wanted: Option<usize>, store: &OperatorStore) -> Result<Self> {
+        let parts = Self::on_any(scene, numerics, wanted, store)?;
+        check_sliding(&parts.model)?;
+        Ok(parts)
+    }
+
+    /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that slides as a whole.
+    fn on_any(
+        scene: &Scene,
+        numerics: &Numerics,
+        wanted: Option<usize>,
+        store: &OperatorStore,
+    ) -> Result<Self> {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
         check_start(numerics)?;
-        let schedule = Schedule::new(&contact, scene.conditions(), resolution(numerics))?;
+        let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
         let model = mesh::model(&contact, &schedule, numerics, wanted, store)?;
-        check_sliding(&model)?;
         let unlimited = model.slides() || scene.conditions().holds_normal_force;
         let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
         check_stepper(numerics.stepper, &model)?;
@@ -482,8 +482,11 @@ fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
 }
 
 /// How periods are passed through.
-fn resolution(numerics: &Numerics) -> Resolution {
-    Resolution { resolved: numerics.cycle == Some(Cycle::Resolved), substeps: numerics.substeps }
+fn resolution(scene: &Scene, numerics: &Numerics) -> Resolution {
+    let sampled = scene.conditions().mode != Mode::Tangential && numerics.springs.is_none();
+    let chosen = sampled.then(|| knob::substeps_for(numerics.accuracy));
+    let resolved = numerics.cycle == Some(Cycle::Resolved);
+    Resolution { resolved, substeps: numerics.substeps.or(chosen) }
 }
 
 /// A figure of memory, bytes, from a table of the system in kilobytes.

@@ -339,6 +339,11 @@ impl Simulation {
         observers.iter_mut().try_for_each(|observer| observer.output(self))
     }
 
+    /// How it ended; none while it goes on or can be resumed.
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.finished()
+    }
+
     fn finished(&self) -> Option<Outcome> {
         match self.plan.end {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),

@@ -178,8 +178,17 @@ pub struct Checkpoint {
     pub progress: Progress,
     /// Wall time used, s.
     pub wall_seconds: f64,
-    /// Estimated error of the worn volume, relative to that of the limit.
+    /// Estimated error of worn volume and profile, relative to those of the limit, or to the largest of the run where there is none.
     pub error_estimate: Option<f64>,
+    /// The accuracy that was asked for, where the program chose the springs.
+    pub accuracy: Option<f64>,
+}
+
+impl Checkpoint {
+    /// Whether the estimated error is as small as was asked for; none where springs were given by hand.
+    pub fn accuracy_met(&self) -> Option<bool> {
+        self.accuracy.map(|accuracy| self.error_estimate.is_some_and(|error| error <= accuracy))
+    }
 }
 
 /// Why a run stopped.

@@ -173,6 +173,17 @@ impl Model {
         unworn.slip * self.log_slip_at(fields, x, &unworn, of_limit).1.exp_m1()
     }
 
+    /// Wear depth, m, at `offset = r² - c²`, m², as [`Model::radial_fields`] shows it at radii of its own.
+    pub fn shown_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
+        match state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
+            Some(stick) => {
+                let x = offset / self.unworn.limit_edge();
+                if x < 1.0 { self.between_springs(&stick.wear_depth, x).max(0.0) } else { 0.0 }
+            }
+            None => self.wear_depth_at(state, fields, offset).max(0.0),
+        }
+    }
+
     /// The coordinate of `ξ` on the mesh, and `λ` there, where the unworn slip is known.
     ///
     /// On a smooth mesh it is the local polynomial, corrected by what that is off by for the limit's `λ_∞`, which is known everywhere, as far as

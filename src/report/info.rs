@@ -69,8 +69,10 @@ pub struct InfoReport {
     pub rate_evaluations: Option<u64>,
     /// Wall time used, s.
     pub wall_seconds: Option<f64>,
-    /// Estimated error of the worn volume, relative to that of the limit.
+    /// Estimated error of worn volume and profile, relative to those of the limit, or to the largest of the run where there is none.
     pub error_estimate: Option<f64>,
+    /// Whether that is as small as was asked for; none where springs were given by hand.
+    pub accuracy_met: Option<bool>,
     /// The scene as TOML text.
     pub scene: String,
 }
@@ -121,6 +123,7 @@ impl InfoReport {
             rate_evaluations: count(|it| it.progress.rate_evaluations),
             wall_seconds: checkpoint.map(|it| it.wall_seconds),
             error_estimate: checkpoint.and_then(|it| it.error_estimate),
+            accuracy_met: checkpoint.and_then(Checkpoint::accuracy_met),
             scene: run.header.scene.clone(),
         }
     }
@@ -183,6 +186,10 @@ impl InfoReport {
                 ("evaluations of the wear rate", self.rate_evaluations.map(|it| it.to_string())),
                 ("wall time", self.wall_seconds.map(|it| Scale::TIME.show(it))),
                 ("estimated error", self.error_estimate.map(number)),
+                (
+                    "accuracy asked for",
+                    self.accuracy_met.map(|met| if met { "reached" } else { "not reached" }.to_owned()),
+                ),
             ],
         );
         rows.finish()

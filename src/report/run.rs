@@ -15,8 +15,10 @@ pub struct RunReport {
     pub output: String,
     /// Why the run stopped: `end`, `rate`, `interrupted`, `worn-out` or `unending`.
     pub stop_reason: &'static str,
-    /// Estimated error of the worn volume, relative to that of the limit.
+    /// Estimated error of worn volume and profile, relative to those of the limit, or to the largest of the run where there is none.
     pub error_estimate: Option<f64>,
+    /// Whether that is within `numerics.accuracy`; null where springs were given by hand.
+    pub accuracy_met: Option<bool>,
     /// Cycles done.
     pub cycles: f64,
     /// Dimensionless time.
@@ -63,6 +65,7 @@ impl RunReport {
             output: result.output.display().to_string(),
             stop_reason: result.stop_reason.name(),
             error_estimate: checkpoint.error_estimate,
+            accuracy_met: result.accuracy_met(),
             cycles: last.cycles,
             tau: last.tau,
             steps: checkpoint.progress.steps,
@@ -123,7 +126,12 @@ impl RunReport {
         );
         rows.optional(
             "estimated error",
-            self.error_estimate.map(|it| format!("{} of the limit's", number(it))),
+            self.error_estimate.map(|it| {
+                let of =
+                    if self.wear_volume_limit.is_some() { "the limit's" } else { "the largest of the run" };
+                let missed = if self.accuracy_met == Some(false) { ", more than was asked for" } else { "" };
+                format!("{} of {of}{missed}", number(it))
+            }),
         );
         rows.row(
             "steps",

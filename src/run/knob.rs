@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Parts;
+use super::ladder::{Shares, UNKNOWN};
 use super::mesh::MOST_RAISED;
 use crate::contact::InitialContact;
 use crate::error::Result;
@@ -140,12 +141,30 @@ pub(super) fn tolerance_for(accuracy: f64) -> f64 {
     OF_TIME * accuracy
 }
 
+/// Substeps of a period that is sampled.
+pub(super) fn substeps_for(accuracy: f64) -> usize {
+    let _ = accuracy;
+    96
+}
+
 /// Springs with which a run is made anew that was off by `error`, or found no end; none beyond [`MOST_REFINED`].
 pub(super) fn refined(springs: usize, error: Option<f64>, accuracy: f64) -> Option<usize> {
     let factor =
         error.map_or(RAISES[1].sqrt(), |error| (error / (AIM * accuracy)).powf(CAUTIOUS_ORDER.recip()));
     let refined = (springs as f64 * factor.clamp(RAISES[0], RAISES[1])).ceil() as usize;
     (refined <= MOST_REFINED).then_some(refined)
+}
+
+/// As [`refined`] on any mesh, where that keeps to the accuracy within the springs that a run may take.
+pub(super) fn worth_refining(springs: usize, shares: Shares, accuracy: f64) -> Option<usize> {
+    let rest = shares.substeps + shares.left_out;
+    let aim = AIM * accuracy - rest;
+    if shares.error() <= SURE * accuracy || aim <= 0.0 || shares.springs >= UNKNOWN {
+        return None;
+    }
+    let factor = (shares.springs / aim).powf(shares.order.recip()).max(RAISES[0]);
+    let refined = (springs as f64 * factor).ceil();
+    (refined <= MOST_REFINED as f64).then_some(refined as usize)
 }
 
 /// A coarser run of the same scene, for what it differs by.

@@ -5,11 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::knob::{self, Pilot};
+use super::ladder::{self, Ladder, Shares};
 use super::{Shared, worn_profile};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{FrettingLoop, OperatorStore};
 use crate::scene::Scene;
-use crate::simulation::{Flow, Observer, Simulation};
+use crate::simulation::{Flow, Observer, Outcome, Simulation};
 use crate::snapshot::{Checkpoint, RunWriter, Snapshot, StopReason};
 
 /// Steps along one fretting loop to and fro at constant indentation in the result file, even.
@@ -77,7 +78,17 @@ pub(super) struct Recorder {
     stop: Arc<AtomicBool>,
     /// Whether a file is to hold the result; else only checkpoints are written.
     pub(super) saves_result: bool,
-    pilot: Option<Pilot>,
+    judge: Option<Judge>,
+    /// The accuracy asked for, where the program chooses the springs.
+    accuracy: Option<f64>,
+}
+
+/// What tells the error of a run whose springs the program chose.
+enum Judge {
+    /// On a smooth mesh; none if it came to no end.
+    Pilot(Option<Pilot>),
+    /// On any other.
+    Ladder(Ladder),
 }
 
 impl Recorder {
@@ -96,7 +107,8 @@ impl Recorder {
             wall_seconds_before,
             stop,
             saves_result: true,
-            pilot: None,
+            judge: None,
+            accuracy: scene.numerics().accuracy_asked(),
         }
     }
 
@@ -106,19 +118,75 @@ impl Recorder {
         self.saves_result || (!complete && !failed && long)
     }
 
-    /// Lets a pilot run go before one whose springs the program chose.
-    pub(super) fn follow_pilot(&mut self, scene: &Scene, store: &OperatorStore, simulation: &Simulation) {
-        let model = simulation.model();
-        self.pilot = knob::serves(scene.numerics(), model)
-            .then(|| Pilot::run(scene, store, model.springs(), simulation.tolerance(), &self.stop))
-            .flatten();
+    /// Lets coarser runs go before one whose springs the program chose.
+    ///
+    /// # Arguments
+    /// * `limited` -- whether the scene has a limit in closed form
+    pub(super) fn follow_judge(
+        &mut self,
+        scene: &Scene,
+        store: &OperatorStore,
+        simulation: &Simulation,
+        limited: bool,
+    ) {
+        let (numerics, model) = (scene.numerics(), simulation.model());
+        self.judge = numerics.springs.is_none().then(|| {
+            if knob::serves(numerics, model) {
+                let tolerance = simulation.tolerance();
+                Judge::Pilot(Pilot::run(scene, store, model.springs(), tolerance, &self.stop))
+            } else {
+                Judge::Ladder(Ladder::climb(scene, numerics, simulation, limited, store, &self.stop))
+            }
+        });
     }
 
-    /// By the pilot where there is one that saw a snapshot, else by the balance of the worn volume.
+    /// What the error of a run is made up of, where its mesh is not smooth.
+    fn shares(&self, simulation: &Simulation) -> Option<Shares> {
+        match &self.judge {
+            Some(Judge::Ladder(ladder)) => ladder.shares(simulation, self.writer.snapshots()),
+            _ => None,
+        }
+    }
+
+    /// By coarser runs where the program chose the springs and there is a snapshot, else by the balance of the worn volume.
     fn error_estimate(&self, simulation: &Simulation) -> Option<f64> {
-        let by_pilot = self.pilot.as_ref();
-        let error = by_pilot.and_then(|it| it.error_of(simulation, self.writer.snapshots()));
-        error.or_else(|| balance_error(simulation))
+        let snapshots = self.writer.snapshots();
+        let balance = || balance_error(simulation);
+        match &self.judge {
+            None => balance(),
+            Some(Judge::Pilot(Some(pilot))) => pilot.error_of(simulation, snapshots).or_else(balance),
+            Some(Judge::Pilot(None)) => Some(balance().map_or(ladder::UNKNOWN, |it| it.max(ladder::UNKNOWN))),
+            Some(Judge::Ladder(_)) => self.shares(simulation).map(|shares| shares.error()),
+        }
+    }
+
+    /// Springs with which a run is to be made anew: where the program chose them, and the run found no end or may be off by more than was asked for.
+    pub(super) fn wanting(
+        &self,
+        scene: &Scene,
+        simulation: &Simulation,
+        outcome: &Result<Outcome>,
+        checkpoint: &Checkpoint,
+    ) -> Option<usize> {
+        let (accuracy, springs) = (scene.numerics().accuracy, simulation.model().springs());
+        let error = match (&self.judge, outcome) {
+            (None, _) | (_, Ok(Outcome::Interrupted)) => return None,
+            // Without a pilot, its finer one may come to an end.
+            (Some(Judge::Pilot(None)), _) => None,
+            (_, Ok(_)) => checkpoint.error_estimate,
+            // More springs may find an end where few do not.
+            (_, Err(Error::NotConverged { .. })) => None,
+            (_, Err(_)) => return None,
+        };
+        match &self.judge {
+            Some(Judge::Ladder(_)) if outcome.is_ok() => {
+                knob::worth_refining(springs, self.shares(simulation)?, accuracy)
+            }
+            _ => match error {
+                Some(error) if error <= knob::SURE * accuracy => None,
+                _ => knob::refined(springs, error, accuracy),
+            },
+        }
     }
 
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
@@ -127,6 +195,7 @@ impl Recorder {
             progress: *simulation.progress(),
             wall_seconds: self.wall_seconds_before + self.started.elapsed().as_secs_f64(),
             error_estimate: self.error_estimate(simulation),
+            accuracy: self.accuracy,
         }
     }
 }

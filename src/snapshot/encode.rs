@@ -136,6 +136,10 @@ impl Run<'_> {
         if let Some(estimate) = self.checkpoint.error_estimate {
             put_array(&group, ERROR_ESTIMATE, &[], &[estimate])?;
         }
+        if let Some((accuracy, met)) = self.checkpoint.accuracy.zip(self.checkpoint.accuracy_met()) {
+            put_array(&group, ACCURACY, &[], &[accuracy])?;
+            put_array(&group, ACCURACY_MET, &[], &[u64::from(met)])?;
+        }
         if !state.past.points.is_empty() {
             put_past(&group, &state.past)?;
         }

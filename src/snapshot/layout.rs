@@ -99,6 +99,11 @@ pub const LINEARISED: &str = "linearised";
 pub const ERROR_ESTIMATE: Label =
     label("error_estimate", "1", "estimated error of worn volume and profile relative to those of the limit");
 
+/// Accuracy asked for, scalar, in the group of the checkpoint, and whether the error estimate keeps to it; absent where springs were given by hand.
+pub const ACCURACY: Label = label("accuracy", "1", "accuracy of worn volume and profile that was asked for");
+pub const ACCURACY_MET: Label =
+    label("accuracy_met", "1", "1 if the estimated error is as small as was asked for, 0 if not");
+
 /// A dataset, and the place of its values in the record it stores.
 pub(super) struct Field<Record, Value> {
     pub label: Label<'static>,

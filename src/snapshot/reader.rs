@@ -239,6 +239,9 @@ impl Source {
         if group.link_exists(ERROR_ESTIMATE.name) {
             checkpoint.error_estimate = Some(self.scalar(&group, ERROR_ESTIMATE)?);
         }
+        if group.link_exists(ACCURACY.name) {
+            checkpoint.accuracy = Some(self.scalar(&group, ACCURACY)?);
+        }
         if group.link_exists(STICK) {
             let group = group.group(STICK).map_err(|error| self.damaged("/checkpoint/stick", &error))?;
             let mut stick = StickEdge {

@@ -32,8 +32,13 @@ pub(super) const WALL_SECONDS: &str = "wall_seconds";
 
 const RUN_TEXTS: [Label; 1] = [("stop_reason", "1", "why the run stopped")];
 
-const RUN_NUMBERS: [Label; 16] = [
+const RUN_NUMBERS: [Label; 17] = [
     ("error_estimate", "1", "estimated error of worn volume and profile, relative to those of the limit"),
+    (
+        "accuracy_met",
+        "1",
+        "1 if the estimated error is as small as was asked for, 0 if not; missing where springs were given by hand",
+    ),
     ("cycles", "1", "number of fretting cycles"),
     ("tau", "1", "dimensionless time"),
     ("steps", "1", "steps accepted"),
@@ -97,7 +102,11 @@ impl Schema {
         let json = report.map(serde_json::to_value).transpose();
         let json = json.expect("reports have string keys and plain values only").unwrap_or_default();
         let text = |label: &Label| json[label.0].as_str().unwrap_or_default().to_owned();
-        let number = |label: &Label| json[label.0].as_f64().unwrap_or(f64::NAN);
+        let truth = |value: &serde_json::Value| value.as_bool().map(|it| if it { 1.0 } else { 0.0 });
+        let number = |label: &Label| {
+            let value = &json[label.0];
+            value.as_f64().or_else(|| truth(value)).unwrap_or(f64::NAN)
+        };
         (self.texts.iter().map(text).collect(), self.numbers.iter().map(number).collect())
     }
 

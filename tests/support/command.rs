@@ -8,10 +8,11 @@ use std::time::Duration;
 use serde_json::Value;
 
 /// The keys of the JSON of `run`.
-pub const RUN_KEYS: [&str; 18] = [
+pub const RUN_KEYS: [&str; 19] = [
     "output",
     "stop_reason",
     "error_estimate",
+    "accuracy_met",
     "cycles",
     "tau",
     "steps",
