@@ -23,7 +23,7 @@ mod stage;
 use std::f64::consts::PI;
 
 use super::schedule::{Demand, Drive, Schedule};
-use super::{Model, Place, State};
+use super::{Fields, Model, Place, State};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::grid::Clustering;
@@ -261,7 +261,7 @@ impl MovingStick {
         let radius = profile.radius_at(depth)?;
         let load = unworn_load(profile, radius, compression);
         let behind = if self.outwards { STATIONS } else { 0 };
-        let nodes = if self.outwards { model.springs() } else { 0 };
+        let nodes = if self.outwards { model.shown.offsets().len() } else { 0 };
         Ok(StickEdge {
             area: radius * radius,
             depth,
@@ -345,6 +345,29 @@ impl Model {
                 self.contact.indentation() - self.contact.slip_compression() + stick.depth
             }
             _ => self.contact.indentation(),
+        }
+    }
+
+    /// Wear depth, m, at the radii of the output that the first contact did not cover, of a state with its fields: what slip has grown by.
+    ///
+    /// By the rates of the steps it would be off there, for wear sets in where the contact edge comes past a radius within a step.
+    pub fn settle_depth(&self, state: &mut State, fields: &Fields) {
+        let (Some(moving), Some(stick)) = (&self.moving, &mut state.stick) else { return };
+        let first = moving.span[0].exp();
+        for (offset, depth) in self.shown.offsets().iter().zip(&mut stick.wear_depth) {
+            let squared = self.place.stick_area + offset;
+            let z = squared - stick.area;
+            if squared < first || z <= 0.0 {
+                continue;
+            }
+            let x = z / fields.edge;
+            *depth = if x < 1.0 {
+                let unworn = self.unworn.at_stick(stick.area, fields.place.slip_compression, z).slip;
+                let grown = unworn * self.between_springs(&fields.log_slip, x).exp_m1();
+                (grown - moving.left_behind(&stick.left_behind, squared)).max(0.0)
+            } else {
+                0.0
+            };
         }
     }
 

@@ -37,6 +37,13 @@ pub struct RadialFields {
 }
 
 impl Model {
+    /// The same contact on the same springs, with the radii of the output at `r² - c²`, m², increasing, instead of its own.
+    pub(crate) fn shown_at(mut self, offsets: Vec<f64>) -> Self {
+        self.shown =
+            Shown { unworn: offsets.iter().map(|offset| self.unworn.at(*offset)).collect(), offsets };
+        self
+    }
+
     /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
     pub fn wear_volume(&self, fields: &Fields) -> f64 {
         self.volume(fields.edge, &fields.wear_depth)
@@ -171,17 +178,6 @@ impl Model {
         let unworn = self.unworn_at(&fields.place, z);
         let of_limit = |spring: usize| fields.unworn[spring].limit_log_slip();
         unworn.slip * self.log_slip_at(fields, x, &unworn, of_limit).1.exp_m1()
-    }
-
-    /// Wear depth, m, at `offset = r² - c²`, m², as [`Model::radial_fields`] shows it at radii of its own.
-    pub fn shown_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
-        match state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
-            Some(stick) => {
-                let x = offset / self.unworn.limit_edge();
-                if x < 1.0 { self.between_springs(&stick.wear_depth, x).max(0.0) } else { 0.0 }
-            }
-            None => self.wear_depth_at(state, fields, offset).max(0.0),
-        }
     }
 
     /// The coordinate of `ξ` on the mesh, and `λ` there, where the unworn slip is known.

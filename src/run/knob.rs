@@ -13,10 +13,11 @@ use super::mesh::MOST_RAISED;
 use crate::contact::InitialContact;
 use crate::error::Result;
 use crate::grid::Clustering;
-use crate::model::{Model, OperatorStore, State};
+use crate::model::{Model, OperatorStore, Schedule, State};
 use crate::scene::{Numerics, Scene, Stepper};
 use crate::simulation::{Flow, Observer, Outcome, Simulation};
 use crate::snapshot::{Snapshot, same_cycles};
+use crate::stick_slip::Regime;
 
 /// Error of the profile on 24 springs of a smooth mesh, and the power with which it falls, fitted to 118 random scenes on 16 to 54 springs:
 /// `ln e = A + B k + C ln n + D ln(a0/c) + E ln n ln(a0/c)` with `k > 0` or zero. Nine of ten lie within a factor of 2.8, 98 of 100 below 7.7.
@@ -92,7 +93,17 @@ fn exponent(contact: &InitialContact) -> f64 {
 }
 
 /// Springs that keep the error of volume and profile below `accuracy`.
-pub(super) fn springs_for(clustering: Clustering, contact: &InitialContact, accuracy: f64) -> usize {
+pub(super) fn springs_for(
+    clustering: Clustering,
+    contact: &InitialContact,
+    schedule: &Schedule,
+    accuracy: f64,
+) -> usize {
+    if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip {
+        let [springs, at] = SPRINGS_UNDER_FORCE;
+        return (springs * (at / accuracy).sqrt()).clamp(FEWEST_BELOW_A_HUNDREDTH, MOST_REFINED as f64).ceil()
+            as usize;
+    }
     if clustering != Clustering::Smooth {
         // The worn volume is of third order there (docs/numerics.md).
         return (120.0 * (1e-4 / accuracy).cbrt()).ceil() as usize;
@@ -140,6 +151,10 @@ impl Falling {
 pub(super) fn tolerance_for(accuracy: f64) -> f64 {
     OF_TIME * accuracy
 }
+
+/// Springs with which a held normal force is followed to an accuracy: the edge of stick creeps over worn ground, to second order
+/// (docs/accuracy.md).
+const SPRINGS_UNDER_FORCE: [f64; 2] = [200.0, 1e-4];
 
 /// Substeps of a period that is sampled.
 pub(super) fn substeps_for(accuracy: f64) -> usize {

@@ -11,7 +11,7 @@ use super::Parts;
 use super::knob::substeps_for;
 use crate::error::Result;
 use crate::loading::Mode;
-use crate::model::{Model, OperatorStore, State};
+use crate::model::{Model, OperatorStore};
 use crate::scene::{Numerics, Scene, Stepper};
 use crate::simulation::{End, Flow, Observer, Outcome, Simulation};
 use crate::snapshot::{Snapshot, same_cycles};
@@ -124,14 +124,15 @@ impl Ladder {
             };
             let parts = Parts::on_any(scene, &numerics, Some(springs(steps)), store).ok()?;
             let plan = parts.plan.end;
-            let mut coarse = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan).ok()?;
-            let mut seen = Seen { states: vec![], stop: Arc::clone(stop), stepper: numerics.stepper };
+            let model = parts.model.shown_at(offsets.clone());
+            let mut coarse = Simulation::new(model, parts.stepper, parts.tolerance, parts.plan).ok()?;
+            let mut seen = Seen { sights: vec![], stop: Arc::clone(stop), stepper: numerics.stepper };
             let outcome = coarse.run(&mut [&mut seen]).ok()?;
             let model = coarse.model();
             (outcome != Outcome::Interrupted).then(|| Companion {
                 springs: model.springs(),
                 points: points(model),
-                sights: seen.states.iter().map(|state| Sight::of(model, state, &offsets)).collect(),
+                sights: seen.sights,
                 spent: matches!(plan, End::Rate(_)) && outcome != Outcome::Unending,
             })
         };
@@ -205,10 +206,10 @@ impl Ladder {
 }
 
 impl Sight {
-    fn of(model: &Model, state: &State, offsets: &[f64]) -> Self {
-        let fields = model.fields(state);
-        let depth = offsets.iter().map(|offset| model.shown_depth_at(state, &fields, *offset)).collect();
-        Self { cycles: state.cycles, volume: model.worn_volume(state, &fields), depth }
+    fn of(simulation: &Simulation) -> Self {
+        let state = simulation.state();
+        let volume = simulation.model().worn_volume(state, simulation.fields());
+        Self { cycles: state.cycles, volume, depth: simulation.wear_depth() }
     }
 
     fn shown(snapshot: &Snapshot, every: usize) -> Self {
@@ -244,16 +245,16 @@ fn gap(one: &[Sight], other: &[Sight], spent: bool, scale: [f64; 2]) -> Option<f
     common.chain(ends).reduce(larger)
 }
 
-/// The states at the outputs.
+/// What is seen at the outputs.
 struct Seen {
-    states: Vec<State>,
+    sights: Vec<Sight>,
     stop: Arc<AtomicBool>,
     stepper: Stepper,
 }
 
 impl Observer for Seen {
     fn output(&mut self, simulation: &Simulation) -> Result<()> {
-        self.states.push(simulation.state().clone());
+        self.sights.push(Sight::of(simulation));
         Ok(())
     }
 

@@ -77,7 +77,7 @@ pub(super) fn model(
         Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
         Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
     };
-    let chosen = || springs_for(clusterings[0], contact, numerics.accuracy);
+    let chosen = || springs_for(clusterings[0], contact, schedule, numerics.accuracy);
     let mut springs = given.or(wanted).unwrap_or_else(chosen);
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
     check_memory(key, springs, contact, schedule)?;

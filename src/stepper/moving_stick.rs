@@ -216,7 +216,7 @@ impl Stepper for MovingStickImplicit {
             values.iter().enumerate().map(|(j, value)| value + summed(&|stage| part(stage, j))).collect()
         };
         let rate = |(now, before): (&f64, &f64)| (now - before) / cycles;
-        let next = State {
+        let mut next = State {
             cycles: state.cycles + cycles,
             edge: at.edge,
             dissipated_energy: state.dissipated_energy + summed(&|stage| stage.dissipation),
@@ -235,6 +235,7 @@ impl Stepper for MovingStickImplicit {
             compression: at.compression,
             past: Past::default(),
         };
+        model.settle_depth(&mut next, &self.trial.fields);
         let slopes = stages.iter().map(|stage| &stage.log_slip[..]);
         let error = embedded_error(model, &self.trial.fields, cycles, slopes);
         Ok(Trial { state: Some(next), fields: None, error, rate_evaluations: evaluations, next_step: None })
