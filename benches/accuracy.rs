@@ -6,6 +6,7 @@
 
 use std::time::Instant;
 
+use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
 use fretwear::error::Result;
 use fretwear::friction::Coulomb;
@@ -93,7 +94,12 @@ fn run(
     let unit = 3.0 / (contact.tau_per_cycle() * contact.slip_compression());
     let outputs: Vec<f64> = (0..OUTPUTS).map(|i| 0.1 * unit * 1.6f64.powi(i)).collect();
     let plan = Plan { end: End::Cycles(outputs[OUTPUTS as usize - 1]), outputs };
-    let model = Model::new(&contact, springs, Clustering::Smooth)?;
+    let model = Model::new(
+        &contact,
+        &Conditions::plain(*contact.friction(), *contact.wear()),
+        springs,
+        Clustering::Smooth,
+    )?;
     let mut shown = Shown {
         volume: vec![],
         wear_depth: vec![],

@@ -34,7 +34,8 @@ fn contact() -> InitialContact {
 }
 
 fn model(contact: &InitialContact, springs: usize) -> Model {
-    Model::new(contact, springs, Clustering::Smooth).expect("in partial slip")
+    Model::new(contact, &Conditions::plain(*contact.friction(), *contact.wear()), springs, Clustering::Smooth)
+        .expect("in partial slip")
 }
 
 /// The main scene in the middle of its transient, at τ = 3; reached with a loose tolerance, for speed.

@@ -8,6 +8,7 @@
 
 use std::time::Instant;
 
+use fretwear::conditions::Conditions;
 use fretwear::error::Result;
 use fretwear::grid::Clustering;
 use fretwear::model::{Model, State};
@@ -95,7 +96,12 @@ impl Observer for Seen {
 impl Reference {
     fn new(case: &Case, (springs, tolerance): (usize, f64), cycles: &[f64]) -> Result<Self> {
         let contact = case.scene("")?.contact()?;
-        let model = Model::new(&contact, springs, Clustering::Smooth)?;
+        let model = Model::new(
+            &contact,
+            &Conditions::plain(*contact.friction(), *contact.wear()),
+            springs,
+            Clustering::Smooth,
+        )?;
         let plan = Plan { outputs: cycles.to_vec(), end: End::Cycles(cycles[cycles.len() - 1]) };
         let mut seen = Seen::default();
         let mut simulation = Simulation::new(model, Box::new(Multistep::new(tolerance)), tolerance, plan)?;

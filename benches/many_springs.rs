@@ -11,6 +11,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use fretwear::abel::{AbelOperators, Backend};
+use fretwear::conditions::Conditions;
 use fretwear::grid::{Clustering, Mesh};
 use fretwear::linear::Factors;
 use fretwear::model::Model;
@@ -76,7 +77,9 @@ fn model(n: usize) -> [f64; 5] {
     let scene = Scene::from_toml(include_str!("../data/scenes/paraboloid.toml"), "scene").expect("a scene");
     let contact = scene.contact().expect("a contact");
     let begin = Instant::now();
-    let model = Model::new(&contact, n, Clustering::Smooth).expect("a model");
+    let model =
+        Model::new(&contact, &Conditions::plain(*contact.friction(), *contact.wear()), n, Clustering::Smooth)
+            .expect("a model");
     let state = model.initial_state().expect("a state");
     let set_up = begin.elapsed().as_secs_f64();
     let mut fields = model.fields(&state);

@@ -49,6 +49,8 @@ pub struct InitialContact {
     contact_radius: f64,
     normal_force: f64,
     amplitude: f64,
+    /// Whether the amplitude follows from the stick radius asked for.
+    amplitude_by_stick: bool,
     slip_compression: f64,
     /// `η = ln(a0/c)`; none under full sliding.
     stick_logarithm: Option<f64>,
@@ -102,6 +104,7 @@ impl InitialContact {
             contact_radius,
             normal_force,
             amplitude: slip.amplitude,
+            amplitude_by_stick: matches!(loading.amplitude, Amplitude::StickRatio(_)),
             slip_compression: slip.compression,
             stick_logarithm: slip.stick_logarithm,
             tau_per_cycle,
@@ -179,6 +182,11 @@ impl InitialContact {
     /// Tangential amplitude `U`, m.
     pub fn amplitude(&self) -> f64 {
         self.amplitude
+    }
+
+    /// Whether that follows from the stick radius that was asked for, so that it is the contact's own also where a rig moves it.
+    pub fn amplitude_follows_stick(&self) -> bool {
+        self.amplitude_by_stick
     }
 
     /// Tangential amplitude `μ_f d/M`, m, from which on the whole contact slides.

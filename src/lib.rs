@@ -40,7 +40,7 @@
 //!     "example.toml",
 //! )?;
 //! let contact = scene.contact()?;
-//! let model = Model::new(&contact, 60, Clustering::Smooth)?;
+//! let model = Model::new(&contact, scene.conditions(), 60, Clustering::Smooth)?;
 //! let cycles = 1.0 / contact.tau_per_cycle();
 //! let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
 //! let tolerance = 1e-5;

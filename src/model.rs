@@ -146,13 +146,21 @@ pub struct Model {
 }
 
 impl Model {
-    /// Puts a contact in partial slip on springs.
+    /// Puts a contact on springs under the laws, mode, blocks and control of its scene.
+    ///
+    /// # Arguments
+    /// * `contact` -- the contact of the first cycle
+    /// * `conditions` -- those of its scene: the laws in the contact are but stand-ins of theirs
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] if the contact does not slip in part; [`Error::OutOfRange`] for too few springs; those of the transforms.
-    pub fn new(contact: &InitialContact, springs: usize, clustering: Clustering) -> Result<Self> {
-        let conditions = Conditions::plain(*contact.friction(), *contact.wear());
-        let schedule = Schedule::new(contact, &conditions, Resolution::default())?;
+    /// [`Error::Inconsistent`] if nothing slips or the conditions do not go together; [`Error::OutOfRange`] for too few springs; those of the transforms.
+    pub fn new(
+        contact: &InitialContact,
+        conditions: &Conditions,
+        springs: usize,
+        clustering: Clustering,
+    ) -> Result<Self> {
+        let schedule = Schedule::new(contact, conditions, Resolution::default())?;
         Self::under(contact, schedule, springs, clustering, &OperatorStore::default())
     }
 

@@ -166,8 +166,20 @@ impl Simulation {
     /// * `tolerance` -- largest error of one step in the wear depth, relative to the largest depth of the limit
     ///
     /// # Errors
-    /// Those of [`Model::initial_state`].
+    /// [`Error::Inconsistent`] if the method of stepping does not follow the edge of stick of the model as it moves or stays; those of
+    /// [`Model::initial_state`].
     pub fn new(model: Model, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Result<Self> {
+        if stepper.follows_stick() != model.moving().is_some() {
+            return Err(Error::Inconsistent {
+                what: "numerics.stepper",
+                why: if model.moving().is_some() {
+                    "does not follow the edge of stick of this contact, which moves; step it by MovingStickImplicit"
+                } else {
+                    "follows an edge of stick that moves, and that of this contact stays; step it by Implicit"
+                }
+                .into(),
+            });
+        }
         let state = model.initial_state()?;
         let fields = model.fields(&state);
         let mut first_rate = 0.0_f64;

@@ -50,6 +50,11 @@ pub trait Stepper {
     /// Order of the error estimate in the step, for the choice of the next one.
     fn estimate_order(&self) -> f64;
 
+    /// Whether it follows an edge of stick that moves, and nothing else.
+    fn follows_stick(&self) -> bool {
+        false
+    }
+
     /// Whether states within a step are known as well as that at its end, see [`Stepper::between`]; else steps have to land where they are wanted.
     fn interpolates(&self) -> bool {
         false

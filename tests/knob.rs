@@ -1,5 +1,6 @@
 //! What `numerics.accuracy` promises: the error asked for, and an estimate of it that is near.
 
+use fretwear::conditions::Conditions;
 use fretwear::grid::Clustering;
 use fretwear::model::{Model, State};
 use fretwear::run::{Run, Shared};
@@ -36,7 +37,13 @@ impl Observer for Seen {
 /// Largest error of worn volume and of depth at the radii of a run, over its snapshots, against 140 springs and steps that are off by 1e-9.
 fn error(case: Case, file: &RunFile) -> f64 {
     let contact = scene(case, "").contact().expect("a contact");
-    let model = Model::new(&contact, 140, Clustering::Smooth).expect("a model");
+    let model = Model::new(
+        &contact,
+        &Conditions::plain(*contact.friction(), *contact.wear()),
+        140,
+        Clustering::Smooth,
+    )
+    .expect("a model");
     let outputs: Vec<f64> = file.snapshots[1..].iter().map(|it| it.cycles).collect();
     let plan = Plan { end: End::Cycles(outputs[outputs.len() - 1]), outputs };
     let mut seen = Seen::default();

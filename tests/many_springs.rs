@@ -8,6 +8,7 @@ use faer::traits::RealField;
 use faer::traits::math_utils::from_f64;
 use fretwear::abel::{AbelOperators, Backend};
 use fretwear::closed_form::LimitingShape;
+use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
 use fretwear::grid::{Clustering, Mesh};
 use fretwear::linear::{Factors, Halves, HodlrFactors, LowRank, OffDiagonal};
@@ -194,7 +195,13 @@ fn paraboloid(grading: f64) -> InitialContact {
 /// Worn volume at `τ = 20`, and what is left of its way to the closed form, relative.
 fn run(grading: f64, springs: usize, tolerance: f64) -> (f64, f64) {
     let contact = paraboloid(grading);
-    let model = Model::new(&contact, springs, Clustering::Smooth).unwrap();
+    let model = Model::new(
+        &contact,
+        &Conditions::plain(*contact.friction(), *contact.wear()),
+        springs,
+        Clustering::Smooth,
+    )
+    .unwrap();
     let expected = if springs < 1000 { Backend::Dense } else { Backend::Hierarchical };
     assert_eq!(model.operators().backend(), expected);
     let cycles = 20.0 / contact.tau_per_cycle();
@@ -256,7 +263,13 @@ fn factors_of_newtons_matrix_invert_it_nearly() {
     let n = 1600;
     for grading in [-0.95, -0.8, 0.0, 0.9] {
         let contact = paraboloid(grading);
-        let model = Model::new(&contact, n, Clustering::Smooth).unwrap();
+        let model = Model::new(
+            &contact,
+            &Conditions::plain(*contact.friction(), *contact.wear()),
+            n,
+            Clustering::Smooth,
+        )
+        .unwrap();
         let state = model.initial_state().unwrap();
         let fields = model.fields(&state);
         let drive = model.schedule().drive(0.0, 0.0);
@@ -313,7 +326,13 @@ fn runs_that_are_resumed_with_factors_of_steps_before_repeat_every_bit() {
     let end = |every: u64| {
         let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
         let stepper = || Box::new(Multistep::new(1e-4));
-        let model = Model::new(&contact, 1200, Clustering::Smooth).unwrap();
+        let model = Model::new(
+            &contact,
+            &Conditions::plain(*contact.friction(), *contact.wear()),
+            1200,
+            Clustering::Smooth,
+        )
+        .unwrap();
         let mut simulation = Simulation::new(model.clone(), stepper(), 1e-4, plan.clone()).unwrap();
         let (mut resumed, mut with_factors) = (0, 0);
         while simulation.run(&mut [&mut Stopping(every)]).unwrap() == Outcome::Interrupted {

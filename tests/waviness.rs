@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fretwear::closed_form::LimitingShape;
+use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
 use fretwear::friction::Coulomb;
 use fretwear::grid::Clustering;
@@ -213,8 +214,17 @@ fn springs_tell_how_much_of_the_waves_they_do_not_see() {
     let limit = LimitingShape::from_contact(&contact).unwrap().unwrap();
     // A mesh of straight lines across every wave misses its height.
     let height = 2.0 / (2.0 * PI * waves).powi(2) / limit.wear_depth_max();
-    let unseen = [24, 400, 800]
-        .map(|springs| Model::new(&contact, springs, Clustering::Smooth).unwrap().unseen_depth().unwrap());
+    let unseen = [24, 400, 800].map(|springs| {
+        Model::new(
+            &contact,
+            &Conditions::plain(*contact.friction(), *contact.wear()),
+            springs,
+            Clustering::Smooth,
+        )
+        .unwrap()
+        .unseen_depth()
+        .unwrap()
+    });
     println!("{height:e} {unseen:?}");
     assert!(unseen[0] > 0.5 * height && unseen[0] < 4.0 * height, "{unseen:?} of {height:e}");
     assert!(unseen[1] < 0.01 * height && unseen[2] < 0.05 * unseen[1], "{unseen:?} of {height:e}");
@@ -366,7 +376,13 @@ fn a_wave_with_a_flat_spot_is_still_a_contact() {
         ];
         assert!(errors.iter().all(|error| *error < 1e-6), "c/a0 = {ratio}: {errors:?}");
         let contact = contact(&table(wavy(3001, 3.0, low)), 0.0, ratio);
-        let model = Model::new(&contact, 200, Clustering::Smooth).unwrap();
+        let model = Model::new(
+            &contact,
+            &Conditions::plain(*contact.friction(), *contact.wear()),
+            200,
+            Clustering::Smooth,
+        )
+        .unwrap();
         let state = model.initial_state().unwrap();
         let edge = relative(state.edge, contact.slip_area_offset());
         assert!(edge < 1e-4, "c/a0 = {ratio}: {edge:e}");

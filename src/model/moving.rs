@@ -99,12 +99,7 @@ impl MovingStick {
         }
         let cause = match (conditions.holds_normal_force, conditions.tangential_control) {
             (true, TangentialControl::Displacement) => Some(Cause::NormalForce(contact.normal_force())),
-            (true, _) => {
-                return Err(Error::Inconsistent {
-                    what: "loading.normal_force",
-                    why: "is not held together with a tangential force or a rig; hold one of the two".into(),
-                });
-            }
+            (true, _) => unreachable!("no schedule holds both forces"),
             (false, TangentialControl::Displacement) => {
                 let changes = conditions.friction_history != History::Constant;
                 match &conditions.blocks[..] {

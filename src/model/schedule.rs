@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::reach::first_force;
 use crate::conditions::Conditions;
 use crate::contact::InitialContact;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::FrictionLaw;
 use crate::history::History;
 use crate::loading::{Block, Clock, Mode, TangentialControl, has_come};
@@ -107,8 +107,9 @@ impl Schedule {
     /// What acts on a contact under some conditions.
     ///
     /// # Errors
-    /// Those of the indentation of a block.
+    /// [`Error::Inconsistent`] where a normal force is held beside a tangential one or a rig; those of the indentation of a block.
     pub fn new(contact: &InitialContact, conditions: &Conditions, resolution: Resolution) -> Result<Self> {
+        check_forces(conditions)?;
         let whole = Block { duration: f64::INFINITY, amplitude_factor: 1.0, indentation_factor: 1.0 };
         let blocks = if conditions.blocks.is_empty() { vec![whole] } else { conditions.blocks.clone() };
         let clock_rate = match conditions.clock {
@@ -123,13 +124,12 @@ impl Schedule {
         let ends: Vec<f64> = ends.collect();
         let resolved = resolution.resolved || conditions.mode != Mode::Tangential;
         let friction = conditions.friction.scaled(conditions.friction_history.at(0.0));
+        let driven = driven_amplitude(contact, conditions, &friction)?;
         let mut drives = Vec::with_capacity(blocks.len());
         let mut depths = Vec::with_capacity(blocks.len());
         for block in &blocks {
-            let (amplitude, indentation) = (
-                contact.amplitude() * block.amplitude_factor,
-                contact.indentation() * block.indentation_factor,
-            );
+            let (amplitude, indentation) =
+                (driven * block.amplitude_factor, contact.indentation() * block.indentation_factor);
             let mut drive = Drive {
                 friction: conditions.friction,
                 wear: conditions.wear,
@@ -309,6 +309,44 @@ impl Schedule {
         self.is_uniform()
             && !self.resolves()
             && matches!(self.conditions.wear, WearLaw::Archard(_) | WearLaw::DissipatedEnergy { .. })
+    }
+}
+
+/// Refuses two forces that are held at once.
+fn check_forces(conditions: &Conditions) -> Result<()> {
+    let (other, remedy) = match conditions.tangential_control {
+        TangentialControl::Displacement => return Ok(()),
+        TangentialControl::Force => ("tangential_control = \"force\"".to_owned(), "tangential_control"),
+        TangentialControl::Rig { stiffness } => {
+            (format!("rig_stiffness = {stiffness:e} N/m"), "rig_stiffness")
+        }
+    };
+    if !conditions.holds_normal_force {
+        return Ok(());
+    }
+    Err(Error::Inconsistent {
+        what: "loading.normal_force",
+        why: format!(
+            "is held, and so is what loading.{other} asks for, which this version does not follow together; give loading.initial_force or \
+             loading.indentation instead, or remove loading.{remedy}"
+        ),
+    })
+}
+
+/// Tangential amplitude that is given, m: of the contact, or of the far end of a rig.
+///
+/// A stick radius that is asked for is the contact's; then the far end moves by `U_far = U + F_x(U)/k_r`.
+fn driven_amplitude(
+    contact: &InitialContact,
+    conditions: &Conditions,
+    friction: &FrictionLaw,
+) -> Result<f64> {
+    let amplitude = contact.amplitude();
+    match conditions.tangential_control {
+        TangentialControl::Rig { stiffness } if contact.amplitude_follows_stick() => {
+            Ok(amplitude + first_force(contact, friction, amplitude, contact.indentation())? / stiffness)
+        }
+        _ => Ok(amplitude),
     }
 }
 

@@ -241,6 +241,10 @@ impl Stepper for MovingStickImplicit {
         Ok(Trial { state: Some(next), fields: None, error, rate_evaluations: evaluations, next_step: None })
     }
 
+    fn follows_stick(&self) -> bool {
+        true
+    }
+
     fn estimate_order(&self) -> f64 {
         3.0
     }

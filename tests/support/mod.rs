@@ -64,7 +64,8 @@ impl Case {
     }
 
     pub fn model(&self) -> Model {
-        Model::new(&self.contact(), self.springs, self.clustering).unwrap()
+        let contact = self.contact();
+        Model::new(&contact, &laws::plain(&contact), self.springs, self.clustering).unwrap()
     }
 
     pub fn simulation(&self, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Simulation {
