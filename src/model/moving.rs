@@ -184,6 +184,11 @@ impl MovingStick {
         matches!(self.cause, Cause::Sliding(_))
     }
 
+    /// Whether the edge moves inwards, upon unworn ground.
+    pub fn recedes(&self) -> bool {
+        !self.outwards && !self.rests()
+    }
+
     /// By how much area and depth of the edge of stick have changed in a stage, as far as ground passes it.
     fn motion(&self, target: &StickTarget, area: f64, depth: f64) -> (f64, f64) {
         if self.slides() { (0.0, 0.0) } else { (area - target.stick.area, depth - target.stick.depth) }

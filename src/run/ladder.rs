@@ -11,8 +11,8 @@ use super::{Parts, resolution};
 use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
 use crate::error::Result;
-use crate::loading::Mode;
-use crate::model::{Model, OperatorStore, Schedule};
+use crate::loading::{Mode, TangentialControl};
+use crate::model::{Model, MovingStick, OperatorStore, Schedule};
 use crate::scene::{Numerics, Scene, Stepper};
 use crate::simulation::{End, Flow, Observer, Outcome, Simulation};
 use crate::snapshot::{Snapshot, same_cycles};
@@ -25,8 +25,11 @@ const FEWEST: usize = 10;
 const TOLERANCE: f64 = 5.0;
 const LARGEST_TOLERANCE: f64 = 0.1;
 
-/// Orders that are believed: edges that move and kinks of wear are of second order at best, and below the first number nothing is known.
-const ORDERS: [f64; 2] = [0.5, 2.0];
+/// Orders that are believed: edges that move outwards and kinks of wear are of second order at best, edges that may move inwards of first, and
+/// below the last number nothing is known.
+const ORDER: f64 = 2.0;
+const ORDER_INWARDS: f64 = 1.0;
+const LEAST_ORDER: f64 = 0.5;
 
 /// Substeps of a period beside which those of a run are judged, over these. Halves would tell little: as more substeps come next to a reversal, the
 /// error may stand still and then fall at once.
@@ -62,6 +65,8 @@ struct Companion {
 #[derive(Debug)]
 pub(super) struct Ladder {
     springs: usize,
+    /// The largest order believed.
+    order: f64,
     /// Every which of the radii of the run is looked at.
     every: usize,
     /// Those radii over the contact radius, where the edge of stick moves.
@@ -138,9 +143,12 @@ impl Ladder {
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
         let radii = model.moving().map(|_| shown.map(|r| r / radius).collect());
+        let held = scene.conditions().tangential_control != TangentialControl::Displacement;
+        let inwards = held || model.slides() || model.moving().is_some_and(MovingStick::recedes);
         let unseen = model.unseen_depth().unwrap_or(0.0);
         Self {
             springs: model.springs(),
+            order: if inwards { ORDER_INWARDS } else { ORDER },
             every,
             radii,
             limit: limited.then(|| [model.limit_volume(), model.depth_scale()]),
@@ -175,9 +183,9 @@ impl Ladder {
             Some((gap, step)) => {
                 let seen = (gap / nearest).ln() / step.ln();
                 let grows = if seen > 0.0 { nearest } else { nearest.max(gap) };
-                (seen.clamp(ORDERS[0], ORDERS[1]), grows)
+                (seen.clamp(LEAST_ORDER, self.order), grows)
             }
-            None => (ORDERS[0], nearest),
+            None => (LEAST_ORDER, nearest),
         };
         let springs = difference / (ratio.powf(order) - 1.0);
         let substeps = first.unsampled.as_ref().map_or(0.0, |it| it.error(scale));

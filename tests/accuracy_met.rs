@@ -1,0 +1,276 @@
+//! Runs whose numerics the program chose say how far off they are, and miss no accuracy without a word.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use fretwear::conditions::Conditions;
+use fretwear::grid::Clustering;
+use fretwear::model::{Model, Resolution, Schedule};
+use fretwear::run::{Run, RunResult, Shared};
+use fretwear::scene::Scene;
+use fretwear::simulation::{End, Plan, Simulation};
+use fretwear::stepper::{Implicit, MovingStickImplicit};
+use serde_json::Value;
+use support::command::{names, run, text};
+use support::reference::Table;
+
+const FRICTION: &str = "[friction.coulomb]\ncoefficient = 0.5\n";
+const WEAR: &str = "[wear.archard]\ncoefficient = 1.667e-13\n";
+const DEPTH: &str = "indentation = 1e-6\nstick_ratio = 0.7\ntau = 3\n";
+const FORCE: &str = "normal_force = 266.6666666666667\nstick_ratio = 0.7\n";
+
+/// `2 c_T a0`, N/m, and a0² d, m³, of the contact.
+const STIFFNESS: f64 = 2.0 * 2e11 * 2.0 / 3.0 * 1e-3;
+const VOLUME: f64 = 1e-12;
+
+fn scene(laws: &str, loading: &str, numerics: &str) -> String {
+    format!(
+        "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = 0\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n\
+         {laws}[loading]\n{loading}\n[numerics]\n{numerics}\n[output]\nsnapshots = 6\n"
+    )
+}
+
+/// Name, laws and loading of a scene of every kind.
+fn kinds() -> Vec<(&'static str, String, String)> {
+    let plain = format!("{FRICTION}{WEAR}");
+    let with = |name, more: &str| (name, plain.clone(), format!("{DEPTH}{more}"));
+    let history = |law: &str, factor: f64| format!("[{law}.history]\nfinal_factor = {factor}\ntau = 1.5\n");
+    let block = |amplitude: f64, depth: f64| {
+        format!("[[loading.blocks]]\ntau = 1\namplitude_factor = {amplitude}\nindentation_factor = {depth}\n")
+    };
+    let load_dependent = format!("[friction.load-dependent]\ncoefficient = 0.5\nexponent = 0.3\n{WEAR}");
+    let other_wear = |law: &str| format!("{FRICTION}[wear.{law}\n");
+    let quarter =
+        "[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1.5707963\n";
+    let rig = format!("rig_stiffness = {}", 2.0 * STIFFNESS);
+    vec![
+        with("plain", ""),
+        ("normal force", plain.clone(), format!("{FORCE}tau = 3")),
+        with("tangential force", "tangential_control = \"force\""),
+        with("rig", &rig),
+        ("rising friction", format!("{FRICTION}{}{WEAR}", history("friction", 2.0)), DEPTH.into()),
+        ("falling friction", format!("{FRICTION}{}{WEAR}", history("friction", 0.8)), DEPTH.into()),
+        (
+            "rig and rising friction",
+            format!("{FRICTION}{}{WEAR}", history("friction", 1.3)),
+            format!("{DEPTH}{rig}"),
+        ),
+        with("shrinking blocks", &(block(1.0, 1.0) + &block(0.5, 1.0))),
+        with("a deeper block", &(block(1.0, 1.0) + &block(1.0, 1.2))),
+        with(
+            "normal oscillation",
+            "[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 2\nphase = 1.0\n",
+        ),
+        ("out of phase, load-dependent", load_dependent.clone(), format!("{DEPTH}{quarter}")),
+        with("orbit", "[loading.orbit]\ntransverse_ratio = 0.6\n"),
+        ("load-dependent friction", load_dependent, DEPTH.into()),
+        ("threshold", other_wear("threshold]\ncoefficient = 1.667e-13\npressure = 1e7"), DEPTH.into()),
+        ("non-local", other_wear("non-local]\ncoefficient = 1.667e-13\nlength = 1e-4"), DEPTH.into()),
+        ("gross slip", plain.clone(), "indentation = 1e-6\namplitude_ratio = 2\ntau = 1".into()),
+        ("gross slip under force", plain, "normal_force = 266.7\namplitude_ratio = 2\ntau = 1".into()),
+    ]
+}
+
+fn result(scene: &str) -> fretwear::Result<RunResult> {
+    let scene = Scene::from_toml(scene, "kind.toml").expect("a scene");
+    let run = Run::one_of_many(&scene, Path::new("never-written.h5"), &Shared::default())?;
+    run.execute_keeping(None).map(|(result, _)| result)
+}
+
+/// What a run misses of one on finer numerics, which are given by hand, relative to the limit or to itself.
+fn miss(found: &RunResult, laws: &str, loading: &str, factor: usize) -> Option<f64> {
+    let springs = (factor * (found.checkpoint.state.compression.len() + 1)).min(240);
+    let finer = scene(laws, loading, &format!("springs = {springs}\ntolerance = 1e-5\nsubsteps = 384"));
+    let finer = result(&finer).ok()?.last.wear_volume;
+    let scale = found.limit.as_ref().map_or(finer, |limit| limit.wear_volume());
+    Some((found.last.wear_volume - finer).abs() / scale)
+}
+
+/// Judges a kind at some accuracy; whether the run kept to it.
+fn judge(name: &str, laws: &str, loading: &str, accuracy: f64, factor: usize) -> f64 {
+    let found = result(&scene(laws, loading, &format!("accuracy = {accuracy:e}")));
+    let found = found.unwrap_or_else(|error| panic!("{name}: {error}"));
+    let estimate = found.checkpoint.error_estimate.expect("an estimate");
+    let missed = miss(&found, laws, loading, factor);
+    println!(
+        "{name}: {accuracy:e} asked, {estimate:.1e} estimated, {missed:.1e?} missed, V {:.7}",
+        found.last.wear_volume / VOLUME
+    );
+    assert!(estimate.is_finite() && estimate > 0.0, "{name}: {estimate}");
+    assert_eq!(found.accuracy_met(), Some(estimate <= accuracy), "{name}");
+    assert_eq!(found.warning().is_some(), estimate > accuracy, "{name}");
+    if let Some(missed) = missed {
+        assert!(missed <= estimate.max(accuracy), "{name}: misses {missed:e}, estimates {estimate:e}");
+        assert!(estimate > accuracy || missed <= accuracy, "{name}: misses {missed:e} without a word");
+    }
+    estimate
+}
+
+#[test]
+fn no_kind_of_scene_misses_a_coarse_accuracy_without_a_word() {
+    let mut estimates: Vec<f64> =
+        kinds().iter().map(|(name, laws, loading)| judge(name, laws, loading, 1e-2, 2)).collect();
+    // An estimate is measured, and no two scenes measure the same.
+    let count = estimates.len();
+    estimates.sort_by(f64::total_cmp);
+    estimates.dedup();
+    assert_eq!(estimates.len(), count, "{estimates:?}");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn no_kind_of_scene_misses_an_accuracy_without_a_word() {
+    for (name, laws, loading) in kinds() {
+        for accuracy in [1e-3, 1e-4] {
+            judge(name, &laws, &loading, accuracy, 4);
+        }
+    }
+}
+
+#[test]
+fn edges_that_move_keep_to_the_references_of_another_code_or_say_that_they_do_not() {
+    let table = Table::read("moving_edges.csv");
+    let plain = format!("{FRICTION}{WEAR}");
+    let rig = format!("indentation = 1e-6\nstick_ratio = 0.7\nrig_stiffness = {}\n", 2.0 * STIFFNESS);
+    let force = "indentation = 1e-6\nstick_ratio = 0.7\ntangential_control = \"force\"\n";
+    for (case, loading) in [("A", FORCE), ("D-2", rig.as_str()), ("C", force)] {
+        for row in &table.rows {
+            let number = |name: &str| table.number(row, name);
+            if table.text(row, "case") != case || number("k") != 0.0 || number("tau") > 30.0 {
+                continue;
+            }
+            let tau = number("tau");
+            let found =
+                result(&scene(&plain, &format!("{loading}tau = {tau}"), "accuracy = 1e-3")).expect("a run");
+            let estimate = found.checkpoint.error_estimate.expect("an estimate");
+            let expected = number("V/(a0^2 d0)");
+            let scale = found.limit.as_ref().map_or(expected, |limit| limit.wear_volume() / VOLUME);
+            let missed = (found.last.wear_volume / VOLUME - expected).abs() / scale;
+            println!("{case}, τ = {tau}: missed {missed:.1e}, estimated {estimate:.1e}");
+            assert!(missed <= estimate, "{case}, τ = {tau}: missed {missed:e}, estimated {estimate:e}");
+        }
+    }
+}
+
+#[test]
+fn a_rig_moves_the_contact_so_that_the_first_stick_radius_is_the_one_asked_for() {
+    let plain = format!("{FRICTION}{WEAR}");
+    for (part, ratio) in [(0.5, 0.7), (2.0, 0.7), (1.0, 0.9)] {
+        let stiffness = part * STIFFNESS;
+        let loading =
+            format!("indentation = 1e-6\nstick_ratio = {ratio}\ntau = 3\nrig_stiffness = {stiffness}");
+        let scene = Scene::from_toml(&scene(&plain, &loading, ""), "rig.toml").expect("a scene");
+        let contact = scene.contact().expect("a contact");
+        let schedule =
+            Schedule::new(&contact, scene.conditions(), Resolution::default()).expect("a schedule");
+        // F_x = μ_f [F_N(d) - F_N(d_c)], F_N as the cube of the radius.
+        let force = 0.5 * contact.normal_force() * (1.0 - ratio * ratio * ratio);
+        let far = contact.amplitude() + force / stiffness;
+        let given = schedule.drive(0.0, 0.0).amplitude;
+        assert!((given / far - 1.0).abs() < 1e-6, "{part}, {ratio}: {given:e} instead of {far:e}");
+        let run = Run::one_of_many(&scene, Path::new("never-written.h5"), &Shared::default()).expect("a run");
+        let first = run.simulation().cycle().stick_radius / contact.contact_radius();
+        assert!((first - ratio).abs() < 1e-5, "{part}: {first} instead of {ratio}");
+        // An amplitude that is given stays that of the far end.
+        let amplitude = format!("indentation = 1e-6\namplitude = 1e-7\ntau = 3\nrig_stiffness = {stiffness}");
+        let scene = Scene::from_toml(&self::scene(&plain, &amplitude, ""), "rig.toml").expect("a scene");
+        let contact = scene.contact().expect("a contact");
+        let schedule =
+            Schedule::new(&contact, scene.conditions(), Resolution::default()).expect("a schedule");
+        assert_eq!(schedule.drive(0.0, 0.0).amplitude.to_bits(), 1e-7_f64.to_bits());
+    }
+}
+
+#[test]
+fn both_forces_held_are_refused_in_every_regime_before_anything_is_written() {
+    let plain = format!("{FRICTION}{WEAR}");
+    for (control, key) in
+        [("tangential_control = \"force\"", "tangential_control"), ("rig_stiffness = 1e8", "rig_stiffness")]
+    {
+        for amplitude in ["stick_ratio = 0.7", "amplitude_ratio = 1.4", "amplitude_ratio = 2"] {
+            for (tau, springs) in [(3, ""), (300, "springs = 60")] {
+                let loading =
+                    format!("normal_force = 266.6666666666667\n{amplitude}\ntau = {tau}\n{control}");
+                let folder = tempfile::tempdir().expect("a folder");
+                fs::write(folder.path().join("both.toml"), scene(&plain, &loading, springs))
+                    .expect("a scene");
+                for command in ["run", "check"] {
+                    let output = run(folder.path(), &[command, "both.toml"]);
+                    let said = text(&output.stderr);
+                    assert_eq!(output.status.code(), Some(2), "{command}, {loading}: {said}");
+                    for part in ["loading.normal_force", key, "loading.indentation"] {
+                        assert!(said.contains(part), "{command}, {loading}: {said}");
+                    }
+                    assert_eq!(names(folder.path()), ["both.toml"], "{command}, {loading}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_missed_accuracy_is_exit_code_3_with_the_results_kept_also_when_they_are_asked_for_again() {
+    let plain = format!("{FRICTION}{WEAR}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let json = |arguments: &[&str], code: i32| -> (Value, String) {
+        let output = run(here, arguments);
+        let said = text(&output.stderr).to_owned();
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+        (serde_json::from_slice(&output.stdout).expect("one object"), said)
+    };
+    let rig = format!("{DEPTH}rig_stiffness = {}", 2.0 * STIFFNESS);
+    fs::write(here.join("missed.toml"), scene(&plain, &rig, "accuracy = 1e-5")).expect("a scene");
+    let (missed, said) = json(&["run", "missed.toml", "--json"], 3);
+    assert_eq!(missed["accuracy_met"], Value::Bool(false));
+    let estimate = missed["error_estimate"].as_f64().expect("a number");
+    assert!(estimate > 1e-5, "{estimate}");
+    for part in ["numerics.accuracy = 1e-5", &format!("{estimate:.1e}"), "numerics.springs"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let (again, said) = json(&["run", "--resume", "missed.h5", "--json"], 3);
+    assert_eq!(
+        (&again["accuracy_met"], &again["error_estimate"]),
+        (&missed["accuracy_met"], &missed["error_estimate"])
+    );
+    assert!(said.contains("warning"), "{said}");
+    let (info, _) = json(&["info", "missed.h5", "--json"], 0);
+    assert_eq!(info["accuracy_met"], Value::Bool(false));
+
+    fs::write(here.join("kept.toml"), scene(&plain, DEPTH, "accuracy = 1e-2")).expect("a scene");
+    assert_eq!(json(&["run", "kept.toml", "--json"], 0).0["accuracy_met"], Value::Bool(true));
+    fs::write(here.join("hand.toml"), scene(&plain, &rig, "springs = 40\naccuracy = 1e-5")).expect("a scene");
+    assert_eq!(json(&["run", "hand.toml", "--json"], 0).0["accuracy_met"], Value::Null);
+    assert_eq!(json(&["info", "hand.h5", "--json"], 0).0["accuracy_met"], Value::Null);
+}
+
+#[test]
+fn a_model_takes_all_conditions_of_its_scene_and_a_stepper_that_follows_them() {
+    let threshold = format!("{FRICTION}[wear.threshold]\ncoefficient = 1.667e-13\npressure = 6e7\n");
+    let read = |laws: &str, loading: &str| {
+        Scene::from_toml(&scene(laws, loading, ""), "scene.toml").expect("a scene")
+    };
+    let with = read(&threshold, DEPTH);
+    let contact = with.contact().expect("a contact");
+    let archard = Conditions::plain(*contact.friction(), *contact.wear());
+    let worn = |conditions: &Conditions| {
+        let model = Model::new(&contact, conditions, 40, Clustering::Cubic).expect("a model");
+        let cycles = 1.0 / contact.tau_per_cycle();
+        let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
+        let mut simulation =
+            Simulation::new(model, Box::new(Implicit::new(1e-4)), 1e-4, plan).expect("a start");
+        simulation.run(&mut []).expect("an end");
+        simulation.model().wear_volume(simulation.fields())
+    };
+    let (less, all) = (worn(with.conditions()), worn(&archard));
+    assert!(less < 0.95 * all, "{less:e} with a threshold, {all:e} without");
+
+    let held = read(&format!("{FRICTION}{WEAR}"), &format!("{FORCE}tau = 3"));
+    let contact = held.contact().expect("a contact");
+    let plan = || Plan { outputs: vec![], end: End::Cycles(1.0) };
+    let model = || Model::new(&contact, held.conditions(), 40, Clustering::Cubic).expect("a model");
+    assert!(Simulation::new(model(), Box::new(Implicit::new(1e-4)), 1e-4, plan()).is_err());
+    assert!(Simulation::new(model(), Box::new(MovingStickImplicit::new(1e-4)), 1e-4, plan()).is_ok());
+}
