@@ -1,6 +1,6 @@
 """What runs deliver, and how far off they are: every kind of scene at an accuracy, beside runs of two and four times the springs by hand.
 
-    python3 benches/delivered.py target/release/fretwear [ACCURACY] [KIND,...]
+    python3 benches/delivered.py target/release/fretwear [ACCURACY] ["KIND;..."]
 
 A row: kind, springs, worn volume in a0² d, estimated error, exit code, volumes at two and four times the springs (tolerance a tenth, 768 substeps),
 and the miss of the first from the last, relative to the limit's volume or, where there is none, to the run's own.
@@ -15,7 +15,7 @@ import tempfile
 
 BINARY = str(pathlib.Path(sys.argv[1]).resolve())
 ACCURACY = float(sys.argv[2]) if len(sys.argv) > 2 else 1e-4
-KINDS = sys.argv[3].split(",") if len(sys.argv) > 3 else None
+KINDS = sys.argv[3].split(";") if len(sys.argv) > 3 else None
 MOST_SPRINGS = 480
 # 2 c_T a0 of the base scene, N/m.
 STIFFNESS = 2 * 2e11 * 2 / 3 * 1e-3

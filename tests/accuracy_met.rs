@@ -95,7 +95,7 @@ fn judge(name: &str, laws: &str, loading: &str, accuracy: f64, factor: usize) ->
     let estimate = found.checkpoint.error_estimate.expect("an estimate");
     let missed = miss(&found, laws, loading, factor);
     println!(
-        "{name}: {accuracy:e} asked, {estimate:.1e} estimated, {missed:.1e?} missed, V {:.7}",
+        "{name}: {accuracy:e} asked, {estimate:.1e} estimated, {missed:?} missed, V {:.7}",
         found.last.wear_volume / VOLUME
     );
     assert!(estimate.is_finite() && estimate > 0.0, "{name}: {estimate}");

@@ -137,6 +137,7 @@ fn checkpoint() -> Checkpoint {
         },
         wall_seconds: 0.1,
         error_estimate: Some(f64::NAN),
+        accuracy: Some(1e-4),
     }
 }
 
@@ -266,6 +267,7 @@ fn every_value_comes_back_bit_for_bit() {
     }
     assert_eq!(found.state.edge.to_bits(), OTHER_NAN);
     assert_eq!(found.error_estimate.map(f64::to_bits), expected.error_estimate.map(f64::to_bits));
+    assert_eq!((found.accuracy, found.accuracy_met()), (expected.accuracy, Some(false)));
     // `Debug` prints the shortest decimal that gives the same number, and the sign of zero.
     assert_eq!(format!("{found:?}"), format!("{expected:?}"));
     assert_eq!((run.stop_reason, run.complete), (StopReason::End, true));
