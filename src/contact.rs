@@ -134,6 +134,19 @@ impl InitialContact {
         })
     }
 
+    /// The same bodies at another indentation, with a core that no spring slips within: where the whole contact slides.
+    ///
+    /// As [`InitialContact::at`] with the compression at the radius of the core, which may differ from the indentation by less than a double can
+    /// tell.
+    ///
+    /// # Errors
+    /// As [`InitialContact::at`].
+    pub fn with_core(&self, indentation: f64, core_radius: f64) -> Result<Self> {
+        let contact = self.at(indentation, indentation - self.equivalent_profile.value(core_radius))?;
+        let stick_logarithm = Some((contact.contact_radius / core_radius).ln());
+        Ok(Self { stick_logarithm, ..contact })
+    }
+
     /// The unworn indenter.
     pub fn indenter(&self) -> &Indenter {
         &self.indenter

@@ -61,6 +61,15 @@ impl History {
         }
     }
 
+    /// The factor after a long time.
+    pub fn last(&self) -> f64 {
+        match self {
+            Self::Constant => 1.0,
+            Self::Exponential { last, .. } => *last,
+            Self::Table { factors, .. } => factors[factors.len() - 1],
+        }
+    }
+
     /// Smallest and largest factor over all times.
     pub fn range(&self) -> [f64; 2] {
         match self {

@@ -111,7 +111,7 @@ pub struct Fields {
 pub struct Place {
     /// `c²`, m².
     pub stick_area: f64,
-    /// Compression `q_c` of the springs there, m.
+    /// Compression `q_c` below which springs slip, m: that of the springs there, and more where the contact slides as a whole.
     pub slip_compression: f64,
     /// `∫_0^c x^k q dx`, m^(2+k).
     pub stick_load: f64,
@@ -180,8 +180,8 @@ impl Model {
     ) -> Result<Self> {
         let backend = Self::backend(contact, &schedule, springs);
         let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
-        let Reach { contact, slides } = if uniform {
-            Reach { contact: contact.clone(), slides: false }
+        let Reach { contact, slides, surplus } = if uniform {
+            Reach { contact: contact.clone(), slides: false, surplus: 0.0 }
         } else {
             schedule.reach(contact)?
         };
@@ -213,12 +213,22 @@ impl Model {
             // Where there is a closed form, that looks for rings.
             LimitingShape::from_contact(&farthest)?;
         }
-        let unworn =
-            UnwornSlip::new(profile, stick_radius, farthest.slip_compression(), farthest.slip_area_offset())?;
+        let unworn = UnwornSlip::new(
+            profile,
+            stick_radius,
+            farthest.slip_compression(),
+            surplus,
+            farthest.slip_area_offset(),
+        )?;
         let stick_radius_squared = stick_radius * stick_radius;
         let first = contact.contact_radius().powi(2);
         let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_edge()));
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
+        // Next to the core of a contact that slides as a whole nothing is singular that finer cells would resolve.
+        let clustering = match clustering {
+            Clustering::Cubic if surplus > 0.0 => Clustering::CreepingStick,
+            clustering => clustering,
+        };
         let natural = (unworn.limit_edge() / stick_radius_squared).ln_1p();
         let stretch = clustering.stretch(natural, grading);
         let operators = store.get(grading, stretch, springs, clustering, backend)?;
@@ -242,7 +252,7 @@ impl Model {
             hidden,
             place: Place {
                 stick_area: stick_radius_squared,
-                slip_compression: contact.slip_compression(),
+                slip_compression: compression + surplus,
                 stick_load,
             },
             moving,

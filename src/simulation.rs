@@ -184,13 +184,15 @@ impl Simulation {
         let fields = model.fields(&state);
         let mut first_rate = 0.0_f64;
         let mut growth = 0.0_f64;
+        let mut finite = true;
         for drive in model.schedule().first_cycles() {
             let cycle = model.cycle(&model.drive_in(&state, drive), &state.compression, &fields);
             first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
             growth = growth.max(largest(&cycle.growth));
+            finite &= cycle.volume.is_finite() && cycle.growth.iter().all(|it| it.is_finite());
         }
-        if !(growth > 0.0 && growth.is_finite() && first_rate > 0.0 && first_rate.is_finite()) {
-            return Err(nothing_wears(&model));
+        if !(finite && growth > 0.0 && first_rate > 0.0) {
+            return Err(nothing_wears(&model, finite));
         }
         let next_step = FIRST_GROWTH / growth;
         let progress = Progress { next_step, first_rate, rate_evaluations: 1, ..Progress::default() };

@@ -33,6 +33,8 @@ const AT_STICK: f64 = 1e-6;
 pub struct UnwornSlip {
     stick_radius_squared: f64,
     slip_compression: f64,
+    /// By how much `q_c` exceeds the compression at `c`, m: where the whole contact slides, springs slip next to `c` too.
+    surplus: f64,
     profile: EquivalentProfile,
     mu: f64,
     /// `(F 1)/ℓ^μ` over `ℓ = ln(r²/c²)`, with `μ = (1-k)/2`.
@@ -114,7 +116,8 @@ impl UnwornSlip {
     /// # Arguments
     /// * `profile` -- the unworn equivalent profile
     /// * `stick_radius` -- `c`, m
-    /// * `slip_compression` -- `q_c`, m
+    /// * `slip_compression` -- `q(c)`, m, of the unworn contact
+    /// * `surplus` -- `q_c - q(c)`, m; zero where `c` is an edge of stick
     /// * `initial_edge` -- `a0² - c²`, m²
     ///
     /// # Errors
@@ -124,6 +127,7 @@ impl UnwornSlip {
         profile: &EquivalentProfile,
         stick_radius: f64,
         slip_compression: f64,
+        surplus: f64,
         initial_edge: f64,
     ) -> Result<Self> {
         let mu = 0.5 * (1.0 - profile.grading());
@@ -162,7 +166,8 @@ impl UnwornSlip {
         };
         Ok(Self {
             stick_radius_squared: squared,
-            slip_compression,
+            slip_compression: slip_compression + surplus,
+            surplus,
             profile: profile.clone(),
             mu,
             uniform: Chebyshev::fit(|l| transform.uniform(l), end),
@@ -186,11 +191,17 @@ impl UnwornSlip {
     /// Slip depths at `z = r² - c²`, m², in (0, [`UnwornSlip::largest_edge`]].
     pub fn at(&self, z: f64) -> UnwornValues {
         let logarithm = (z / self.stick_radius_squared).ln_1p();
+        self.values(logarithm, self.slip_compression, self.slip.value(logarithm))
+    }
+
+    /// With `(F(g_0 - g_0(c)))/ℓ^(1+μ)` as `rise`.
+    fn values(&self, logarithm: f64, slip_compression: f64, rise: f64) -> UnwornValues {
         let power = logarithm.powf(self.mu);
+        let uniform = power * self.uniform.value(logarithm);
         UnwornValues {
             logarithm,
-            limit_slip: self.slip_compression * power * self.uniform.value(logarithm),
-            slip: logarithm * power * self.slip.value(logarithm),
+            limit_slip: slip_compression * uniform,
+            slip: logarithm * power * rise + self.surplus * uniform,
         }
     }
 
@@ -203,7 +214,6 @@ impl UnwornSlip {
     /// * `slip_compression` -- `q_c`, m
     pub fn at_stick(&self, stick_area: f64, slip_compression: f64, z: f64) -> UnwornValues {
         let logarithm = (z / stick_area).ln_1p();
-        let power = logarithm.powf(self.mu);
         let slip = match self.profile.exponent() {
             Some(exponent) => {
                 (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip.value(logarithm)
@@ -217,11 +227,7 @@ impl UnwornSlip {
                 }
             },
         };
-        UnwornValues {
-            logarithm,
-            limit_slip: slip_compression * power * self.uniform.value(logarithm),
-            slip: logarithm * power * slip,
-        }
+        self.values(logarithm, slip_compression, slip)
     }
 
     /// Derivatives of the slip depths where `values` belong to.
@@ -229,9 +235,13 @@ impl UnwornSlip {
         let logarithm = values.logarithm;
         let by_z = (-logarithm).exp() / self.stick_radius_squared;
         let (uniform, uniform_slope) = self.uniform.value_and_derivative(logarithm);
+        let of_uniform = uniform_slope / uniform + self.mu / logarithm;
+        let of_rise = self.slip.log_slope(logarithm) + (1.0 + self.mu) / logarithm;
+        // The part of the slip depth that the surplus makes.
+        let part = self.surplus / self.slip_compression * values.limit_slip / values.slip;
         UnwornSlopes {
-            limit_slip: values.limit_slip * by_z * (uniform_slope / uniform + self.mu / logarithm),
-            log_slip: by_z * (self.slip.log_slope(logarithm) + (1.0 + self.mu) / logarithm),
+            limit_slip: values.limit_slip * by_z * of_uniform,
+            log_slip: by_z * (of_rise + part * (of_uniform - of_rise)),
         }
     }
 }

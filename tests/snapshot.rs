@@ -112,6 +112,8 @@ fn checkpoint() -> Checkpoint {
                 depth: -0.0,
                 load: 5e-324,
                 left_behind: curve(24, 6),
+                places_at_rest: vec![0.1, 0.2, 0.25],
+                raised_at_rest: vec![0.0, 0.01, 0.03],
                 wear_depth: curve(31, 7),
                 rates: [1e-300, -1e-17 / 3.0],
             }),

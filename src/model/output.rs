@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{CycleFields, Fields, HIDDEN, Model, State};
+use super::{CycleFields, Fields, HIDDEN, Model, State, StickEdge};
 use crate::grid::{Clustering, Mesh};
 use crate::linear::dot;
 use crate::slip_depth::{UnwornSlip, UnwornValues};
@@ -206,7 +206,13 @@ impl Model {
     /// Wear depth, m, at the places of the limit's springs that are not hidden, or of one in several where they are many; at least zero.
     pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
         if let Some(stick) = state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
-            return stick.wear_depth.clone();
+            let of_limit = self.limit_log_slip(fields);
+            let shown = self.shown.offsets.iter().zip(&self.shown.unworn).zip(&stick.wear_depth);
+            let depth = |((offset, unworn), worn): ((&f64, &UnwornValues), &f64)| {
+                let spot = self.spot(state, fields, &of_limit, *offset, unworn);
+                self.depth_beyond(stick, *offset, spot.as_ref(), *worn)
+            };
+            return shown.map(depth).collect();
         }
         let every = self.springs().div_ceil(MOST_JUDGED);
         let places = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
@@ -217,6 +223,21 @@ impl Model {
             spot.map_or(0.0, |spot| spot.wear_depth())
         };
         places.map(depth).collect()
+    }
+
+    /// Wear depth, m, at `offset` where the edge of stick leaves worn ground behind: `worn`, what every cycle took there; but outside the first
+    /// contact, where wear sets in as the contact edge passes, that of the slip, for steps do not resolve the passage.
+    ///
+    /// ```text
+    /// w = S - S_0 - K
+    /// ```
+    fn depth_beyond(&self, stick: &StickEdge, offset: f64, spot: Option<&Spot>, worn: f64) -> f64 {
+        let moving = self.moving.as_ref();
+        let squared = self.place.stick_area + offset;
+        match moving.and_then(|moving| moving.left_behind_outside(stick, squared)) {
+            Some(behind) => spot.map_or(0.0, |spot| (spot.grown() - behind).max(0.0)),
+            None => worn,
+        }
     }
 
     /// The fields at [`Model::radii`], by the local polynomials between the springs.
@@ -233,11 +254,12 @@ impl Model {
         let mut radial =
             RadialFields { wear_depth: vec![0.0; shown], pressure: vec![0.0; shown], slip: vec![0.0; shown] };
         let of_limit = self.limit_log_slip(fields);
-        let left_behind = state.stick.as_ref().map_or(&[][..], |stick| &stick.wear_depth);
+        let stick = state.stick.as_ref();
         for (i, (offset, unworn)) in self.shown.offsets.iter().zip(&self.shown.unworn).enumerate() {
             let spot = self.spot(state, fields, &of_limit, *offset, unworn);
-            radial.wear_depth[i] = match left_behind.get(i) {
-                Some(worn) => *worn,
+            let passed = stick.and_then(|stick| Some((stick, stick.wear_depth.get(i)?)));
+            radial.wear_depth[i] = match passed {
+                Some((stick, worn)) => self.depth_beyond(stick, *offset, spot.as_ref(), *worn),
                 None => spot.as_ref().map_or(0.0, Spot::wear_depth),
             };
             if self.sticks_at(state, *offset) {
@@ -303,7 +325,12 @@ struct Spot {
 impl Spot {
     /// At least zero: before the contact edge the polynomial may pass below nothing, by less than the run is off.
     fn wear_depth(&self) -> f64 {
-        self.unworn * self.log_slip.exp_m1().max(0.0)
+        self.grown().max(0.0)
+    }
+
+    /// `S - S_0`, m.
+    fn grown(&self) -> f64 {
+        self.unworn * self.log_slip.exp_m1()
     }
 }
 

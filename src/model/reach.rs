@@ -12,6 +12,13 @@ use crate::roots::bracketed;
 /// 60 of them serve for 1e-3, 120 for 1e-4.
 const CORE: f64 = 1e-3;
 
+/// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact slides as a whole: the
+/// slip depth, of which wear is the growth, keeps its digits next to the core, however flat the profile is there.
+const LEAST_SURPLUS: f64 = 1e-2;
+
+/// Largest one: more says nothing more about the slip of springs, and would cost digits of the depth.
+const LARGEST_SURPLUS: f64 = 1e3;
+
 /// Largest share of the load on the core for which full sliding is followed.
 const LARGEST_CORE_SHARE: f64 = 5e-3;
 
@@ -33,6 +40,8 @@ pub struct Reach {
     pub contact: InitialContact,
     /// Whether no stick radius is left in some cycle.
     pub slides: bool,
+    /// By how much the compression below which springs slip exceeds that at the edge of stick, m; zero where that is one.
+    pub surplus: f64,
 }
 
 impl Schedule {
@@ -57,8 +66,7 @@ impl Schedule {
         } else {
             profile.radius_at(depth)?
         };
-        let core = CORE * radius;
-        let largest = depth - profile.value(core);
+        let largest = depth - profile.value(CORE * radius);
         let grading = contact.half_space().grading();
         let slides = compression > largest;
         if slides && core_share(grading) > LARGEST_CORE_SHARE {
@@ -72,7 +80,15 @@ impl Schedule {
                 ),
             });
         }
-        Ok(Reach { contact: contact.at(depth, compression.min(largest))?, slides })
+        if !slides {
+            return Ok(Reach { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
+        }
+        let held = self.conditions().tangential_control != TangentialControl::Displacement;
+        let contact = contact.with_core(depth, CORE * radius)?;
+        let at_core = contact.slip_compression();
+        let surplus = (compression - at_core).clamp(LEAST_SURPLUS * at_core, LARGEST_SURPLUS * at_core);
+        // Under a held tangential force the core gives way only in the end, and all slip is counted from there.
+        Ok(Reach { contact, slides, surplus: if held { 0.0 } else { surplus } })
     }
 
     /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the

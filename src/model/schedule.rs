@@ -221,6 +221,15 @@ impl Schedule {
         })
     }
 
+    /// Everything that acts in the end: the last block, or all of them where they are repeated, with friction as it is then.
+    pub fn lasting(&self) -> impl Iterator<Item = Drive> {
+        let factor = self.conditions.friction_history.last();
+        let passed = if self.conditions.repeat { 0 } else { self.drives.len() - 1 };
+        self.drives[passed..]
+            .iter()
+            .map(move |drive| Drive { friction: drive.friction.scaled(factor), ..drive.clone() })
+    }
+
     /// The next time after `cycles` at which what acts changes abruptly or has a kink, in cycles: a step may end there but not cross it.
     pub fn next_break(&self, cycles: f64) -> Option<f64> {
         let histories = [&self.conditions.friction_history, &self.conditions.wear_history];

@@ -9,8 +9,15 @@ use crate::wear::WearLaw;
 pub(super) const STEPPING: &str = "time stepping";
 
 /// Why a run cannot begin.
-pub(super) fn nothing_wears(model: &Model) -> Error {
+pub(super) fn nothing_wears(model: &Model, finite: bool) -> Error {
     let (what, why) = match model.schedule().conditions().wear {
+        _ if !finite => (
+            "numerics.springs",
+            format!(
+                "on {} springs slip next to the edge of stick has no digits left; ask for fewer",
+                model.springs()
+            ),
+        ),
         WearLaw::Threshold { pressure, .. } => (
             "wear.threshold.pressure",
             format!(
@@ -22,7 +29,7 @@ pub(super) fn nothing_wears(model: &Model) -> Error {
         _ => (
             "loading.amplitude",
             format!(
-                "at an amplitude of {:e} m the wear of the first cycles is nothing that can be computed with; ask for another",
+                "at an amplitude of {:e} m nothing wears in the first cycles; ask for a larger one",
                 model.contact().amplitude()
             ),
         ),

@@ -149,6 +149,10 @@ impl Run<'_> {
         put_array(&group, LEFT_BEHIND, &[&station], &stick.left_behind)?;
         let node = Dimension::create(&group, WORN_NODE, stick.wear_depth.len(), false)?;
         put_array(&group, STICK_WEAR_DEPTH, &[&node], &stick.wear_depth)?;
+        if !stick.places_at_rest.is_empty() {
+            let place = Dimension::coordinate(&group, PLACE_AT_REST, &stick.places_at_rest)?;
+            put_array(&group, RAISED_AT_REST, &[&place], &stick.raised_at_rest)?;
+        }
         for field in &STICK_REALS {
             put_array(&group, field.label, &[], &[*(field.of)(stick)])?;
         }

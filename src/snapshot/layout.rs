@@ -83,6 +83,12 @@ pub const LEFT_BEHIND: Label = label("left_behind", "m", "slip depth left behind
 pub const WORN_NODE: Label = label("worn_node", "1", "index of the node");
 /// Wear depth at the radii of the output, shape `(worn_node,)`.
 pub const STICK_WEAR_DEPTH: Label = label("wear_depth", "m", "wear depth at the nodes, to go on from");
+/// Squared radii, increasing, at which ground that came to rest between blocks is known, shape `(place_at_rest,)`.
+pub const PLACE_AT_REST: Label =
+    label("place_at_rest", "m2", "square of the radius of ground that came to rest between blocks");
+/// By how much wear has raised the equivalent profile there, shape `(place_at_rest,)`.
+pub const RAISED_AT_REST: Label =
+    label("raised_at_rest", "m", "equivalent profile of ground that came to rest less the unworn one");
 /// Group, in that of the checkpoint, of the times that a method of several steps remembers; absent where there are none.
 pub const PAST: &str = "past";
 /// Index coordinate along those times, the newest first, shape `(earlier,)`.

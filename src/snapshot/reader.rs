@@ -249,6 +249,11 @@ impl Source {
                 wear_depth: self.values(&group, STICK_WEAR_DEPTH, &[None])?,
                 ..StickEdge::default()
             };
+            if group.link_exists(PLACE_AT_REST.name) {
+                stick.places_at_rest = self.values(&group, PLACE_AT_REST, &[None])?;
+                stick.raised_at_rest =
+                    self.values(&group, RAISED_AT_REST, &[Some(stick.places_at_rest.len())])?;
+            }
             for field in &STICK_REALS {
                 *(field.of_mut)(&mut stick) = self.scalar(&group, field.label)?;
             }

@@ -175,8 +175,7 @@ impl Stepper for MovingStickImplicit {
                     left_behind: (0..stick.left_behind.len())
                         .map(|j| gathered(stick.left_behind[j], &|s| s.stick.left_behind[j]))
                         .collect(),
-                    wear_depth: vec![],
-                    rates: [0.0; 2],
+                    ..StickEdge::default()
                 },
                 slip_compression: gathered(fields.place.slip_compression, &|s| s.slip_compression),
                 step: GAMMA * cycles,
@@ -231,6 +230,8 @@ impl Stepper for MovingStickImplicit {
                 left_behind: over(&stick.left_behind, &|stage, j| stage.stick.left_behind[j]),
                 wear_depth: over(&stick.wear_depth, &|stage, j| stage.stick.wear_depth[j]),
                 rates: [(at.area - stick.area) / cycles, (at.depth - stick.depth) / cycles],
+                places_at_rest: stick.places_at_rest.clone(),
+                raised_at_rest: stick.raised_at_rest.clone(),
             }),
             compression: at.compression,
             past: Past::default(),

@@ -344,6 +344,7 @@ impl Model {
             left_behind,
             wear_depth,
             rates: [0.0; 2],
+            ..StickEdge::default()
         }
     }
 }

@@ -1,0 +1,209 @@
+//! Blocks whose amplitudes shrink and then grow, and what of the kind is refused.
+//!
+//! The table of docs/accuracy.md: `cargo test --release --test blocks -- --ignored --nocapture`.
+
+mod support;
+
+use fretwear::conditions::Conditions;
+use fretwear::history::History;
+use fretwear::loading::Block;
+use fretwear::model::{Model, OperatorStore, Resolution, Schedule};
+use fretwear::simulation::{End, Plan, Simulation};
+use fretwear::stepper::MovingStickImplicit;
+use support::command::{run, text};
+use support::{Case, Record, distance, laws};
+
+/// Amplitude factors, in blocks of these dimensionless times.
+type Blocks = [(f64, f64)];
+
+fn conditions(case: &Case, blocks: &Blocks) -> Conditions {
+    let blocks = blocks.iter().map(|(duration, factor)| laws::block(*duration, *factor, 1.0)).collect();
+    Conditions { blocks, ..laws::plain(&case.contact()) }
+}
+
+/// Worn volumes over `a0² d` at the outputs, and the wear depths over `d` at the last one.
+fn worn(case: Case, blocks: &Blocks, tolerance: f64, outputs: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let model = laws::model(&case, &conditions(&case, blocks), None);
+    assert!(model.moving().is_some());
+    let plan = Plan { outputs: outputs.to_vec(), end: End::Cycles(outputs[outputs.len() - 1]) };
+    let stepper = Box::new(MovingStickImplicit::new(tolerance));
+    let mut seen = Record::default();
+    Simulation::new(model, stepper, tolerance, plan).unwrap().run(&mut [&mut seen]).unwrap();
+    let depths = seen.0[seen.0.len() - 1].wear_depth.iter().map(|depth| depth / case.indentation()).collect();
+    (seen.0.iter().map(|seen| seen.state.volume_by_rate / case.indentation()).collect(), depths)
+}
+
+#[test]
+fn blocks_that_shrink_and_then_grow_converge_over_springs_at_every_time() {
+    let outputs = [0.9, 2.9, 3.9, 5.0, 10.0, 20.0];
+    for (exponent, grading, middle, last) in
+        [(2.0, 0.0, 0.5, 0.75), (4.0, 0.4, 0.6, 0.8), (1.0, -0.3, 0.4, 0.75), (2.0, 0.0, 0.5, 1.0)]
+    {
+        let blocks = [(1.0, 1.0), (2.0, middle), (1.0, last)];
+        let at = |springs| worn(Case::new(exponent, grading, 0.7, springs), &blocks, 1e-5, &outputs);
+        let [few, some, many] = [25, 50, 100].map(at);
+        let end = many.0[many.0.len() - 1];
+        let volume = [distance(&few.0, &some.0) / end, distance(&some.0, &many.0) / end];
+        // Nodes of half as many springs are every second one.
+        let every = |depths: &[f64], step: usize| -> Vec<f64> {
+            depths.iter().skip(step - 1).step_by(step).copied().collect()
+        };
+        let [few, some, many] = [(few, 1), (some, 2), (many, 4)].map(|(it, step)| (it.0, every(&it.1, step)));
+        let deepest = many.1.iter().fold(0.0, |m: f64, depth| m.max(*depth));
+        let profile = [distance(&few.1, &some.1) / deepest, distance(&some.1, &many.1) / deepest];
+        println!(
+            "n {exponent} k {grading} {last}: {:?}, differences {volume:?}, profile {profile:?}",
+            many.0
+        );
+        assert!(volume[1] < 2e-3 && volume[0] > 2.5 * volume[1], "n {exponent} k {grading}: {volume:?}");
+        assert!(profile[1] < 2e-2 && profile[0] > profile[1], "n {exponent} k {grading}: {profile:?}");
+    }
+}
+
+/// `data/reference2`: another code, with nodes of the material, amplitudes halved from `τ = 1` to 3 and restored.
+#[test]
+fn amplitudes_halved_and_restored_wear_as_in_another_code() {
+    let outputs = [0.3, 0.9999, 2.9999, 10.0, 30.0];
+    let blocks = [(1.0, 1.0), (2.0, 0.5), (1.0, 1.0)];
+    let (volumes, _) = worn(Case::new(2.0, 0.0, 0.7, 100), &blocks, 1e-5, &outputs);
+    // At τ = 1 and 3 less what is worn in the 1e-4 before.
+    let expected = [0.00786020509, 0.0268732359 - 2.8e-6, 0.0361072676 - 0.5e-6, 0.194855967, 0.235798264];
+    println!("{volumes:?}");
+    let off = distance(&volumes, &expected) / expected[4];
+    assert!(off < 5e-4, "off by {off}: {volumes:?}");
+}
+
+/// A jump and the one back again leave the contact as it was.
+#[test]
+fn a_short_block_between_two_equal_ones_changes_next_to_nothing() {
+    let outputs = [2.0, 10.0];
+    let case = Case::new(2.0, 0.0, 0.7, 60);
+    let (broken, depths) =
+        worn(case, &[(1.0, 0.9), (1e-6, 0.5), (1.0, 0.9), (1e-6, 0.5), (1.0, 0.9)], 1e-5, &outputs);
+    let (whole, whole_depths) = worn(case, &[(20.0, 0.9), (1.0, 0.8)], 1e-5, &outputs);
+    let off = [distance(&broken, &whole) / whole[1], distance(&depths, &whole_depths)];
+    println!("volume and depth off by {off:?}");
+    assert!(off[0] < 5e-4 && off[1] < 2e-3, "{off:?}");
+}
+
+#[test]
+fn an_edge_of_stick_that_comes_to_rest_on_worn_ground_amidst_the_mesh_is_refused() {
+    let case = Case::new(2.0, 0.0, 0.7, 40);
+    let plain = laws::plain(&case.contact());
+    let history = |factors: &[f64]| Conditions {
+        friction_history: History::Table { times: vec![0.0, 0.124, 1.82], factors: factors.to_vec() },
+        ..plain.clone()
+    };
+    let blocks = |blocks: Vec<Block>, repeat| Conditions { blocks, repeat, ..plain.clone() };
+    let pause = || vec![laws::block(1.0, 1.0, 1.0), laws::block(1.0, 0.0, 1.0), laws::block(1.0, 0.5, 1.0)];
+    let lifted = || vec![laws::block(1.0, 1.0, 1.0), laws::block(1.0, 0.6, 0.9)];
+    let model = |conditions: &Conditions| {
+        let contact = case.contact();
+        let schedule = Schedule::new(&contact, conditions, Resolution::default()).unwrap();
+        Model::under(&contact, schedule, 40, case.clustering, &OperatorStore::default())
+    };
+    for (conditions, key, cure) in [
+        (history(&[1.0, 0.909, 1.118]), "friction.history", "end at their smallest"),
+        (history(&[1.0, 1.4, 1.2]), "friction.history", "only rise"),
+        (blocks(pause(), false), "loading.blocks", "repeat them"),
+        (blocks(lifted(), false), "loading.blocks", "slips farthest"),
+    ] {
+        let error = model(&conditions).map(|_| ()).unwrap_err().to_string();
+        println!("{error}");
+        assert!(
+            error.starts_with(&format!("{key}: in the end springs slip below 0.")) && error.contains(cure),
+            "{error}"
+        );
+    }
+    for conditions in [
+        history(&[1.0, 0.909, 0.8]),
+        history(&[1.0, 1.1, 1.2]),
+        history(&[1.0, 1.4, 1.0]),
+        blocks(pause(), true),
+        blocks(lifted(), true),
+    ] {
+        model(&conditions).unwrap();
+    }
+}
+
+/// A scene of the table: indenter, grading, loading, tables after it.
+fn scene(indenter: &str, grading: f64, loading: &str, tables: &str, springs: Option<usize>) -> String {
+    let springs = springs.map_or(String::new(), |springs| format!("[numerics]\nsprings = {springs}\n"));
+    format!(
+        "[indenter.{indenter}\n[half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n\
+         [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1.667e-13\n[loading]\nindentation = \"1 um\"\n{loading}\n\
+         {tables}\n{springs}"
+    )
+}
+
+#[test]
+#[ignore = "a table for the documentation, some minutes"]
+fn table_of_scenes_as_delivered_and_on_more_springs() {
+    let blocks = |factors: [f64; 3]| {
+        let lines = factors.iter().zip([1, 2, 1]);
+        lines
+            .map(|(factor, tau)| format!("[[loading.blocks]]\ntau = {tau}\namplitude_factor = {factor}\n"))
+            .collect::<String>()
+    };
+    let oscillation = |ratio: &str| {
+        format!(
+            "[loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = {ratio}\nphase = \"90 deg\"\n"
+        )
+    };
+    let history =
+        "[friction.history]\nfactors = [1.0, 0.909, 1.118]\nat_tau = [0.0, 0.124, 1.82]\n".to_owned();
+    let (sphere, paraboloid) = ("sphere]\nradius = 1", "paraboloid]\nradius = 1");
+    let (cone, flat) = ("cone]\nslope = 1e-3", "power-law]\ncoefficient = 3.75e5\nexponent = 4");
+    let partial = "stick_ratio = 0.7\ntau = 20";
+    let gross = "amplitude = \"1.35 um\"\ntau = 3";
+    for (name, indenter, grading, loading, tables) in [
+        ("friction 1, 0.909, 1.118; sphere, k = -0.3", sphere, -0.3, "stick_ratio = 0.7\ntau = 3", history),
+        ("blocks 1, 0.5, 0.75; paraboloid", paraboloid, 0.0, partial, blocks([1.0, 0.5, 0.75])),
+        ("blocks 1, 0.6, 0.8; n = 4, k = 0.4", flat, 0.4, partial, blocks([1.0, 0.6, 0.8])),
+        ("blocks 1, 0.4, 0.75; cone, k = -0.3", cone, -0.3, partial, blocks([1.0, 0.4, 0.75])),
+        ("blocks 1, 0.5, 1; paraboloid", paraboloid, 0.0, partial, blocks([1.0, 0.5, 1.0])),
+        ("gross slip; paraboloid", paraboloid, 0.0, gross, String::new()),
+        ("gross slip; n = 4", flat, 0.0, gross, String::new()),
+        ("the same, k = 0.4", flat, 0.4, "amplitude_ratio = 3\ntau = 3", String::new()),
+        ("the same, k = -0.2", flat, -0.2, "amplitude_ratio = 3\ntau = 3", String::new()),
+        ("the same, k = -0.5", flat, -0.5, "amplitude_ratio = 3\ntau = 3", String::new()),
+        ("n = 4, normal oscillation 1:1", flat, 0.0, gross, oscillation("1")),
+        ("n = 4, normal oscillation 1:2", flat, 0.0, gross, oscillation("\"1/2\"")),
+        ("n = 4, normal oscillation 3:2", flat, 0.0, gross, oscillation("\"3/2\"")),
+    ] {
+        let friction = tables.starts_with("[friction");
+        let mut line = format!("| {name} |");
+        let mut volumes = vec![];
+        for springs in [None, Some(240), Some(480)] {
+            let folder = tempfile::tempdir().unwrap();
+            let mut scene = scene(indenter, grading, loading, if friction { "" } else { &tables }, springs);
+            if friction {
+                scene += &tables;
+            }
+            std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+            let output = run(folder.path(), &["run", "s.toml", "--json", "--quiet"]);
+            let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+            let volume = json["wear_volume"].as_f64();
+            let number = |it: Option<f64>| it.map_or("".into(), |it| format!("{it:.6e}"));
+            line += &format!(" {} |", number(volume));
+            if springs.is_none() {
+                let estimate =
+                    json["error_estimate"].as_f64().map_or("none".into(), |it| format!("{it:.1e}"));
+                line += &format!(" {estimate}, exit code {} |", output.status.code().unwrap());
+                if volume.is_none() {
+                    line += &text(&output.stderr)
+                        .lines()
+                        .next()
+                        .unwrap_or_default()
+                        .chars()
+                        .take(200)
+                        .collect::<String>();
+                    break;
+                }
+            }
+            volumes.extend(volume);
+        }
+        let miss = volumes.first().zip(volumes.last()).map(|(first, last)| (first / last - 1.0).abs());
+        println!("{line} {} |", miss.map_or("".into(), |it| format!("{it:.1e}")));
+    }
+}
