@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::grid::Clustering;
 use crate::loading::has_come;
 use crate::model::{CycleFields, Fields, Model, MovingStick, RadialFields, State};
-use crate::stepper::Stepper;
+use crate::stepper::{self, Stepper};
 
 mod failure;
 
@@ -169,17 +169,7 @@ impl Simulation {
     /// [`Error::Inconsistent`] if the method of stepping does not follow the edge of stick of the model as it moves or stays; those of
     /// [`Model::initial_state`].
     pub fn new(model: Model, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Result<Self> {
-        if stepper.follows_stick() != model.moving().is_some() {
-            return Err(Error::Inconsistent {
-                what: "numerics.stepper",
-                why: if model.moving().is_some() {
-                    "does not follow the edge of stick of this contact, which moves; step it by MovingStickImplicit"
-                } else {
-                    "follows an edge of stick that moves, and that of this contact stays; step it by Implicit"
-                }
-                .into(),
-            });
-        }
+        stepper::check_stick(&*stepper, model.moving().is_some())?;
         let state = model.initial_state()?;
         let fields = model.fields(&state);
         let mut first_rate = 0.0_f64;
@@ -287,7 +277,7 @@ impl Simulation {
             self.tell(observers)?;
         }
         loop {
-            if let Some(outcome) = self.finished() {
+            if let Some(outcome) = self.outcome() {
                 return Ok(outcome);
             }
             let landed = self.advance(observers).map_err(|error| match error {
@@ -297,7 +287,7 @@ impl Simulation {
                 }
                 other => other,
             })?;
-            let ended = self.finished().is_some();
+            let ended = self.outcome().is_some();
             if landed || ended {
                 self.tell(observers)?;
             }
@@ -355,10 +345,6 @@ impl Simulation {
 
     /// How it ended; none while it goes on or can be resumed.
     pub fn outcome(&self) -> Option<Outcome> {
-        self.finished()
-    }
-
-    fn finished(&self) -> Option<Outcome> {
         match self.plan.end {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
             End::Rate(_) if self.model.moving().is_some_and(MovingStick::slides) => {

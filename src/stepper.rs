@@ -14,7 +14,7 @@ pub use implicit::Implicit;
 pub use moving_stick::MovingStickImplicit;
 pub use multistep::Multistep;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{Fields, Model, State};
 
 /// A step that was tried; accepting it is an assignment, so a failed one changes nothing.
@@ -70,6 +70,19 @@ pub trait Stepper {
     fn prescribed_step(&self) -> Option<f64> {
         None
     }
+}
+
+/// Refuses a method that does not follow the edge of stick of a model as it moves or stays.
+pub(crate) fn check_stick(stepper: &dyn Stepper, moves: bool) -> Result<()> {
+    if stepper.follows_stick() == moves {
+        return Ok(());
+    }
+    let why = if moves {
+        "does not follow the edge of stick of this contact, which moves; step it by MovingStickImplicit"
+    } else {
+        "follows an edge of stick that moves, and that of this contact stays; step it by Implicit"
+    };
+    Err(Error::Inconsistent { what: "numerics.stepper", why: why.into() })
 }
 
 /// Largest of some errors of the wear depth, m, over the largest depth of the limit.
