@@ -55,7 +55,7 @@ SCENES = {
     "blocks that shrink": {"more": blocks((1, 1, 1), (1, 0.5, 1))},
     "blocks that grow": {"more": blocks((1, 1, 1), (1, 1.3, 1))},
     "blocks repeated": {"more": "repeat = true\n" + blocks((0.5, 1, 1), (0.5, 0.5, 1))},
-    "block 1.2 times as deep": {"more": blocks((1, 1, 1), (1, 1, 1.2))},
+    "block 1.2 times as deep, repeated": {"more": "repeat = true\n" + blocks((1, 1, 1), (1, 1, 1.2))},
     "normal oscillation, ratio 2": {"more": "[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 2\nphase = 1.0\n"},
     "normal oscillation, out of phase": {"more": "[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1.5707963\n"},
     "out of phase, load-dependent friction": {

@@ -58,7 +58,10 @@ fn kinds() -> Vec<(&'static str, String, String)> {
             format!("{DEPTH}{rig}"),
         ),
         with("shrinking blocks", &(block(1.0, 1.0) + &block(0.5, 1.0))),
-        with("a deeper block", &(block(1.0, 1.0) + &block(1.0, 1.2))),
+        with(
+            "a deeper block that recurs",
+            &(String::from("\nrepeat = true\n") + &block(1.0, 1.0) + &block(1.0, 1.2)),
+        ),
         with(
             "normal oscillation",
             "[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 2\nphase = 1.0\n",
