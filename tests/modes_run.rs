@@ -177,7 +177,9 @@ fn every_law_and_mode_gives_the_keys_series_and_loops_promised() {
         keys.sort_unstable();
         expected.sort_unstable();
         assert_eq!(keys, expected, "{name}");
-        assert!(RUN_KEYS[2..].iter().all(|key| json[key].is_number()), "{name}: {json}");
+        // Springs were given by hand, so that no accuracy was asked for.
+        let mut figures = RUN_KEYS[2..].iter().filter(|key| **key != "accuracy_met");
+        assert!(figures.all(|key| json[key].is_number()), "{name}: {json}");
         assert_eq!((file.stop_reason, file.complete), (StopReason::End, true), "{name}");
         let estimate = json["error_estimate"].as_f64().unwrap();
         println!("{name}: {} steps, estimate {estimate:.1e}", json["steps"]);
