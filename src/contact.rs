@@ -564,44 +564,27 @@ mod tests {
 
     #[test]
     fn absurd_values_are_refused_by_name_and_never_give_numbers_that_are_none() {
+        use Amplitude::{Displacement, Ratio, StickRatio};
+        use Load::{Indentation, InitialForce};
+
         let paraboloid = Indenter::Paraboloid { radius: 0.01 };
         let sphere = Indenter::Sphere { radius: 1e-4 };
-        let ratio = Amplitude::StickRatio(0.7);
+        let ratio = StickRatio(0.7);
         let cases = [
-            (&paraboloid, Load::Indentation(0.0), ratio, "loading.indentation = 0 is outside"),
-            (&paraboloid, Load::Indentation(f64::NAN), ratio, "loading.indentation = NaN is outside"),
-            (&paraboloid, Load::InitialForce(-1.0), ratio, "loading.initial_force = -1 is outside"),
-            (&paraboloid, Load::Indentation(1e308), ratio, "volume π a0² d, m³: inf is too large"),
-            (&paraboloid, Load::Indentation(1e-308), ratio, "indentation, m: 1e-308 is too small"),
-            (&paraboloid, Load::InitialForce(1e-310), ratio, "unit of loading.initial_force and half_space"),
-            (&sphere, Load::Indentation(1e-3), ratio, "loading.indentation: 0.001 is too large: a sphere"),
-            (&sphere, Load::InitialForce(1e6), ratio, "loading.initial_force: 1000000 is too large: F_N"),
-            (&paraboloid, Load::Indentation(1e-6), Amplitude::StickRatio(0.0), "loading.stick_ratio = 0 is"),
-            (
-                &paraboloid,
-                Load::Indentation(1e-6),
-                Amplitude::StickRatio(1e-320),
-                "unit of loading.stick_ratio",
-            ),
-            (
-                &paraboloid,
-                Load::Indentation(1e-6),
-                Amplitude::Ratio(-0.1),
-                "loading.amplitude_ratio = -0.1 is",
-            ),
-            (&paraboloid, Load::Indentation(1e9), Amplitude::Ratio(1e308), "amplitude, m: inf is too large"),
-            (
-                &paraboloid,
-                Load::Indentation(1e-6),
-                Amplitude::Displacement(1e-300),
-                "unit of loading.amplitude",
-            ),
-            (
-                &paraboloid,
-                Load::Indentation(1e-6),
-                Amplitude::Displacement(f64::INFINITY),
-                "loading.amplitude =",
-            ),
+            (&paraboloid, Indentation(0.0), ratio, "loading.indentation = 0 is outside"),
+            (&paraboloid, Indentation(f64::NAN), ratio, "loading.indentation = NaN is outside"),
+            (&paraboloid, InitialForce(-1.0), ratio, "loading.initial_force = -1 is outside"),
+            (&paraboloid, Indentation(1e308), ratio, "volume π a0² d, m³ = inf is too large"),
+            (&paraboloid, Indentation(1e-308), ratio, "indentation, m = 1e-308 is too small"),
+            (&paraboloid, InitialForce(1e-310), ratio, "unit of loading.initial_force, half_space"),
+            (&sphere, Indentation(1e-3), ratio, "loading.indentation: 0.001 is too large: a sphere"),
+            (&sphere, InitialForce(1e6), ratio, "loading.initial_force: 1000000 is too large: F_N"),
+            (&paraboloid, Indentation(1e-6), StickRatio(0.0), "loading.stick_ratio = 0 is"),
+            (&paraboloid, Indentation(1e-6), StickRatio(1e-320), "unit of loading.stick_ratio"),
+            (&paraboloid, Indentation(1e-6), Ratio(-0.1), "loading.amplitude_ratio = -0.1 is"),
+            (&paraboloid, Indentation(1e9), Ratio(1e308), "amplitude, m = inf is too large"),
+            (&paraboloid, Indentation(1e-6), Displacement(1e-300), "unit of loading.amplitude"),
+            (&paraboloid, Indentation(1e-6), Displacement(f64::INFINITY), "loading.amplitude ="),
         ];
         for (indenter, load, amplitude, words) in cases {
             let found = contact(indenter, 0.0, load, amplitude).map(drop).unwrap_err().to_string();

@@ -311,6 +311,8 @@ impl Run {
     pub fn execute_keeping(self, mut progress: Option<&mut dyn Observer>) -> Result<(RunResult, RunFile)> {
         let Self { mut simulation, mut recorder, mut limit, scene, store, .. } = self;
         let mut refinements = 0;
+        // Springs on which the run came to an end, if less accurately than was asked for.
+        let mut ended = None;
         let (outcome, checkpoint) = loop {
             recorder.follow_judge(&scene, &store, &simulation, limit.is_some());
             let outcome = match progress.as_mut() {
@@ -318,11 +320,22 @@ impl Run {
                 None => simulation.run(&mut [&mut recorder]),
             };
             let checkpoint = recorder.checkpoint(&simulation);
-            if refinements < knob::REFINEMENTS
-                && let Some(springs) = recorder.wanting(&scene, &simulation, &outcome, &checkpoint)
+            let springs = match (&outcome, ended) {
+                // Finer ones do not.
+                (Err(Error::NotConverged { .. }), Some(springs)) => {
+                    refinements = knob::REFINEMENTS;
+                    Some(springs)
+                }
+                _ if refinements < knob::REFINEMENTS => {
+                    recorder.wanting(&scene, &simulation, &outcome, &checkpoint)
+                }
+                _ => None,
+            };
+            if let Some(springs) = springs
                 && let Ok(parts) = Parts::new(&scene, scene.numerics(), Some(springs), &store)
                 && let Ok(finer) = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)
             {
+                ended = outcome.is_ok().then(|| simulation.model().springs());
                 (simulation, limit) = (finer, parts.limit);
                 recorder.writer.restart(header(&scene, simulation.model(), limit.as_ref()));
                 refinements += 1;

@@ -539,7 +539,7 @@ fn bad_requests_are_refused_with_what_to_do_and_write_nothing() {
     let before = names(here);
     let cases: [(&[&str], &str); 13] = [
         (&["plot", "text.h5", "-o", "a.svg"], "text.h5: is not an HDF5 file"),
-        (&["plot", "cut.h5", "-o", "a.svg"], "cut.h5: is damaged or cut short"),
+        (&["plot", "cut.h5", "-o", "a.svg"], "cut.h5: has no checksum at its end: it was cut short"),
         (&["plot", "missing.h5", "-o", "a.svg"], "missing.h5: No such file"),
         (
             &["plot", &run_h5, "-o", "a.pdf"],

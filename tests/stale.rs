@@ -200,14 +200,15 @@ fn a_checkpoint_of_something_else_is_refused_and_left_alone() {
         ("hash.h5", "its scene"),
     ] {
         let before = fs::read(at.join(name)).unwrap();
-        let refused = run(at, &["run", "--resume", name]);
+        assert_eq!(run(at, &["run", "--resume", name]).status.code(), Some(2), "{name}: its checksum");
+        let refused = run(at, &["run", "--resume", name, "--unchecked"]);
         let said = text(&refused.stderr);
         assert_eq!(refused.status.code(), Some(2), "{name}: {said}");
         assert!(said.contains(name) && said.contains(words), "{name}: {said}");
         assert!(fs::read(at.join(name)).unwrap() == before, "{name}");
     }
     // What an earlier program wrote can still be looked at.
-    object(at, &["info", "unknown.h5", "--json"]);
+    object(at, &["info", "unknown.h5", "--json", "--unchecked"]);
 }
 
 #[test]

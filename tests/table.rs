@@ -322,7 +322,7 @@ fn rows_that_are_no_profile_are_refused_with_the_cure() {
         (
             radius[..3].to_vec(),
             height[..3].to_vec(),
-            "it has 3 rows of different radius; give from 4 to 100000",
+            "it has 3 rows of different radius; give from 4 to 1000000",
         ),
         (even(1_000_001, 1.0), even(1_000_001, 1.0), "1000001 rows"),
         (radius[..3].to_vec(), height.clone(), "3 radii and 4 heights"),

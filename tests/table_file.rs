@@ -133,7 +133,7 @@ fn a_bad_file_is_refused_with_its_line_what_stands_there_and_the_cure() {
             replaced("0.1,0.5", "0.1,-0.5"),
             "line 3: at r = 0.1 the profile has f = -0.5, below its tip at r = 0 with f = 0 (line 1)",
         ),
-        (b"0,0\n0.1,1\n0.2,2\n".to_vec(), "it has 3 rows of different radius; give from 4 to 100000"),
+        (b"0,0\n0.1,1\n0.2,2\n".to_vec(), "it has 3 rows of different radius; give from 4 to 1000000"),
         (b"0 0\n1 0\n2 0\n3 0\n".to_vec(), "every f is zero"),
         (csv(";").replace('.', ",").into_bytes(), "line 2: \"0,05;0,125\" has a decimal comma; write points"),
         (csv("\t").replace('.', ",").into_bytes(), "has a decimal comma"),
@@ -145,8 +145,8 @@ fn a_bad_file_is_refused_with_its_line_what_stands_there_and_the_cure() {
         (b"0,0\n0.1,1\n\xff\xfe\n".to_vec(), "line 3 is not UTF-8 text; save the file in UTF-8"),
         (b"\x89PNG\r\n\x1a\n\0\0\0".to_vec(), "is not text; save the profile as plain text"),
         (
-            (0..100_001).map(|i| format!("{i} {i}\n")).collect::<String>().into_bytes(),
-            "line 100001: there are more than 100000 rows",
+            (0..1_000_001).map(|i| format!("{i} {i}\n")).collect::<String>().into_bytes(),
+            "line 1000001: there are more than 1000000 rows",
         ),
         (vec![b'#'; 100_000_001], "is larger than 100000000 bytes"),
         (vec![b'1'; 1_000_000], "has 1 column"),
@@ -334,11 +334,11 @@ fn rows_in_a_result_that_are_missing_or_damaged_are_refused() {
     edited("order.h5", &|file| write(file, "table_radius", 2, 1.0));
     edited("other.h5", &|file| write(file, "table_profile", 2, 1e-6));
     for (name, words) in [
-        ("missing.h5", "its rows are not stored"),
+        ("missing.h5", "is not the one that checkpoint and snapshots were computed from"),
         ("half.h5", "/table_radius is missing"),
         ("nan.h5", "/table_profile: indenter.table: row 3"),
         ("order.h5", "must increase"),
-        ("other.h5", "does not fit its scene"),
+        ("other.h5", "is not the one that checkpoint and snapshots were computed from"),
     ] {
         let output = run(at, &["run", "--resume", name, "--unchecked"]);
         let message = text(&output.stderr);

@@ -65,7 +65,7 @@ impl TabulatedProfile {
     pub const FEWEST_ROWS: usize = 4;
 
     /// Most rows of a table: so many take a second or two to be prepared, and are more than any number of springs resolves.
-    pub const MOST_ROWS: usize = 100_000;
+    pub const MOST_ROWS: usize = 1_000_000;
 
     /// Profile through rows.
     ///

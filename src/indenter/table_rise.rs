@@ -348,8 +348,8 @@ impl RiseTransform {
 /// What so many pieces of a series are to resolve.
 fn accuracy(pieces: usize) -> f64 {
     match pieces {
-        ..MANY_PIECES => ACCURACY,
-        ..MOST_PIECES => ENOUGH,
+        0..MANY_PIECES => ACCURACY,
+        MANY_PIECES..MOST_PIECES => ENOUGH,
         _ => f64::INFINITY,
     }
 }

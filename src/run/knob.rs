@@ -156,9 +156,10 @@ pub(super) fn tolerance_for(accuracy: f64) -> f64 {
 /// (docs/accuracy.md).
 const SPRINGS_UNDER_FORCE: [f64; 2] = [200.0, 1e-4];
 
-/// Substeps of a period that is sampled: the fewest and the most, the accuracy up to which they do, and the power with which they grow beyond: four times as many for a tenth of the error.
-const SUBSTEPS: [f64; 2] = [96.0, 768.0];
-const SAMPLED_AT: f64 = 1e-3;
+/// Substeps of a period that is sampled: the fewest and the most, the accuracy up to which the fewest serve, and the power with which they
+/// grow beyond: four times as many for a tenth of the error.
+const SUBSTEPS: [f64; 2] = [192.0, 768.0];
+const SAMPLED_AT: f64 = 3.2e-4;
 const ORDER_OF_SUBSTEPS: f64 = 0.602;
 
 /// Substeps of a period that is sampled, a multiple of four.
