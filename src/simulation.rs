@@ -45,6 +45,10 @@ const CERTAIN_WEAR: f64 = 0.5;
 /// stick blows up it passes below nothing for a while, by more than 0.1 as `k → -1`; meshes that are unstable swing by more than one.
 const BEYOND_CONTACT: f64 = 0.3;
 
+/// Rejected steps beyond which a run is given up if they are also more than half of the accepted ones: where a held force loses its stick
+/// zone the edge of stick is followed in ever smaller steps.
+const MOST_REJECTED: u64 = 4000;
+
 /// Dimensionless time for which wear without end is followed when a run is to last until its rate has fallen.
 const SHOWN_UNENDING: f64 = 1.0;
 
@@ -407,6 +411,10 @@ impl Simulation {
                 return Ok(landing.output);
             }
             self.progress.rejected_steps += 1;
+            let rejected = self.progress.rejected_steps;
+            if rejected > MOST_REJECTED && 2 * rejected > self.progress.steps {
+                return Err(self.stuck("wear goes on in ever smaller steps, of which most are rejected"));
+            }
         }
     }
 

@@ -178,10 +178,14 @@ fn every_law_and_mode_gives_the_keys_series_and_loops_promised() {
         expected.sort_unstable();
         assert_eq!(keys, expected, "{name}");
         // Springs were given by hand, so that no accuracy was asked for.
-        let mut figures = RUN_KEYS[2..].iter().filter(|key| **key != "accuracy_met");
+        // Under a held force or a rig the balance of volumes tells nothing of where the edge of stick is.
+        let held = ["force", "rig"].contains(&name);
+        assert_eq!(json["error_estimate"].is_null(), held, "{name}: {json}");
+        let mut figures =
+            RUN_KEYS[2..].iter().filter(|key| !["accuracy_met", "error_estimate"].contains(key));
         assert!(figures.all(|key| json[key].is_number()), "{name}: {json}");
         assert_eq!((file.stop_reason, file.complete), (StopReason::End, true), "{name}");
-        let estimate = json["error_estimate"].as_f64().unwrap();
+        let estimate = json["error_estimate"].as_f64().unwrap_or(0.0);
         println!("{name}: {} steps, estimate {estimate:.1e}", json["steps"]);
         assert!(estimate < 0.02, "{name}: {estimate}");
         assert_eq!(file.snapshots.len(), 9, "{name}");
