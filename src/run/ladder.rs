@@ -197,9 +197,7 @@ impl Ladder {
             left_out: finite(self.left_out),
         })
     }
-}
 
-impl Ladder {
     /// The larger of the differences of volume and profile, relative.
     ///
     /// Where the edge of stick moves, the profile is steep at places that are known to the error of that edge only: there it is the distance of

@@ -223,7 +223,8 @@ impl Observer for Recorder {
 ///
 /// Where worn volume and dissipated energy are in proportion, as under Archard's law and Coulomb's friction (`μ_f/k_w`), that volume is the
 /// energy's, a balance that holds for the continuous contact between springs and surface. Else it is the integral of what the surface
-/// loses in each cycle, and tells of the time stepping alone. Where the edge of stick moves neither sees the error of its place, and there is none. What the springs do not see of a waviness is in neither.
+/// loses in each cycle, and tells of the time stepping alone. What the springs do not see of a waviness is in neither. Where the edge of stick
+/// moves neither sees the error of its place, and there is no estimate.
 fn balance_error(simulation: &Simulation) -> Option<f64> {
     let (model, state) = (simulation.model(), simulation.state());
     let tangential = model.schedule().conditions().tangential_control != TangentialControl::Displacement;
