@@ -309,16 +309,39 @@ fn signals_are_answered_with_a_checkpoint_and_75() {
     assert!(bits(&place.merged("out15")) == bits(&place.merged("alone")));
 }
 
+/// Files below a folder with the times of their last change: what a checkpoint alters.
+fn state_of(folder: &Path) -> Vec<(PathBuf, std::time::SystemTime)> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return vec![] };
+    let paths = entries.flatten().map(|entry| entry.path());
+    // A file may be renamed between the listing and the question.
+    let mut files: Vec<_> = paths
+        .flat_map(|path| {
+            if path.is_dir() {
+                state_of(&path)
+            } else {
+                let changed = std::fs::metadata(&path).and_then(|it| it.modified());
+                changed.map(|time| vec![(path, time)]).unwrap_or_default()
+            }
+        })
+        .collect();
+    files.sort();
+    files
+}
+
 #[test]
 fn a_long_scene_goes_on_inside() {
-    // one scene of some seconds, with a checkpoint each tenth of one
+    // One scene of some seconds with a checkpoint after every step; it is killed as soon as a new one stands.
     let base = BASE.replace("springs = 16", "springs = 700").replace("tolerance = 1e-2", "tolerance = 1e-7");
     let place = Place::with_base(&base.replace("tau = 3\n", "tau = 0.5\n"), "scene = \"base.toml\"\n");
     let mut stopped = 0;
     loop {
-        let mut child = place.command("out").args(["--checkpoint-interval", "0.1"]).spawn().unwrap();
+        let parts = place.path("out").join("parts");
+        let before = state_of(&parts);
+        let mut child = place.command("out").args(["--checkpoint-interval", "0"]).spawn().unwrap();
         if stopped < 3 {
-            std::thread::sleep(Duration::from_millis(700));
+            while child.try_wait().unwrap().is_none() && state_of(&parts) == before {
+                std::thread::sleep(Duration::from_millis(2));
+            }
             // SAFETY: as above.
             unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGKILL) };
         }
@@ -328,6 +351,8 @@ fn a_long_scene_goes_on_inside() {
         stopped += 1;
     }
     assert_eq!(stopped, 3, "the scene is too short for this test");
+    let scratch = state_of(&place.path("out"));
+    assert_eq!(scratch.len(), 1, "nothing but the shard is left: {scratch:?}");
     place.sweep("alone", &SweepOptions::default());
     let [out, alone] = ["out", "alone"].map(|output| place.merged(output));
     assert!(bits(&out) == bits(&alone));
