@@ -6,18 +6,18 @@
 
 use std::time::Instant;
 
-use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
+use fretwear::contact::half_space::HalfSpace;
+use fretwear::contact::indenter::Indenter;
 use fretwear::error::Result;
-use fretwear::friction::Coulomb;
-use fretwear::grid::Clustering;
-use fretwear::half_space::HalfSpace;
-use fretwear::indenter::Indenter;
-use fretwear::loading::{Amplitude, Duration, Load, Loading};
-use fretwear::model::Model;
-use fretwear::simulation::{End, Observer, Plan, Simulation};
-use fretwear::stepper::{Implicit, Multistep, Stepper};
-use fretwear::wear::Archard;
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::friction::Coulomb;
+use fretwear::laws::loading::{Amplitude, Duration, Load, Loading};
+use fretwear::laws::wear::Archard;
+use fretwear::numerics::grid::Clustering;
+use fretwear::solver::model::Model;
+use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
+use fretwear::solver::stepper::{Implicit, Multistep, Stepper};
 
 /// Exponent of the indenter, grading, stick ratio.
 const SCENES: [(f64, f64, f64); 12] = [

@@ -8,15 +8,15 @@
 
 use std::time::Instant;
 
-use fretwear::conditions::Conditions;
+use fretwear::data::RunFile;
 use fretwear::error::Result;
-use fretwear::grid::Clustering;
-use fretwear::model::{Model, State};
+use fretwear::laws::conditions::Conditions;
+use fretwear::numerics::grid::Clustering;
 use fretwear::run::{Run, Shared};
 use fretwear::scene::Scene;
-use fretwear::simulation::{End, Observer, Plan, Simulation};
-use fretwear::snapshot::RunFile;
-use fretwear::stepper::Multistep;
+use fretwear::solver::model::{Model, State};
+use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
+use fretwear::solver::stepper::Multistep;
 
 /// What is asked for, springs and tolerance of the reference, and those with which the reference is itself judged.
 const COARSE: Plans = Plans { accuracies: &[1e-2, 1e-3, 1e-4], reference: (160, 2e-8), second: (112, 6e-8) };

@@ -10,12 +10,12 @@ mod support;
 use std::hint::black_box;
 use std::time::Instant;
 
-use fretwear::abel::{AbelOperators, Backend};
-use fretwear::conditions::Conditions;
-use fretwear::grid::{Clustering, Mesh};
-use fretwear::linear::Factors;
-use fretwear::model::Model;
+use fretwear::laws::conditions::Conditions;
+use fretwear::numerics::abel::{AbelOperators, Backend};
+use fretwear::numerics::grid::{Clustering, Mesh};
+use fretwear::numerics::linear::Factors;
 use fretwear::scene::Scene;
+use fretwear::solver::model::Model;
 use rayon::prelude::*;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;

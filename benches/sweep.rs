@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use fretwear::run::{Run, Shared};
 use fretwear::scene::Study;
-use fretwear::sweep::{SweepOptions, sweep};
+use fretwear::study::sweep::{SweepOptions, sweep};
 use tempfile::TempDir;
 
 const BASE: &str = include_str!("../data/scenes/paraboloid.toml");

@@ -4,7 +4,7 @@
 //!
 //! ```
 //! use std::path::Path;
-//! use fretwear::drawing::{Drawing, Spacing};
+//! use fretwear::figures::drawing::{Drawing, Spacing};
 //! use fretwear::figures::{Kind, Results};
 //! use fretwear::run::Run;
 //! use fretwear::scene::Scene;
@@ -23,12 +23,14 @@
 
 mod approach;
 mod curve;
+pub mod drawing;
 mod history;
 mod loops;
 mod map;
 mod measure;
 mod optimum;
 mod output;
+pub mod page;
 mod pressure;
 mod profile;
 mod rings;
@@ -41,9 +43,9 @@ mod worn_profiles;
 pub use output::FigureFile;
 pub use run::RunResults;
 
-use crate::drawing::Figure;
+use crate::data::{Format, ResultPath, RunFile, StoredArrays, SweepFile, format_of};
 use crate::error::{Error, Result};
-use crate::snapshot::{Format, ResultPath, RunFile, StoredArrays, SweepFile, format_of};
+use crate::figures::drawing::Figure;
 
 /// What a figure shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,16 +7,16 @@
 //!
 //! # A run in memory
 //!
-//! A scene flows one way: text → [`scene::Scene`] → [`contact::InitialContact`] → [`model::Model`] → [`simulation::Simulation`]. The worn
+//! A scene flows one way: text → [`scene::Scene`] → [`contact::InitialContact`] → [`solver::model::Model`] → [`solver::simulation::Simulation`]. The worn
 //! volume of a homogeneous half-space (`k = 0`) under a paraboloid with the stick ratio `c/a0 = 0.7` at the dimensionless time `τ = 1` is
 //! known from three-dimensional solvers to be `0.026873 a0² d`:
 //!
 //! ```
-//! use fretwear::grid::Clustering;
-//! use fretwear::model::Model;
+//! use fretwear::numerics::grid::Clustering;
+//! use fretwear::solver::model::Model;
 //! use fretwear::scene::Scene;
-//! use fretwear::simulation::{End, Plan, Simulation};
-//! use fretwear::stepper::Implicit;
+//! use fretwear::solver::simulation::{End, Plan, Simulation};
+//! use fretwear::solver::stepper::Implicit;
 //!
 //! // Units in which a0 = 1 and d = 2.
 //! let scene = Scene::from_toml(
@@ -57,82 +57,60 @@
 //!
 //! | equation of \[S\] | content | function |
 //! |---|---|---|
-//! | (1) | grading E = E0 (z/z0)^k | [`half_space::modulus_at_depth`] |
-//! | (2) | limiting equivalent profile | [`closed_form::LimitingShape::equivalent_profile`] |
-//! | (3) | limiting wear depth | [`closed_form::LimitingShape::wear_depth`] |
-//! | (4) | worn volume: limit, state | [`closed_form::LimitingShape::wear_volume`], [`model::Model::wear_volume`] |
-//! | (5) | power law | [`closed_form::power_law_profile`] |
-//! | (6) | its factor κ | [`indenter::power_law_factor`] |
-//! | (7) | indentation | [`closed_form::power_law_indentation`] |
-//! | (8) | contact radius | [`closed_form::power_law_contact_radius`] |
-//! | (9) | (3) for a power law, by series | [`closed_form::HypergeometricLimit::wear_depth`] |
-//! | (10) | Gauss's hypergeometric function | [`closed_form::gauss_hypergeometric`] |
-//! | (11) | edge of stick | [`stick_slip::slip_compression`], [`stick_slip::stick_radius`] |
-//! | (12) | M under elastic similarity | [`half_space::similar_stiffness_ratio`] |
-//! | (13) | small parameter ε_a | [`closed_form::relative_slip_width`] |
-//! | (14) | limiting annulus at small amplitudes | [`closed_form::relative_limit_width`] |
-//! | (15) | worn volume at small amplitudes | [`closed_form::small_amplitude_wear_volume`] |
-//! | (16), (17), (18) | paraboloid | [`closed_form::paraboloid_contact_radius`], [`closed_form::paraboloid_stick_radius`], [`closed_form::paraboloid_relative_slip_width`], [`closed_form::paraboloid_small_amplitude_wear_volume`] |
-//! | (19) | equivalent profile g(x): power laws, spheres, tables; any profile | [`indenter::EquivalentProfile`], [`transforms::Transforms::equivalent_profile`] |
-//! | (20) | springs to profile, slip to surface: on a mesh; any profile | [`abel::AbelOperators::profile`], [`transforms::Transforms::profile`] |
-//! | (21), corrected | springs to pressure: on a mesh; any profile | [`abel::AbelOperators::pressure`], [`transforms::Transforms::pressure`] |
-//! | (22) | normal force | [`indenter::EquivalentProfile::load_integral`], [`transforms::Transforms::load`], [`model::Model::normal_force`] |
+//! | (1) | grading E = E0 (z/z0)^k | [`contact::half_space::modulus_at_depth`] |
+//! | (2) | limiting equivalent profile | [`contact::closed_form::LimitingShape::equivalent_profile`] |
+//! | (3) | limiting wear depth | [`contact::closed_form::LimitingShape::wear_depth`] |
+//! | (4) | worn volume: limit, state | [`contact::closed_form::LimitingShape::wear_volume`], [`solver::model::Model::wear_volume`] |
+//! | (5) | power law | [`contact::closed_form::power_law_profile`] |
+//! | (6) | its factor κ | [`contact::indenter::power_law_factor`] |
+//! | (7) | indentation | [`contact::closed_form::power_law_indentation`] |
+//! | (8) | contact radius | [`contact::closed_form::power_law_contact_radius`] |
+//! | (9) | (3) for a power law, by series | [`contact::closed_form::HypergeometricLimit::wear_depth`] |
+//! | (10) | Gauss's hypergeometric function | [`contact::closed_form::gauss_hypergeometric`] |
+//! | (11) | edge of stick | [`contact::stick_slip::slip_compression`], [`contact::stick_slip::stick_radius`] |
+//! | (12) | M under elastic similarity | [`contact::half_space::similar_stiffness_ratio`] |
+//! | (13) | small parameter ε_a | [`contact::closed_form::relative_slip_width`] |
+//! | (14) | limiting annulus at small amplitudes | [`contact::closed_form::relative_limit_width`] |
+//! | (15) | worn volume at small amplitudes | [`contact::closed_form::small_amplitude_wear_volume`] |
+//! | (16), (17), (18) | paraboloid | [`contact::closed_form::paraboloid_contact_radius`], [`contact::closed_form::paraboloid_stick_radius`], [`contact::closed_form::paraboloid_relative_slip_width`], [`contact::closed_form::paraboloid_small_amplitude_wear_volume`] |
+//! | (19) | equivalent profile g(x): power laws, spheres, tables; any profile | [`contact::indenter::EquivalentProfile`], [`contact::transforms::Transforms::equivalent_profile`] |
+//! | (20) | springs to profile, slip to surface: on a mesh; any profile | [`numerics::abel::AbelOperators::profile`], [`contact::transforms::Transforms::profile`] |
+//! | (21), corrected | springs to pressure: on a mesh; any profile | [`numerics::abel::AbelOperators::pressure`], [`contact::transforms::Transforms::pressure`] |
+//! | (22) | normal force | [`contact::indenter::EquivalentProfile::load_integral`], [`contact::transforms::Transforms::load`], [`solver::model::Model::normal_force`] |
 //!
 //! Equation (21) as printed has a factor `x^k` too many, with which forces do not balance; the library uses it without and takes pressure
 //! as positive.
 //!
-//! # The storeys of the house
+//! # The layers
 //!
-//! Each module uses only modules to its right in its own storey, and storeys below; `tests/house.rs` keeps it so.
+//! Each folder uses itself and what stands below it here, and no two modules of a folder use each other; `tests/layers.rs` keeps it so.
 //!
-//! | storey | modules |
+//! | folder | what it holds |
 //! |---|---|
-//! | entry | the binary; this page |
-//! | jobs | [`submit`], [`sweep`], [`page`], [`figures`], [`report`], [`export`], [`universality`], [`tradeoff`], [`progress`], [`run`], [`wear_map`], [`drawing`] |
-//! | files | [`scene`], [`snapshot`] |
-//! | time | [`simulation`], [`stepper`], [`model`] |
-//! | physics | [`closed_form`], [`contact`], [`slip_depth`], [`stick_slip`], [`conditions`], [`wear`], [`spring`], [`path`], [`friction`], [`loading`], [`history`], [`indenter`], [`half_space`] |
-//! | numerics | [`transforms`], [`abel`], [`chebyshev`], [`linear`], [`quadrature`], [`roots`], [`grid`], [`error`] |
+//! | `main` | the command line |
+//! | [`figures`] | pictures and pages made from result files |
+//! | [`study`] | many scenes: sweeps and their jobs, universality, trade-off, wear maps |
+//! | [`report`] | what the commands say: text, JSON, CSV |
+//! | [`run`] | one scene from its first cycle to its end: springs by accuracy, error estimate, checkpoints |
+//! | [`scene`] | the text of a scene or study: keys, units, ranges, schema |
+//! | [`data`] | result files: quantities, HDF5, seals, atomic writing |
+//! | [`solver`] | the discretised contact, implicit steps, the loop over cycles |
+//! | [`contact`] | indenters, the half-space, the stick zone, closed forms |
+//! | [`laws`] | friction, wear, motion, histories |
+//! | [`numerics`] | quadrature, roots, linear algebra, Abel transforms on a mesh |
 //!
 //! SI units everywhere, nothing is scaled behind the scenes; the library neither prints nor exits.
 
-pub mod abel;
-pub mod chebyshev;
-pub mod closed_form;
-pub mod conditions;
 pub mod contact;
-pub mod drawing;
+pub mod data;
 pub mod error;
-pub mod export;
 pub mod figures;
-pub mod friction;
-pub mod grid;
-pub mod half_space;
-pub mod history;
-pub mod indenter;
-pub mod linear;
-pub mod loading;
-pub mod model;
-pub mod page;
-pub mod path;
-pub mod progress;
-pub mod quadrature;
+pub mod laws;
+pub mod numerics;
 pub mod report;
-pub mod roots;
 pub mod run;
 pub mod scene;
-pub mod simulation;
-pub mod slip_depth;
-pub mod snapshot;
-pub mod spring;
-pub mod stepper;
-pub mod stick_slip;
-pub mod submit;
-pub mod sweep;
-pub mod tradeoff;
-pub mod transforms;
-pub mod universality;
-pub mod wear;
-pub mod wear_map;
+pub mod solver;
+pub mod study;
 
 pub use error::{Error, Result};

@@ -6,14 +6,14 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::{Args, Parser, Subcommand};
+use fretwear::data::{ArraySummary, Mark, ResultPath, StopReason, check_distinct, check_own};
 use fretwear::figures::FigureFile;
-use fretwear::progress::{Progress, SceneProgress};
 use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile};
+use fretwear::run::progress::{Progress, SceneProgress};
 use fretwear::run::{Resumed, RunResult, most_threads};
 use fretwear::scene::{MapScene, Scene, Study};
-use fretwear::simulation::Observer;
-use fretwear::snapshot::{ArraySummary, Mark, ResultPath, StopReason, check_distinct, check_own};
-use fretwear::sweep::{MergeReport, SweepOptions, SweepReport};
+use fretwear::solver::simulation::Observer;
+use fretwear::study::sweep::{MergeReport, SweepOptions, SweepReport};
 use fretwear::{Error, Result};
 use signal_hook::consts::SIGXFSZ;
 
@@ -325,7 +325,7 @@ fn run_picture(arguments: &Run, named: Option<&Path>) -> Result<FigureFile> {
     check_distinct(&path, &result)?;
     arguments.scene.as_deref().map_or(Ok(()), |scene| check_distinct(&path, scene))?;
     if named.is_none() && arguments.force {
-        check_own(&path, Mark::Words(fretwear::drawing::BEGINNING))?;
+        check_own(&path, Mark::Words(fretwear::figures::drawing::BEGINNING))?;
     }
     FigureFile::new(&path, arguments.force)
 }
@@ -385,7 +385,7 @@ fn sweep(arguments: &Sweep) -> Result<(String, ExitCode)> {
     }
     let progress = shown.then(SceneProgress::default);
     let outcome =
-        fretwear::sweep::Sweep::new(&study, &arguments.output, &options)?.execute(progress.as_ref());
+        fretwear::study::sweep::Sweep::new(&study, &arguments.output, &options)?.execute(progress.as_ref());
     drop(progress);
     let outcome = match outcome {
         Ok(outcome) => outcome,
@@ -413,7 +413,7 @@ fn sweep(arguments: &Sweep) -> Result<(String, ExitCode)> {
 }
 
 fn merge(arguments: &Merge) -> Result<(String, ExitCode)> {
-    let merged = fretwear::sweep::merge(&arguments.folder, &arguments.output, arguments.force)?;
+    let merged = fretwear::study::sweep::merge(&arguments.folder, &arguments.output, arguments.force)?;
     let report = MergeReport::new(&merged, &arguments.output);
     let code = if merged.missing_shards.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
     Ok((if arguments.json { report::json(&report) } else { report.text() }, code))

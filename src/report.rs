@@ -4,6 +4,7 @@
 
 mod check;
 mod conditions;
+pub mod export;
 mod info;
 mod limit;
 mod map;
@@ -25,8 +26,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use crate::data::AtomicFile;
 use crate::error::{Error, Result};
-use crate::snapshot::AtomicFile;
 
 /// One JSON object, keys in the order of declaration; a number that is not finite is null.
 pub fn json(report: &impl Serialize) -> String {

@@ -6,25 +6,26 @@ use std::sync::atomic::AtomicBool;
 
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 
-use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
-use crate::error::{Error, Result};
-use crate::indenter::Indenter;
-use crate::loading::{self, Mode, cycles_at, has_come};
-use crate::model::{Model, OperatorStore, Resolution, Schedule};
-use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice, WearFrom};
-use crate::simulation::{End, Observer, Outcome, Plan, Simulation};
-use crate::snapshot::{
+use crate::contact::closed_form::LimitingShape;
+use crate::contact::indenter::Indenter;
+use crate::contact::stick_slip::Regime;
+use crate::data::{
     Checkpoint, LimitCurves, LimitDistance, ResultPath, RunFile, RunHeader, RunWriter, Snapshot, StopReason,
     scene_hash,
 };
-use crate::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
-use crate::stick_slip::Regime;
+use crate::error::{Error, Result};
+use crate::laws::loading::{self, Mode, cycles_at, has_come};
+use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice, WearFrom};
+use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
+use crate::solver::simulation::{End, Observer, Outcome, Plan, Simulation};
+use crate::solver::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
 
 mod effort;
 mod knob;
 mod ladder;
 mod mesh;
+pub mod progress;
 mod ready;
 mod recorder;
 mod threads;

@@ -1,7 +1,7 @@
 //! A scene: the TOML text that describes a run, read into data that cannot be invalid.
 //!
 //! ```
-//! use fretwear::loading::Duration;
+//! use fretwear::laws::loading::Duration;
 //! use fretwear::scene::Scene;
 //!
 //! let text = r#"
@@ -31,14 +31,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::conditions::Conditions;
 use crate::contact::InitialContact;
+use crate::contact::half_space::HalfSpace;
+use crate::contact::indenter::{Indenter, TabulatedProfile};
 use crate::error::{Error, Result};
-use crate::friction::Coulomb;
-use crate::half_space::HalfSpace;
-use crate::indenter::{Indenter, TabulatedProfile};
-use crate::loading::{Loading, Mode, RecordedPath};
-use crate::wear::Archard;
+use crate::laws::conditions::Conditions;
+use crate::laws::friction::Coulomb;
+use crate::laws::loading::{Loading, Mode, RecordedPath};
+use crate::laws::wear::Archard;
 
 mod columns;
 mod document;
@@ -311,7 +311,7 @@ impl Scene {
     }
 
     /// Coulomb's law that stands for the law of friction in the unworn contact, the closed form and the dimensionless time
-    /// ([`FrictionLaw::reference`](crate::friction::FrictionLaw::reference)).
+    /// ([`FrictionLaw::reference`](crate::laws::friction::FrictionLaw::reference)).
     pub fn friction(&self) -> &Coulomb {
         &self.friction
     }

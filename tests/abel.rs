@@ -2,9 +2,9 @@
 
 mod support;
 
-use fretwear::abel::AbelOperators;
-use fretwear::grid::{Clustering, Mesh};
-use fretwear::linear::{dot, multiply};
+use fretwear::numerics::abel::AbelOperators;
+use fretwear::numerics::grid::{Clustering, Mesh};
+use fretwear::numerics::linear::{dot, multiply};
 use libm::tgamma;
 use support::orders;
 

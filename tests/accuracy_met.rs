@@ -5,13 +5,13 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use fretwear::conditions::Conditions;
-use fretwear::grid::Clustering;
-use fretwear::model::{Model, Resolution, Schedule};
+use fretwear::laws::conditions::Conditions;
+use fretwear::numerics::grid::Clustering;
 use fretwear::run::{Run, RunResult, Shared};
 use fretwear::scene::Scene;
-use fretwear::simulation::{End, Plan, Simulation};
-use fretwear::stepper::{Implicit, MovingStickImplicit};
+use fretwear::solver::model::{Model, Resolution, Schedule};
+use fretwear::solver::simulation::{End, Plan, Simulation};
+use fretwear::solver::stepper::{Implicit, MovingStickImplicit};
 use serde_json::Value;
 use support::command::{names, run, text};
 use support::reference::Table;

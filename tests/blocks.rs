@@ -4,12 +4,12 @@
 
 mod support;
 
-use fretwear::conditions::Conditions;
-use fretwear::history::History;
-use fretwear::loading::Block;
-use fretwear::model::{Model, OperatorStore, Resolution, Schedule};
-use fretwear::simulation::{End, Plan, Simulation};
-use fretwear::stepper::MovingStickImplicit;
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::history::History;
+use fretwear::laws::loading::Block;
+use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
+use fretwear::solver::simulation::{End, Plan, Simulation};
+use fretwear::solver::stepper::MovingStickImplicit;
 use support::command::{run, text};
 use support::{Case, Record, distance, laws};
 

@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-use fretwear::closed_form::{
+use fretwear::contact::closed_form::{
     LimitingShape, Regime, full_sliding_amplitude, relative_limit_width, relative_slip_width,
     similar_stiffness_ratio, slip_compression,
 };
-use fretwear::half_space::{HalfSpace, Poisson};
-use fretwear::indenter::Indenter;
-use fretwear::quadrature::Rule;
-use fretwear::wear_map::{Control, Medium, OptimumCurve, Thresholds, WearMap};
+use fretwear::contact::half_space::{HalfSpace, Poisson};
+use fretwear::contact::indenter::Indenter;
+use fretwear::numerics::quadrature::Rule;
+use fretwear::study::wear_map::{Control, Medium, OptimumCurve, Thresholds, WearMap};
 
 /// Asserts that the row of docs/claims.md that begins with the claim holds every number, as it is written there.
 fn stated(claim: &str, numbers: &[String]) {

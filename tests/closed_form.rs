@@ -3,11 +3,11 @@
 mod support;
 
 use fretwear::Error;
-use fretwear::closed_form::{
+use fretwear::contact::closed_form::{
     LimitingShape, Regime, full_sliding_amplitude, paraboloid_contact_radius, paraboloid_stick_radius,
     relative_limit_width, relative_slip_width, similar_stiffness_ratio, slip_compression,
 };
-use fretwear::indenter::{Indenter, power_law_factor};
+use fretwear::contact::indenter::{Indenter, power_law_factor};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::f64::consts::PI;

@@ -3,8 +3,8 @@
 
 mod support;
 
-use fretwear::closed_form::{Claimed, HypergeometricLimit, LimitingShape};
-use fretwear::indenter::{Indenter, power_law_factor};
+use fretwear::contact::closed_form::{Claimed, HypergeometricLimit, LimitingShape};
+use fretwear::contact::indenter::{Indenter, power_law_factor};
 use std::f64::consts::PI;
 use support::reference::{Table, Worst, relative};
 

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use fretwear::snapshot::{Column, SweepFile, Values};
+use fretwear::data::{Column, SweepFile, Values};
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fretwear::Result;
-use fretwear::snapshot::{
+use fretwear::data::{
     ArraySummary, Format, ResultPath, ResultTables, RunFile, StoredArrays, SweepFile, format_of,
 };
 use support::command::{done, ended, names, program, text};

@@ -2,13 +2,13 @@
 
 mod support;
 
-use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
-use fretwear::history::History;
-use fretwear::loading::{Mode, TangentialControl};
-use fretwear::model::Model;
-use fretwear::simulation::{End, Observer, Plan, Simulation};
-use fretwear::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::history::History;
+use fretwear::laws::loading::{Mode, TangentialControl};
+use fretwear::solver::model::Model;
+use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
+use fretwear::solver::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
 use support::{Case, laws};
 
 /// Depth, volume and energy at the outputs.
@@ -158,7 +158,8 @@ fn depth_volume_and_energy_never_fall() {
 
 #[test]
 fn under_explicit_steps_depth_never_falls() {
-    let case = Case { clustering: fretwear::grid::Clustering::Quadratic, ..Case::new(2.0, 0.0, 0.7, 24) };
+    let case =
+        Case { clustering: fretwear::numerics::grid::Clustering::Quadratic, ..Case::new(2.0, 0.0, 0.7, 24) };
     let case = Case { tau_per_cycle: 1e-3, ..case };
     let times = [1.0, 10.0, 50.0, 100.0, 200.0];
     let steppers: [Box<dyn Stepper + Send>; 2] =

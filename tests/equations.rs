@@ -2,14 +2,14 @@
 
 mod support;
 
-use fretwear::closed_form::{
+use fretwear::contact::closed_form::{
     LimitingShape, paraboloid_contact_radius, paraboloid_normal_force, paraboloid_relative_slip_width,
     paraboloid_small_amplitude_wear_volume, paraboloid_stick_radius, power_law_contact_radius,
     power_law_indentation, power_law_profile, relative_limit_width, relative_slip_width,
     similar_stiffness_ratio,
 };
-use fretwear::half_space::{HalfSpace, Poisson, modulus_at_depth};
-use fretwear::indenter::{Indenter, power_law_factor};
+use fretwear::contact::half_space::{HalfSpace, Poisson, modulus_at_depth};
+use fretwear::contact::indenter::{Indenter, power_law_factor};
 use std::f64::consts::PI;
 use support::reference::{Table, Worst, relative};
 

@@ -6,11 +6,11 @@ use std::fmt::Write;
 use std::fs;
 
 use fretwear::Error;
+use fretwear::data::{RunFile, StopReason};
 use fretwear::run::{Run, RunResult, Shared};
 use fretwear::scene::Scene;
-use fretwear::simulation::{End, Flow, Observer, Plan, Simulation};
-use fretwear::snapshot::{RunFile, StopReason};
-use fretwear::stepper::Implicit;
+use fretwear::solver::simulation::{End, Flow, Observer, Plan, Simulation};
+use fretwear::solver::stepper::Implicit;
 use support::{Case, command};
 
 /// The plain scene of a paraboloid, with an amplitude, an end, what more there is of loading and other tables.

@@ -6,8 +6,8 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-use fretwear::export::worn_surface;
-use fretwear::snapshot::{ResultTables, RunFile, SurfaceSeries, SweepFile};
+use fretwear::data::{ResultTables, RunFile, SurfaceSeries, SweepFile};
+use fretwear::report::export::worn_surface;
 use support::command::{done, names, run, text};
 use support::results::every_kind;
 
@@ -52,7 +52,7 @@ fn tables_of_every_kind_hold_every_digit_under_heads_with_units() {
 
     done(folder, &["export", "paraboloid.h5", "--table", "time,node", "-o", "curves.csv"]);
     let curves = columns(&fs::read_to_string(folder.join("curves.csv")).unwrap());
-    let of_all = |of: fn(&fretwear::snapshot::Snapshot) -> &Vec<f64>| -> Vec<f64> {
+    let of_all = |of: fn(&fretwear::data::Snapshot) -> &Vec<f64>| -> Vec<f64> {
         run.snapshots.iter().flat_map(of).copied().collect()
     };
     assert!(same_bits(&numbers(&curves, "wear_depth [m]"), &of_all(|it| &it.wear_depth)));
@@ -66,7 +66,7 @@ fn tables_of_every_kind_hold_every_digit_under_heads_with_units() {
     let sweep = SweepFile::read(&folder.join("merged.h5")).unwrap();
     let rows = columns(&done(folder, &["export", "merged.h5"]));
     assert_eq!(numbers(&rows, "scene"), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-    let fretwear::snapshot::Values::Numbers(volumes) =
+    let fretwear::data::Values::Numbers(volumes) =
         &sweep.columns.iter().find(|it| it.name == "wear_volume").unwrap().values
     else {
         panic!("volumes are numbers")

@@ -6,10 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use fretwear::Error;
+use fretwear::data::{RunFile, Snapshot, StopReason};
 use fretwear::report::CheckReport;
 use fretwear::run::{Run, RunResult};
 use fretwear::scene::Scene;
-use fretwear::snapshot::{RunFile, Snapshot, StopReason};
 use support::command;
 
 /// A power law on a graded half-space in partial slip, scaled in length and in stiffness.

@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
 
-use fretwear::drawing::{Drawing, Figure, Panel, Series, Spacing, Style, ticks, without_markup};
+use fretwear::data::{RunFile, SweepFile, Values};
+use fretwear::figures::drawing::{Drawing, Figure, Panel, Series, Spacing, Style, ticks, without_markup};
+use fretwear::figures::page;
 use fretwear::figures::{Kind, Results, RunResults};
-use fretwear::page;
-use fretwear::snapshot::{RunFile, SweepFile, Values};
 use roxmltree::Document;
 use support::command::{done, names, run, text};
 

@@ -8,11 +8,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 use fretwear::Error;
+use fretwear::data::Snapshot;
 use fretwear::report::CheckReport;
 use fretwear::run::{Run, Shared};
 use fretwear::scene::schema::is_key;
-use fretwear::simulation::{Flow, Observer, Simulation};
-use fretwear::snapshot::Snapshot;
+use fretwear::solver::simulation::{Flow, Observer, Simulation};
 use support::command;
 use support::scenes::{Length, RandomScene};
 
@@ -95,7 +95,7 @@ fn judge(random: &RandomScene, patience: Duration) -> Result<(End, String), Stri
             if let Some(off) = file.snapshots.iter().find(|snapshot| !numbers_are_numbers(snapshot)) {
                 return Err(format!("not a number at τ = {}", off.tau));
             }
-            let stopped = result.stop_reason == fretwear::snapshot::StopReason::Interrupted;
+            let stopped = result.stop_reason == fretwear::data::StopReason::Interrupted;
             Ok(if stopped {
                 (
                     End::Stopped,

@@ -4,17 +4,17 @@ mod support;
 
 use std::f64::consts::PI;
 
-use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
-use fretwear::friction::Coulomb;
-use fretwear::grid::Clustering;
-use fretwear::half_space::HalfSpace;
-use fretwear::indenter::{Indenter, power_law_factor};
-use fretwear::loading::{Amplitude, Duration, Load, Loading, Mode};
-use fretwear::model::{Model, OperatorStore, Resolution, Schedule};
-use fretwear::simulation::{End, Outcome, Plan, Simulation};
-use fretwear::stepper::{CycleJump, Implicit, MovingStickImplicit};
-use fretwear::wear::Archard;
+use fretwear::contact::half_space::HalfSpace;
+use fretwear::contact::indenter::{Indenter, power_law_factor};
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::friction::Coulomb;
+use fretwear::laws::loading::{Amplitude, Duration, Load, Loading, Mode};
+use fretwear::laws::wear::Archard;
+use fretwear::numerics::grid::Clustering;
+use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
+use fretwear::solver::simulation::{End, Outcome, Plan, Simulation};
+use fretwear::solver::stepper::{CycleJump, Implicit, MovingStickImplicit};
 use support::laws::plain;
 use support::{Record, distance};
 

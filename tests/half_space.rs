@@ -1,7 +1,7 @@
 //! Spring stiffnesses against printed values, exact limits and arithmetic of sixty digits.
 
 use fretwear::Error;
-use fretwear::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
+use fretwear::contact::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
 
 fn unit(grading: f64, ratio: f64) -> HalfSpace {
     HalfSpace::from_modulus(grading, 1.0, 1.0, Poisson::Ratio(ratio)).expect("a half-space")

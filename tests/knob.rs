@@ -1,13 +1,13 @@
 //! What `numerics.accuracy` promises: the error asked for, and an estimate of it that is near.
 
-use fretwear::conditions::Conditions;
-use fretwear::grid::Clustering;
-use fretwear::model::{Model, State};
+use fretwear::data::RunFile;
+use fretwear::laws::conditions::Conditions;
+use fretwear::numerics::grid::Clustering;
 use fretwear::run::{Run, Shared};
 use fretwear::scene::Scene;
-use fretwear::simulation::{End, Observer, Plan, Simulation};
-use fretwear::snapshot::RunFile;
-use fretwear::stepper::Multistep;
+use fretwear::solver::model::{Model, State};
+use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
+use fretwear::solver::stepper::Multistep;
 
 /// Grading, exponent of the indenter, stick ratio, dimensionless time.
 type Case = (f64, f64, f64, f64);

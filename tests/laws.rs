@@ -2,10 +2,10 @@
 
 mod support;
 
-use fretwear::conditions::Conditions;
-use fretwear::history::History;
-use fretwear::loading::{Block, Mode};
-use fretwear::simulation::{End, Outcome};
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::history::History;
+use fretwear::laws::loading::{Block, Mode};
+use fretwear::solver::simulation::{End, Outcome};
 use support::{Case, laws};
 
 const MEDIA: [(f64, f64); 4] = [(2.0, 0.0), (1.0, -0.3), (2.0, 0.5), (1.0, 0.9)];

@@ -6,12 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use fretwear::closed_form::LimitingShape;
-use fretwear::model::State;
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::data::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
 use fretwear::report::{CheckReport, LimitReport};
 use fretwear::scene::Scene;
-use fretwear::simulation::Progress;
-use fretwear::snapshot::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
+use fretwear::solver::model::State;
+use fretwear::solver::simulation::Progress;
 use serde_json::Value;
 use std::f64::consts::PI;
 use support::command::{done, names, object, run, text};

@@ -2,13 +2,13 @@
 
 mod support;
 
-use fretwear::abel::AbelOperators;
-use fretwear::closed_form::LimitingShape;
-use fretwear::grid::{Clustering, Mesh};
-use fretwear::linear::multiply;
-use fretwear::roots::bracketed;
-use fretwear::simulation::{End, Outcome, Plan};
-use fretwear::stepper::Implicit;
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::numerics::abel::AbelOperators;
+use fretwear::numerics::grid::{Clustering, Mesh};
+use fretwear::numerics::linear::multiply;
+use fretwear::numerics::roots::bracketed;
+use fretwear::solver::simulation::{End, Outcome, Plan};
+use fretwear::solver::stepper::Implicit;
 use support::{Case, orders};
 
 #[test]

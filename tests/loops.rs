@@ -4,14 +4,14 @@ mod support;
 
 use std::sync::Arc;
 
-use fretwear::conditions::Conditions;
-use fretwear::friction::FrictionLaw;
-use fretwear::grid::Clustering;
-use fretwear::loading::{Mode, RecordedPath, TangentialControl};
-use fretwear::model::{Demand, FrettingLoop, Model, OperatorStore, Resolution, Schedule, State};
-use fretwear::quadrature::Rule;
-use fretwear::simulation::{End, Plan, Simulation};
-use fretwear::stepper::{Implicit, MovingStickImplicit};
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::friction::FrictionLaw;
+use fretwear::laws::loading::{Mode, RecordedPath, TangentialControl};
+use fretwear::numerics::grid::Clustering;
+use fretwear::numerics::quadrature::Rule;
+use fretwear::solver::model::{Demand, FrettingLoop, Model, OperatorStore, Resolution, Schedule, State};
+use fretwear::solver::simulation::{End, Plan, Simulation};
+use fretwear::solver::stepper::{Implicit, MovingStickImplicit};
 use support::{Case, Record, Seen, distance, orders};
 
 /// Displacements of a loop of `2 half` equal steps.

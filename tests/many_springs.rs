@@ -6,16 +6,16 @@ use assert_cmd::Command;
 use faer::Mat;
 use faer::traits::RealField;
 use faer::traits::math_utils::from_f64;
-use fretwear::abel::{AbelOperators, Backend};
-use fretwear::closed_form::LimitingShape;
-use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
-use fretwear::grid::{Clustering, Mesh};
-use fretwear::linear::{Factors, Halves, HodlrFactors, LowRank, OffDiagonal};
-use fretwear::model::{Model, Past, State};
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::laws::conditions::Conditions;
+use fretwear::numerics::abel::{AbelOperators, Backend};
+use fretwear::numerics::grid::{Clustering, Mesh};
+use fretwear::numerics::linear::{Factors, Halves, HodlrFactors, LowRank, OffDiagonal};
 use fretwear::scene::Scene;
-use fretwear::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
-use fretwear::stepper::Multistep;
+use fretwear::solver::model::{Model, Past, State};
+use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
+use fretwear::solver::stepper::Multistep;
 
 /// A compression with waves that vanishes at the contact edge.
 fn compression(mesh: &Mesh) -> Vec<f64> {

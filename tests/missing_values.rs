@@ -5,7 +5,7 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use fretwear::snapshot::{Format, RunFile, StoredArrays};
+use fretwear::data::{Format, RunFile, StoredArrays};
 use support::command::{done, run};
 
 const SCENE: &str = r#"

@@ -4,15 +4,15 @@ mod support;
 
 use std::fs;
 
-use fretwear::conditions::Conditions;
-use fretwear::grid::Clustering;
-use fretwear::loading::{Block, Clock};
-use fretwear::model::{Model, OperatorStore, Resolution, Schedule, State};
+use fretwear::contact::stick_slip::Regime;
+use fretwear::data::{RunFile, Snapshot, StopReason};
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::loading::{Block, Clock};
+use fretwear::numerics::grid::Clustering;
 use fretwear::scene::Scene;
-use fretwear::simulation::{End, Flow, Observer, Outcome, Plan, Progress, Simulation};
-use fretwear::snapshot::{RunFile, Snapshot, StopReason};
-use fretwear::stepper::Implicit;
-use fretwear::stick_slip::Regime;
+use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule, State};
+use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Progress, Simulation};
+use fretwear::solver::stepper::Implicit;
 use serde_json::Value;
 use support::command::{RUN_KEYS, object};
 use support::resume::whole_and_in_parts;

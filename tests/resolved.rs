@@ -3,13 +3,13 @@
 mod support;
 
 use faer::Mat;
-use fretwear::conditions::Conditions;
-use fretwear::grid::Clustering;
-use fretwear::model::{Model, State};
-use fretwear::path::SampledPath;
-use fretwear::simulation::{End, Plan, Simulation};
-use fretwear::spring::{Response, Shakedown, SpringCycle, steady_cycle};
-use fretwear::stepper::{CycleJump, EveryCycle, Implicit, Stepper};
+use fretwear::contact::spring::{Response, Shakedown, SpringCycle, steady_cycle};
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::path::SampledPath;
+use fretwear::numerics::grid::Clustering;
+use fretwear::solver::model::{Model, State};
+use fretwear::solver::simulation::{End, Plan, Simulation};
+use fretwear::solver::stepper::{CycleJump, EveryCycle, Implicit, Stepper};
 use support::{Case, distance, laws, orders};
 
 const MEDIA: [(f64, f64); 3] = [(2.0, 0.0), (1.0, -0.3), (2.0, 0.5)];
@@ -276,7 +276,7 @@ fn the_table_of_an_orbit_is_that_of_its_springs() {
         let table = Response::new(&path).unwrap();
         let built = start.elapsed();
         assert!(Response::new(&path).unwrap() == table, "{name}: another table");
-        let law = fretwear::friction::FrictionLaw::Coulomb(*contact.friction());
+        let law = fretwear::laws::friction::FrictionLaw::Coulomb(*contact.friction());
         let mut cycle = SpringCycle::default();
         let mut slip = vec![0.0; 2 * path.points.len()];
         let free: f64 = path.length();

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use fretwear::closed_form::LimitingShape;
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::data::{RunFile, Snapshot, StopReason};
 use fretwear::scene::Scene;
-use fretwear::snapshot::{RunFile, Snapshot, StopReason};
 use serde_json::Value;
 use support::command::{RUN_KEYS, names, object, program, run, text};
 

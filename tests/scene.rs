@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use fretwear::conditions::Conditions;
-use fretwear::half_space::HalfSpace;
-use fretwear::indenter::Indenter;
-use fretwear::loading::{Amplitude, Duration, Load};
+use fretwear::contact::half_space::HalfSpace;
+use fretwear::contact::indenter::Indenter;
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::loading::{Amplitude, Duration, Load};
 use fretwear::report::CheckReport;
 use fretwear::scene::quantity::{Dimension, parse};
 use fretwear::scene::{Cycle, Numerics, Output, Scene, Stepper, WearFrom};

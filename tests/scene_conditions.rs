@@ -3,14 +3,14 @@
 use std::fs;
 use std::process::Command;
 
-use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
-use fretwear::friction::{Coulomb, FrictionLaw};
-use fretwear::history::History;
-use fretwear::loading::{Amplitude, Block, Clock, Mode, TangentialControl};
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::friction::{Coulomb, FrictionLaw};
+use fretwear::laws::history::History;
+use fretwear::laws::loading::{Amplitude, Block, Clock, Mode, TangentialControl};
+use fretwear::laws::wear::{Archard, WearLaw};
 use fretwear::report::{CheckReport, json};
 use fretwear::scene::{Scene, Study};
-use fretwear::wear::{Archard, WearLaw};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 

@@ -4,10 +4,10 @@ mod support;
 
 use std::sync::Arc;
 
-use fretwear::closed_form::LimitingShape;
-use fretwear::indenter::{Indenter, Smoothing, TabulatedProfile};
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::contact::indenter::{Indenter, Smoothing, TabulatedProfile};
+use fretwear::data::RunFile;
 use fretwear::scene::Scene;
-use fretwear::snapshot::RunFile;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use support::command::{done, object, run, text};

@@ -10,15 +10,15 @@ use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use fretwear::loading::RecordedPath;
-use fretwear::model::{Linearised, Past, PastPoint, State, StickEdge};
-use fretwear::simulation::Progress;
-use fretwear::snapshot::layout::label;
-use fretwear::snapshot::{
+use fretwear::contact::stick_slip::Regime;
+use fretwear::data::layout::label;
+use fretwear::data::{
     ArrayFile, Checkpoint, Column, Coordinate, Format, LimitCurves, ResultPath, ResultTables, RunFile,
     RunHeader, RunWriter, Snapshot, StopReason, StoredArrays, SweepFile, SweepHeader, TextArray, Values,
 };
-use fretwear::stick_slip::Regime;
+use fretwear::laws::loading::RecordedPath;
+use fretwear::solver::model::{Linearised, Past, PastPoint, State, StickEdge};
+use fretwear::solver::simulation::Progress;
 use hdf5::types::VarLenUnicode;
 use support::command::names;
 

@@ -3,11 +3,11 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-use fretwear::friction::{Coulomb, FrictionLaw};
-use fretwear::loading::{Mode, RecordedPath};
-use fretwear::path::{Path, PathPoint, SampledPath};
-use fretwear::spring::{Shakedown, SpringCycle, steady_cycle, stick_compression};
-use fretwear::stick_slip::slip_amplitude_of_spring;
+use fretwear::contact::spring::{Shakedown, SpringCycle, steady_cycle, stick_compression};
+use fretwear::contact::stick_slip::slip_amplitude_of_spring;
+use fretwear::laws::friction::{Coulomb, FrictionLaw};
+use fretwear::laws::loading::{Mode, RecordedPath};
+use fretwear::laws::path::{Path, PathPoint, SampledPath};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

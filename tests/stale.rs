@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Child;
 use std::time::Duration;
 
-use fretwear::snapshot::{RunFile, SweepFile, Values};
+use fretwear::data::{RunFile, SweepFile, Values};
 use hdf5::types::VarLenUnicode;
 use support::command::{names, object, program, run, text};
 

@@ -2,9 +2,9 @@
 
 mod support;
 
-use fretwear::grid::Clustering;
-use fretwear::simulation::{End, Flow, Observer, Outcome, Plan, Progress, Simulation};
-use fretwear::stepper::{CycleJump, EveryCycle, Implicit, Multistep, Stepper};
+use fretwear::numerics::grid::Clustering;
+use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Progress, Simulation};
+use fretwear::solver::stepper::{CycleJump, EveryCycle, Implicit, Multistep, Stepper};
 use support::{Case, Record, Seen, distance};
 
 const TOLERANCE: f64 = 1e-5;

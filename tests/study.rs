@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fretwear::loading::Amplitude;
+use fretwear::laws::loading::Amplitude;
 use fretwear::scene::{Input, Study, Task};
 
 const BASE: &str = include_str!("support/base.toml");

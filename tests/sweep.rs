@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use fretwear::data::{Column, SweepFile, Values};
 use fretwear::scene::Study;
-use fretwear::snapshot::{Column, SweepFile, Values};
-use fretwear::sweep::{SweepOptions, merge, sweep};
+use fretwear::study::sweep::{SweepOptions, merge, sweep};
 use tempfile::TempDir;
 
 const BASE: &str = include_str!("support/base.toml");
@@ -36,7 +36,7 @@ impl Place {
         Study::read(&self.path("study.toml")).unwrap()
     }
 
-    fn sweep(&self, output: &str, options: &SweepOptions) -> fretwear::sweep::SweepOutcome {
+    fn sweep(&self, output: &str, options: &SweepOptions) -> fretwear::study::sweep::SweepOutcome {
         sweep(&self.study(), &self.path(output), options, None).unwrap()
     }
 
@@ -126,7 +126,7 @@ fn a_shard_that_ends_leaves_the_others_alone() {
     let mut second = start("1/2");
     assert_eq!([&mut first, &mut second].map(|child| child.wait().unwrap().code()), [Some(0), Some(0)]);
     assert_eq!(place.merged("out").scenes.len(), 1000);
-    assert_eq!(fretwear::sweep::shards_in(&place.path("out"), &place.study()).unwrap(), Some(2));
+    assert_eq!(fretwear::study::sweep::shards_in(&place.path("out"), &place.study()).unwrap(), Some(2));
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn snapshots_are_kept_where_asked_for() {
     let scene = place.study().scene(4).unwrap();
     let alone = place.path("alone.h5");
     fretwear::run::Run::new(&scene, &alone, false).unwrap().execute(None).unwrap();
-    let alone = fretwear::snapshot::RunFile::open(&alone).unwrap();
+    let alone = fretwear::data::RunFile::open(&alone).unwrap();
     assert_eq!((&file.runs[1].1.header, &file.runs[1].1.snapshots), (&alone.header, &alone.snapshots));
 }
 

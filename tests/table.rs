@@ -3,13 +3,13 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use fretwear::closed_form::LimitingShape;
 use fretwear::contact::InitialContact;
-use fretwear::friction::Coulomb;
-use fretwear::half_space::HalfSpace;
-use fretwear::indenter::{Indenter, TabulatedProfile, power_law_factor};
-use fretwear::loading::{Amplitude, Duration, Load, Loading};
-use fretwear::wear::Archard;
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::contact::half_space::HalfSpace;
+use fretwear::contact::indenter::{Indenter, TabulatedProfile, power_law_factor};
+use fretwear::laws::friction::Coulomb;
+use fretwear::laws::loading::{Amplitude, Duration, Load, Loading};
+use fretwear::laws::wear::Archard;
 
 const GRADINGS: [f64; 8] = [-0.9999, -0.9, -0.5, 0.0, 0.3, 0.7, 0.9, 0.9999];
 

@@ -6,9 +6,9 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use fretwear::indenter::{Indenter, TabulatedProfile};
+use fretwear::contact::indenter::{Indenter, TabulatedProfile};
+use fretwear::data::{RunFile, StopReason};
 use fretwear::scene::Scene;
-use fretwear::snapshot::{RunFile, StopReason};
 use support::command::{names, object, program, run, text};
 
 /// f = r²/(2R), R = 10 mm: in mm and µm, f = 50 r².
@@ -367,7 +367,7 @@ fn no_bytes_make_the_reader_panic() {
             // Whatever passes for a profile gives numbers or an error.
             if let Ok(contact) = scene.contact() {
                 assert!(contact.contact_radius() > 0.0 && contact.normal_force().is_finite(), "{rows}");
-                let _ = fretwear::closed_form::LimitingShape::from_contact(&contact);
+                let _ = fretwear::contact::closed_form::LimitingShape::from_contact(&contact);
             }
         }
     }

@@ -6,10 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use fretwear::closed_form::LimitingShape;
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::data::{ArraySummary, RunFile};
 use fretwear::scene::Scene;
-use fretwear::snapshot::{ArraySummary, RunFile};
-use fretwear::tradeoff::{cheapest, pareto_front};
+use fretwear::study::tradeoff::{cheapest, pareto_front};
 use serde_json::Value;
 use support::command::{names, object, program, run, text};
 

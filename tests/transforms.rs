@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use fretwear::closed_form::LimitingShape;
-use fretwear::indenter::Indenter;
-use fretwear::transforms::Transforms;
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::contact::indenter::Indenter;
+use fretwear::contact::transforms::Transforms;
 
 /// A profile with its first two derivatives, and the radii at which it has kinks.
 struct Shape {

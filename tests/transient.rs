@@ -2,10 +2,10 @@
 
 mod support;
 
-use fretwear::closed_form::{GibsonTransient, gibson_wear_volume};
-use fretwear::grid::Clustering;
-use fretwear::model::State;
-use fretwear::stepper::{CycleJump, Implicit, Stepper};
+use fretwear::contact::closed_form::{GibsonTransient, gibson_wear_volume};
+use fretwear::numerics::grid::Clustering;
+use fretwear::solver::model::State;
+use fretwear::solver::stepper::{CycleJump, Implicit, Stepper};
 use support::{Case, Seen, distance, orders};
 
 const TAUS: [f64; 3] = [1.0, 3.0, 10.0];

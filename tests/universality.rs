@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use fretwear::scene::{Prediction, UniversalityStudy, covering_design};
-use fretwear::universality::{Options, Outcome, Row, Universality, Verdict};
+use fretwear::study::universality::{Options, Outcome, Row, Universality, Verdict};
 use support::command::{names, object, program, run, text};
 
 /// Thirty springs: milliseconds a case, and the limit to round-off all the same.

@@ -4,11 +4,13 @@ mod support;
 
 use std::f64::consts::PI;
 
-use fretwear::closed_form::{LimitingShape, PowerLawVolume, gibson_wear_volume, similar_stiffness_ratio};
-use fretwear::half_space::Poisson;
-use fretwear::indenter::{Indenter, power_law_factor};
+use fretwear::contact::closed_form::{
+    LimitingShape, PowerLawVolume, gibson_wear_volume, similar_stiffness_ratio,
+};
+use fretwear::contact::half_space::Poisson;
+use fretwear::contact::indenter::{Indenter, power_law_factor};
 use fretwear::scene::MapScene;
-use fretwear::wear_map::{Control, End, Medium, OptimumCurve, Thresholds, WearMap, WornProfiles};
+use fretwear::study::wear_map::{Control, End, Medium, OptimumCurve, Thresholds, WearMap, WornProfiles};
 use support::reference::{Table, Worst, relative};
 
 fn similar(exponent: f64) -> Medium {

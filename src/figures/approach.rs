@@ -2,8 +2,8 @@
 
 use super::measure::{Measure, points};
 use super::run::RunResults;
-use crate::drawing::{Axis, Colour, DISTINCT, Dash, Panel, Row, Series, Shape, Spacing, Style};
-use crate::snapshot::{LimitDistance, Snapshot};
+use crate::data::{LimitDistance, Snapshot};
+use crate::figures::drawing::{Axis, Colour, DISTINCT, Dash, Panel, Row, Series, Shape, Spacing, Style};
 
 /// Below this, distances are round-off.
 const FLOOR: f64 = 1e-16;

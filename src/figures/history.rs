@@ -2,10 +2,10 @@
 
 use super::measure::{Measure, points};
 use super::run::RunResults;
-use crate::closed_form::LimitingShape;
-use crate::drawing::{Colour, DISTINCT, Dash, Panel, Row, Series, Spacing, Style};
+use crate::contact::closed_form::LimitingShape;
+use crate::data::{Snapshot, largest};
+use crate::figures::drawing::{Colour, DISTINCT, Dash, Panel, Row, Series, Spacing, Style};
 use crate::report::Scale;
-use crate::snapshot::{Snapshot, largest};
 
 const LIMIT: Style = Style::Line { width: 1.2, dash: Dash::Dashed };
 

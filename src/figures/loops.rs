@@ -2,9 +2,9 @@
 
 use super::measure::Measure;
 use super::run::{Ages, RunResults, rounded};
-use crate::drawing::{Colour, DISTINCT, Dash, Panel, Row, Series, Spacing, Style};
+use crate::data::Snapshot;
+use crate::figures::drawing::{Colour, DISTINCT, Dash, Panel, Row, Series, Spacing, Style};
 use crate::report::Scale;
-use crate::snapshot::Snapshot;
 
 /// Displacement and force along one direction.
 struct Direction {

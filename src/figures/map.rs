@@ -2,12 +2,12 @@
 
 use super::measure::points;
 use super::rings::Grid;
-use crate::drawing::{
+use crate::data::StoredArrays;
+use crate::error::Result;
+use crate::figures::drawing::{
     Axis, Bar, Colour, Dash, Figure, Label, Panel, Row, Series, Spacing, Style, graded, plain,
 };
-use crate::error::Result;
 use crate::report::number;
-use crate::snapshot::StoredArrays;
 
 /// Bands of colour over the range of the worn volume.
 const BANDS: usize = 24;

@@ -1,6 +1,6 @@
 //! Quantities in units that make them short.
 
-use crate::drawing::{Axis, Spacing, range_of};
+use crate::figures::drawing::{Axis, Spacing, range_of};
 use crate::report::Scale;
 
 /// A unit.

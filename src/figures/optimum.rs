@@ -1,10 +1,10 @@
 //! The grading that wears least, over the amplitude.
 
 use super::measure::{Measure, points};
-use crate::drawing::{DISTINCT, Dash, Figure, Panel, Row, Series, Spacing, Style, plain};
+use crate::data::StoredArrays;
 use crate::error::Result;
+use crate::figures::drawing::{DISTINCT, Dash, Figure, Panel, Row, Series, Spacing, Style, plain};
 use crate::report::number;
-use crate::snapshot::StoredArrays;
 
 /// Datasets of the optimum at the same force, in one rule and the other.
 const FORCE: [(&str, &str); 2] =

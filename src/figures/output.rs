@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::drawing::{Drawing, Figure, png};
+use crate::data::AtomicFile;
 use crate::error::{Error, Result};
-use crate::snapshot::AtomicFile;
+use crate::figures::drawing::{Drawing, Figure, png};
 
 /// Forms of pictures, by the ending of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

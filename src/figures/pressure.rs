@@ -4,9 +4,9 @@ use super::curve::Curve;
 use super::measure::Measure;
 use super::profile::mark_stick;
 use super::run::{Ages, RunResults, rounded};
-use crate::drawing::{Colour, Dash, Panel, Row, Series, Spacing, Style};
+use crate::data::Snapshot;
+use crate::figures::drawing::{Colour, Dash, Panel, Row, Series, Spacing, Style};
 use crate::report::Scale;
-use crate::snapshot::Snapshot;
 
 /// Points between two nodes.
 const PARTS: usize = 4;

@@ -3,9 +3,9 @@
 use super::curve::Curve;
 use super::measure::Measure;
 use super::run::{Ages, RunResults, rounded};
-use crate::drawing::{Colour, Dash, Label, Panel, Row, Series, Spacing, Style, range_of};
+use crate::data::Snapshot;
+use crate::figures::drawing::{Colour, Dash, Label, Panel, Row, Series, Spacing, Style, range_of};
 use crate::report::Scale;
-use crate::snapshot::Snapshot;
 
 /// How far beyond the outermost node the profile is drawn.
 const BEYOND: f64 = 1.12;

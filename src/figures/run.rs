@@ -4,12 +4,12 @@ use std::path::Path;
 
 use super::measure::Measure;
 use super::{Kind, approach, history, loops, pressure, profile};
-use crate::closed_form::LimitingShape;
-use crate::drawing::{Axis, Bar, Colour, Figure, Spacing, graded, plain};
+use crate::contact::closed_form::LimitingShape;
+use crate::data::{RunFile, Snapshot, largest};
 use crate::error::Result;
+use crate::figures::drawing::{Axis, Bar, Colour, Figure, Spacing, graded, plain};
 use crate::report::Scale;
 use crate::scene::Scene;
-use crate::snapshot::{RunFile, Snapshot, largest};
 
 /// Snapshots drawn as curves, at most.
 const MOST_CURVES: usize = 6;

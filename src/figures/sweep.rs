@@ -5,12 +5,12 @@ mod map;
 use std::collections::HashSet;
 
 use super::measure::Measure;
-use crate::drawing::{
+use crate::data::{Column, SweepFile, Values};
+use crate::error::{Error, Result};
+use crate::figures::drawing::{
     Axis, Colour, DISTINCT, Dash, Figure, Panel, Row, Series, Shape, Spacing, Style, plain,
 };
-use crate::error::{Error, Result};
 use crate::report::{Scale, number};
-use crate::snapshot::{Column, SweepFile, Values};
 
 /// Up to so many values of the second axis are curves of their own; more are a map.
 const MOST_CURVES: usize = 7;

@@ -1,12 +1,12 @@
 //! Error against cost, with the fronts and what the knob `accuracy` costs beside them.
 
 use super::measure::Measure;
-use crate::drawing::{
+use crate::data::StoredArrays;
+use crate::error::Result;
+use crate::figures::drawing::{
     Axis, Colour, DISTINCT, Dash, Figure, Label, Panel, Row, Series, Shape, Spacing, Style, plain,
 };
-use crate::error::Result;
 use crate::scene::{Cycle, Stepper};
-use crate::snapshot::StoredArrays;
 
 /// A cost: dataset, name of its fronts, quantity and unit.
 const COSTS: [(&str, &str, &str, &str); 2] =

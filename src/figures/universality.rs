@@ -1,11 +1,11 @@
 //! Laws, modes and media against one limit, with the negative controls.
 
 use super::measure::{Measure, points};
-use crate::drawing::{
+use crate::data::StoredArrays;
+use crate::error::Result;
+use crate::figures::drawing::{
     Axis, Colour, DISTINCT, Dash, Figure, Label, Panel, Row, Series, Shape, Spacing, Style, plain,
 };
-use crate::error::Result;
-use crate::snapshot::StoredArrays;
 
 /// Distances below this are shown at it: round-off.
 const FLOOR: f64 = 1e-16;

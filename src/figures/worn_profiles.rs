@@ -1,11 +1,11 @@
 //! Worn profiles of media of several gradings at one amplitude [S, Fig. 1].
 
 use super::measure::{Measure, points};
-use crate::drawing::{Colour, Dash, Figure, Panel, Row, Series, Spacing, Style, graded, plain};
+use crate::data::StoredArrays;
 use crate::error::Result;
+use crate::figures::drawing::{Colour, Dash, Figure, Panel, Row, Series, Spacing, Style, graded, plain};
 use crate::report::number;
 use crate::scene::MapScene;
-use crate::snapshot::StoredArrays;
 
 /// Lightest colour of a curve.
 const LIGHTEST: f64 = 0.12;

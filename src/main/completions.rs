@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
+use fretwear::data::{Mark, check_own, make_folder};
 use fretwear::report::TableFile;
-use fretwear::snapshot::{Mark, check_own, make_folder};
 use fretwear::{Error, Result};
 
 #[derive(Args)]

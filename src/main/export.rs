@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fretwear::export::worn_surface;
+use fretwear::data::{ResultTables, check_distinct};
 use fretwear::report::TableFile;
-use fretwear::snapshot::{ResultTables, check_distinct};
+use fretwear::report::export::worn_surface;
 use fretwear::{Error, Result};
 
 use super::result_file;

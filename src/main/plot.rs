@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use fretwear::Result;
+use fretwear::data::check_distinct;
 use fretwear::figures::{FigureFile, Kind, Results};
-use fretwear::snapshot::check_distinct;
 
 use super::result_file;
 

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use fretwear::Result;
+use fretwear::data::check_distinct;
 use fretwear::figures::Results;
+use fretwear::figures::page;
 use fretwear::report::TableFile;
-use fretwear::snapshot::check_distinct;
-use fretwear::{Result, page};
 
 use super::result_file;
 

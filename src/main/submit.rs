@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use fretwear::report;
-use fretwear::submit::{self, Engine, SubmitReport, Wishes};
+use fretwear::study::submit::{self, Engine, SubmitReport, Wishes};
 use fretwear::{Error, Result};
 
 use super::{complain, done};

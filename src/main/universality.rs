@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use fretwear::progress::SceneProgress;
+use fretwear::Result;
 use fretwear::report::{self, UniversalityReport};
+use fretwear::run::progress::SceneProgress;
 use fretwear::scene::UniversalityStudy;
-use fretwear::{Result, universality};
+use fretwear::study::universality;
 
 use super::{INTERRUPTED, complain, done, threads};
 

@@ -4,15 +4,15 @@ use serde::Serialize;
 
 use super::text::{Rows, Scale, indenter, number};
 use super::{conditions, unsigned_zero};
-use crate::closed_form::LimitingShape;
-use crate::conditions::Conditions;
 use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
+use crate::contact::indenter::{Indenter, SmoothedBy, Smoothing};
+use crate::contact::stick_slip::Regime;
 use crate::error::Result;
-use crate::indenter::{Indenter, SmoothedBy, Smoothing};
-use crate::loading::Duration;
+use crate::laws::conditions::Conditions;
+use crate::laws::loading::Duration;
 use crate::run::{Expected, Run};
 use crate::scene::Scene;
-use crate::stick_slip::Regime;
 
 /// Steepest flank at the edge of contact that is not worth a word.
 const STEEP: f64 = 0.3;

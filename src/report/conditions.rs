@@ -1,11 +1,11 @@
 //! Laws, mode, blocks and control in words.
 
 use super::text::{Rows, Scale, number, recorded_path};
-use crate::conditions::Conditions;
-use crate::friction::{Coulomb, FrictionLaw};
-use crate::history::History;
-use crate::loading::{Block, Clock, Mode, TangentialControl};
-use crate::wear::{Archard, WearLaw};
+use crate::laws::conditions::Conditions;
+use crate::laws::friction::{Coulomb, FrictionLaw};
+use crate::laws::history::History;
+use crate::laws::loading::{Block, Clock, Mode, TangentialControl};
+use crate::laws::wear::{Archard, WearLaw};
 
 /// Blocks and times of which all are listed.
 const MOST_LISTED: usize = 6;

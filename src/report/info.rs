@@ -5,8 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::text::{Rows, Scale, number, recorded_path, table};
+use crate::data::{ArraySummary, Checkpoint, LimitDistance, ResultPath, RunFile, Snapshot, largest};
 use crate::error::Result;
-use crate::snapshot::{ArraySummary, Checkpoint, LimitDistance, ResultPath, RunFile, Snapshot, largest};
 
 /// The content of a result file in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]

@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::text::{Rows, Scale, indenter, number};
 use super::{bad_option, unsigned_zero};
-use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
+use crate::contact::indenter::Indenter;
 use crate::error::Result;
-use crate::indenter::Indenter;
 use crate::scene::Scene;
 use crate::scene::quantity::{Dimension, parse};
 

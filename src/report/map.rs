@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::text::{Rows, number};
 use crate::error::Result;
 use crate::scene::MapScene;
-use crate::wear_map::{self, Control, MapStudy, Optimum};
+use crate::study::wear_map::{self, Control, MapStudy, Optimum};
 
 /// Summary of a wear map; the serialised fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::text::{Rows, Scale, indenter, number};
-use crate::closed_form::LimitingShape;
-use crate::indenter::Indenter;
+use crate::contact::closed_form::LimitingShape;
+use crate::contact::indenter::Indenter;
+use crate::contact::stick_slip::Regime;
 use crate::run::RunResult;
-use crate::stick_slip::Regime;
 
 /// The outcome of a run in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]

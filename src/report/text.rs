@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::indenter::{Indenter, TabulatedProfile};
-use crate::loading::RecordedPath;
+use crate::contact::indenter::{Indenter, TabulatedProfile};
+use crate::laws::loading::RecordedPath;
 
 /// A kind of quantity and the units it is shown in, by growing size in SI.
 #[derive(Debug, Clone, Copy)]

@@ -8,7 +8,9 @@ use serde::Serialize;
 use super::text::{Rows, Scale, number};
 use super::{TableFile, json};
 use crate::error::Result;
-use crate::tradeoff::{Choice, Errors, FRONTS, Front, Measured, OBJECT, Outcome, Row, Source, pareto_front};
+use crate::study::tradeoff::{
+    Choice, Errors, FRONTS, Front, Measured, OBJECT, Outcome, Row, Source, pareto_front,
+};
 
 /// Summary of a trade-off; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::text::{Rows, Scale, number};
 use crate::scene::{Prediction, UniversalityStudy};
-use crate::universality::{Outcome, Row};
+use crate::study::universality::{Outcome, Row};
 
 /// Summary of a universality study; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]

@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use super::Expected;
 use crate::error::{Error, Result};
-use crate::model::{Model, State};
 use crate::scene::Stepper as Choice;
-use crate::simulation::{End, Simulation};
+use crate::solver::model::{Model, State};
+use crate::solver::simulation::{End, Simulation};
 
 /// Most steps of a method that needs one for every cycle or for every relaxation of the stiffest springs, and of any for blocks: a day or so.
 const MOST_STEPS: f64 = 1e9;

@@ -11,13 +11,13 @@ use super::Parts;
 use super::ladder::{Shares, UNKNOWN};
 use super::mesh::MOST_RAISED;
 use crate::contact::InitialContact;
+use crate::contact::stick_slip::Regime;
+use crate::data::{Snapshot, same_cycles};
 use crate::error::Result;
-use crate::grid::Clustering;
-use crate::model::{Model, OperatorStore, Schedule, State};
+use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Scene, Stepper};
-use crate::simulation::{Flow, Observer, Outcome, Simulation};
-use crate::snapshot::{Snapshot, same_cycles};
-use crate::stick_slip::Regime;
+use crate::solver::model::{Model, OperatorStore, Schedule, State};
+use crate::solver::simulation::{Flow, Observer, Outcome, Simulation};
 
 /// Error of the profile on 24 springs of a smooth mesh, and the power with which it falls, fitted to 118 random scenes on 16 to 54 springs:
 /// `ln e = A + B k + C ln n + D ln(a0/c) + E ln n ln(a0/c)` with `k > 0` or zero. Nine of ten lie within a factor of 2.8, 98 of 100 below 7.7.

@@ -8,14 +8,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{Parts, resolution};
-use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
+use crate::data::{Snapshot, same_cycles};
 use crate::error::Result;
-use crate::loading::{Mode, TangentialControl};
-use crate::model::{Model, MovingStick, OperatorStore, Schedule};
+use crate::laws::loading::{Mode, TangentialControl};
 use crate::scene::{Numerics, Scene, Stepper};
-use crate::simulation::{End, Flow, Observer, Outcome, Simulation};
-use crate::snapshot::{Snapshot, same_cycles};
+use crate::solver::model::{Model, MovingStick, OperatorStore, Schedule};
+use crate::solver::simulation::{End, Flow, Observer, Outcome, Simulation};
 
 /// Springs of a run over those of its companion, and of that over those of the next; fewest of a companion.
 const RATIO: f64 = 5.0 / 3.0;

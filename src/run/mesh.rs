@@ -2,13 +2,13 @@
 
 use super::knob::{smallness, springs_for};
 use super::{SPRINGS_TO_SLIDE, memory_figure};
-use crate::abel::Backend;
-use crate::closed_form::LimitingShape;
 use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
-use crate::grid::Clustering;
-use crate::model::{Model, OperatorStore, Schedule};
+use crate::numerics::abel::Backend;
+use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Stepper};
+use crate::solver::model::{Model, OperatorStore, Schedule};
 
 /// Grading below which nodes cluster as `N^-2` at the edge of stick. There the depth of the limit is nearly linear, so that finer ones resolve
 /// nothing, and where the pressure at the edge blows up they are unstable (docs/extremes.md).

@@ -1,12 +1,12 @@
 //! What a run comes to before its first step. What it refuses is refused here, for `run` and for `check`.
 
 use super::{Parts, effort};
-use crate::closed_form::LimitingShape;
+use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
-use crate::model::OperatorStore;
 use crate::scene::Scene;
 use crate::scene::schema::is_key;
-use crate::simulation::Simulation;
+use crate::solver::model::OperatorStore;
+use crate::solver::simulation::Simulation;
 
 /// A run before its first step.
 pub(super) struct Ready {

@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 use super::knob::{self, Pilot};
 use super::ladder::{self, Ladder, Shares};
 use super::{Shared, worn_profile};
+use crate::data::{Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
-use crate::loading::TangentialControl;
-use crate::model::{FrettingLoop, OperatorStore};
+use crate::laws::loading::TangentialControl;
 use crate::scene::Scene;
-use crate::simulation::{Flow, Observer, Outcome, Simulation};
-use crate::snapshot::{Checkpoint, RunWriter, Snapshot, StopReason};
+use crate::solver::model::{FrettingLoop, OperatorStore};
+use crate::solver::simulation::{Flow, Observer, Outcome, Simulation};
 
 /// Steps along one fretting loop to and fro at constant indentation in the result file, even.
 const LOOP_STEPS: usize = 64;

@@ -3,10 +3,10 @@
 use super::document::{Entry, Section};
 use super::quantity::Dimension;
 use crate::error::Result;
-use crate::friction::{Coulomb, FrictionLaw};
-use crate::history::History;
-use crate::loading::Clock;
-use crate::wear::{Archard, WearLaw};
+use crate::laws::friction::{Coulomb, FrictionLaw};
+use crate::laws::history::History;
+use crate::laws::loading::Clock;
+use crate::laws::wear::{Archard, WearLaw};
 
 /// Most times of a history, and most blocks.
 pub(super) const MOST_TIMES: usize = 10_000;

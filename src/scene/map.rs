@@ -7,8 +7,8 @@ use super::quantity::Dimension;
 use super::sections;
 use super::spacing::Spacing;
 use super::{LARGEST, read_text};
+use crate::contact::half_space::{HalfSpace, Poisson};
 use crate::error::Result;
-use crate::half_space::{HalfSpace, Poisson};
 
 /// Most gradings or amplitudes along one axis.
 pub const MOST_ALONG_AXIS: usize = 20_000;

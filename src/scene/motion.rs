@@ -8,8 +8,10 @@ use super::quantity::Dimension;
 use super::{Rows, path_file};
 use crate::contact::InitialContact;
 use crate::error::Result;
-use crate::friction::FrictionLaw;
-use crate::loading::{Amplitude, Block, Duration, Load, Loading, Mode, RecordedPath, TangentialControl};
+use crate::laws::friction::FrictionLaw;
+use crate::laws::loading::{
+    Amplitude, Block, Duration, Load, Loading, Mode, RecordedPath, TangentialControl,
+};
 
 const LOADS: [&str; 3] = ["indentation", "initial_force", "normal_force"];
 const AMPLITUDES: [&str; 3] = ["amplitude", "amplitude_ratio", "stick_ratio"];

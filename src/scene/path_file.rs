@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::columns::{self, Kind};
 use crate::error::{Error, Result};
-use crate::loading::RecordedPath;
+use crate::laws::loading::RecordedPath;
 
 /// Reads a path; its rows are in the order of time.
 ///

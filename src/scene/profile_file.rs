@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::columns::{self, Kind, Row};
+use crate::contact::indenter::TabulatedProfile;
 use crate::error::{Error, Result};
-use crate::indenter::TabulatedProfile;
 
 /// Reads a profile; a warning is added where it does not begin at the height zero. The rows may come in any order.
 ///

@@ -11,14 +11,14 @@ use super::{
     Cycle, FINEST_ACCURACY, MOST_SNAPSHOTS, MOST_SUBSTEPS, Numerics, Output, Rows, Scene, Stepper, WearFrom,
 };
 use super::{motion, profile_file};
-use crate::conditions::Conditions;
 use crate::contact::InitialContact;
+use crate::contact::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
+use crate::contact::indenter::{Indenter, TabulatedProfile};
 use crate::error::{Error, Result};
-use crate::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
-use crate::indenter::{Indenter, TabulatedProfile};
-use crate::loading::{Duration, Loading, Mode};
-use crate::model::FEWEST_SPRINGS;
-use crate::wear::{Archard, WearLaw};
+use crate::laws::conditions::Conditions;
+use crate::laws::loading::{Duration, Loading, Mode};
+use crate::laws::wear::{Archard, WearLaw};
+use crate::solver::model::FEWEST_SPRINGS;
 
 /// Reads the whole document; the text is kept as it is.
 pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {

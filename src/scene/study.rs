@@ -12,9 +12,9 @@ use super::quantity::split_number;
 use super::sampling::{Distribution, UnitCube};
 use super::unit::Unit;
 use super::{LARGEST, Rows, Scene, columns, read_text};
+use crate::data::layout::FORMAT_VERSION;
+use crate::data::{Fingerprint, SweepFile};
 use crate::error::{Error, Result};
-use crate::snapshot::layout::FORMAT_VERSION;
-use crate::snapshot::{Fingerprint, SweepFile};
 
 /// Most scenes of a study.
 pub const MOST_SCENES: u64 = 10_000_000;

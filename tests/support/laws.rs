@@ -1,14 +1,14 @@
 //! Laws and modes in the units of the cases, and runs under them.
 
-use fretwear::closed_form::LimitingShape;
-use fretwear::conditions::Conditions;
 use fretwear::contact::InitialContact;
-use fretwear::friction::FrictionLaw;
-use fretwear::loading::{Block, Mode};
-use fretwear::model::{Model, OperatorStore, Resolution, Schedule};
-use fretwear::simulation::{End, Outcome, Plan, Simulation};
-use fretwear::stepper::Implicit;
-use fretwear::wear::WearLaw;
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::laws::conditions::Conditions;
+use fretwear::laws::friction::FrictionLaw;
+use fretwear::laws::loading::{Block, Mode};
+use fretwear::laws::wear::WearLaw;
+use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
+use fretwear::solver::simulation::{End, Outcome, Plan, Simulation};
+use fretwear::solver::stepper::Implicit;
 
 use super::{Case, distance};
 

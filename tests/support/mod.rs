@@ -11,15 +11,15 @@ pub mod resume;
 pub mod scenes;
 
 use fretwear::contact::InitialContact;
-use fretwear::friction::Coulomb;
-use fretwear::grid::Clustering;
-use fretwear::half_space::HalfSpace;
-use fretwear::indenter::{Indenter, power_law_factor};
-use fretwear::loading::{Amplitude, Duration, Load, Loading};
-use fretwear::model::{Model, State};
-use fretwear::simulation::{End, Observer, Outcome, Plan, Simulation};
-use fretwear::stepper::Stepper;
-use fretwear::wear::Archard;
+use fretwear::contact::half_space::HalfSpace;
+use fretwear::contact::indenter::{Indenter, power_law_factor};
+use fretwear::laws::friction::Coulomb;
+use fretwear::laws::loading::{Amplitude, Duration, Load, Loading};
+use fretwear::laws::wear::Archard;
+use fretwear::numerics::grid::Clustering;
+use fretwear::solver::model::{Model, State};
+use fretwear::solver::simulation::{End, Observer, Outcome, Plan, Simulation};
+use fretwear::solver::stepper::Stepper;
 
 /// A power-law indenter `r^n` on a half-space of grading `k` with the stick radius `c`.
 #[derive(Debug, Clone, Copy)]

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use fretwear::data::{RunFile, StopReason};
 use fretwear::run::{Resumed, Run, RunResult};
 use fretwear::scene::Scene;
-use fretwear::simulation::{Flow, Observer, Simulation};
-use fretwear::snapshot::{RunFile, StopReason};
+use fretwear::solver::simulation::{Flow, Observer, Simulation};
 
 /// Stops after some steps.
 struct StopAfter(u64);

@@ -2,7 +2,7 @@
 
 use super::super::rings::Grid;
 use super::{Input, MOST_DOTS};
-use crate::drawing::{Axis, Bar, Colour, Panel, Series, Shape, Style, graded, range_of};
+use crate::figures::drawing::{Axis, Bar, Colour, Panel, Series, Shape, Style, graded, range_of};
 use crate::report::number;
 
 /// Bands of colour.

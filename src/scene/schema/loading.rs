@@ -6,7 +6,7 @@ use super::keys::{
     Table, above_zero, any, at_least_zero, at_most_one_of, list, number, one_form, one_of, or, quantity,
     switch, text, word,
 };
-use crate::loading::Duration;
+use crate::laws::loading::Duration;
 use crate::scene::laws::MOST_TIMES;
 
 pub(super) fn loading() -> Table {

@@ -1,0 +1,596 @@
+//! The unworn contact that a scene describes: how deep, how wide, how hard, and what of it slips.
+
+use std::f64::consts::PI;
+
+use crate::contact::half_space::HalfSpace;
+use crate::contact::indenter::{EquivalentProfile, Indenter};
+use crate::contact::stick_slip::{
+    Regime, full_sliding_amplitude, slip_amplitude, slip_compression, stick_logarithm,
+};
+use crate::error::{Error, Result};
+use crate::laws::friction::Coulomb;
+use crate::laws::loading::{Amplitude, Load, Loading};
+use crate::laws::wear::{Archard, WearLaw};
+
+/// The contact before any wear; every quantity is finite.
+///
+/// # Examples
+/// ```
+/// use fretwear::contact::InitialContact;
+/// use fretwear::laws::friction::Coulomb;
+/// use fretwear::contact::half_space::HalfSpace;
+/// use fretwear::contact::indenter::Indenter;
+/// use fretwear::laws::loading::{Amplitude, Duration, Load, Loading};
+/// use fretwear::laws::wear::Archard;
+///
+/// // k = 0: a0 = √(R d), F_N = (4/3) c_N √R d^(3/2) (Hertz)
+/// let contact = InitialContact::new(
+///     &Indenter::paraboloid(4.0)?,
+///     &HalfSpace::from_stiffness(0.0, 3e9, 0.8)?,
+///     &Coulomb { coefficient: 0.5 },
+///     &Archard { coefficient: 1e-14 },
+///     &Loading {
+///         load: Load::Indentation(0.01),
+///         amplitude: Amplitude::StickRatio(0.5),
+///         duration: Duration::Tau(30.0),
+///     },
+/// )?;
+/// assert!((contact.contact_radius() - 0.2).abs() < 1e-15);
+/// assert!((contact.normal_force() / 8e6 - 1.0).abs() < 1e-14);
+/// assert!((contact.slip_compression() - 0.0075).abs() < 1e-16);
+/// # Ok::<(), fretwear::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct InitialContact {
+    indenter: Indenter,
+    half_space: HalfSpace,
+    friction: Coulomb,
+    wear: Archard,
+    equivalent_profile: EquivalentProfile,
+    indentation: f64,
+    contact_radius: f64,
+    normal_force: f64,
+    amplitude: f64,
+    /// Whether the amplitude follows from the stick radius asked for.
+    amplitude_by_stick: bool,
+    slip_compression: f64,
+    /// `η = ln(a0/c)`; none under full sliding.
+    stick_logarithm: Option<f64>,
+    tau_per_cycle: f64,
+}
+
+impl InitialContact {
+    /// Forms the contact.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the key of the scene; [`Error::Inconsistent`] if a sphere would sink in to its equator, or names the
+    /// quantity that values each allowed make too large or too small for a double.
+    pub fn new(
+        indenter: &Indenter,
+        half_space: &HalfSpace,
+        friction: &Coulomb,
+        wear: &Archard,
+        loading: &Loading,
+    ) -> Result<Self> {
+        positive("friction.coulomb.coefficient", friction.coefficient)?;
+        positive("wear.archard.coefficient", wear.coefficient)?;
+        let profile = indenter.equivalent_profile(half_space.grading())?;
+        let Press { indentation, contact_radius, normal_force } =
+            Press::new(&profile, half_space.normal_stiffness(), loading.load)?;
+        let mean_pressure = normal_force / (PI * contact_radius * contact_radius);
+        representable("mean pressure, Pa", mean_pressure, &["loading", "indenter", "half_space"])?;
+
+        let stiffness_ratio = half_space.stiffness_ratio();
+        let sliding = full_sliding_amplitude(stiffness_ratio, friction.coefficient, indentation);
+        representable("amplitude of full sliding μ_f d/M, m", sliding, &["friction"])?;
+        let slip = Slip::new(
+            &profile,
+            indentation,
+            contact_radius,
+            stiffness_ratio,
+            friction.coefficient,
+            loading.amplitude,
+        )?;
+
+        let radial = contact_radius.powf(half_space.grading() - 1.0);
+        let tau_per_cycle = 4.0 * (wear.coefficient * half_space.normal_stiffness()) * (radial * sliding);
+        let what = "dimensionless time per cycle 4 k_w c_N a0^(k-1) μ_f d/M";
+        representable(what, tau_per_cycle, &["wear", "half_space", "loading"])?;
+        Ok(Self {
+            indenter: indenter.clone(),
+            half_space: *half_space,
+            friction: *friction,
+            wear: *wear,
+            equivalent_profile: profile,
+            indentation,
+            contact_radius,
+            normal_force,
+            amplitude: slip.amplitude,
+            amplitude_by_stick: matches!(loading.amplitude, Amplitude::StickRatio(_)),
+            slip_compression: slip.compression,
+            stick_logarithm: slip.stick_logarithm,
+            tau_per_cycle,
+        })
+    }
+
+    /// The same bodies at another indentation, with the edge of stick at another compression; amplitude and dimensionless time stay.
+    ///
+    /// # Arguments
+    /// * `indentation` -- `d`, m, positive
+    /// * `slip_compression` -- `q_c`, m, from 0 to below `d`
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] if a sphere would sink in to its equator, or a table end.
+    pub fn at(&self, indentation: f64, slip_compression: f64) -> Result<Self> {
+        let profile = &self.equivalent_profile;
+        let contact_radius = profile.radius_at(indentation)?;
+        let stick_logarithm = stick_logarithm(profile, indentation, contact_radius, slip_compression)?;
+        let normal_force = self.half_space.normal_stiffness() * profile.load_integral(contact_radius);
+        Ok(Self {
+            indentation,
+            contact_radius,
+            normal_force,
+            slip_compression,
+            stick_logarithm: Some(stick_logarithm),
+            ..self.clone()
+        })
+    }
+
+    /// The same bodies at another indentation, with a core that no spring slips within: where the whole contact slides.
+    ///
+    /// As [`InitialContact::at`] with the compression at the radius of the core, which may differ from the indentation by less than a double can
+    /// tell.
+    ///
+    /// # Errors
+    /// As [`InitialContact::at`].
+    pub fn with_core(&self, indentation: f64, core_radius: f64) -> Result<Self> {
+        let contact = self.at(indentation, indentation - self.equivalent_profile.value(core_radius))?;
+        let stick_logarithm = Some((contact.contact_radius / core_radius).ln());
+        Ok(Self { stick_logarithm, ..contact })
+    }
+
+    /// The unworn indenter.
+    pub fn indenter(&self) -> &Indenter {
+        &self.indenter
+    }
+
+    /// Spring stiffnesses.
+    pub fn half_space(&self) -> &HalfSpace {
+        &self.half_space
+    }
+
+    /// Friction law.
+    pub fn friction(&self) -> &Coulomb {
+        &self.friction
+    }
+
+    /// Wear law.
+    pub fn wear(&self) -> &Archard {
+        &self.wear
+    }
+
+    /// Equivalent profile `g0` of the unworn indenter.
+    pub fn equivalent_profile(&self) -> &EquivalentProfile {
+        &self.equivalent_profile
+    }
+
+    /// Indentation `d`, m: as given, or under the force given.
+    pub fn indentation(&self) -> f64 {
+        self.indentation
+    }
+
+    /// Contact radius `a0`, m, the root of `g0(a0) = d`.
+    pub fn contact_radius(&self) -> f64 {
+        self.contact_radius
+    }
+
+    /// Normal force `F_N`, N: as given, or by [S, Eq. (22)].
+    pub fn normal_force(&self) -> f64 {
+        self.normal_force
+    }
+
+    /// Mean pressure `F_N/(π a0²)`, Pa.
+    pub fn mean_pressure(&self) -> f64 {
+        self.normal_force / (PI * self.contact_radius * self.contact_radius)
+    }
+
+    /// Tangential amplitude `U`, m.
+    pub fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    /// Whether that follows from the stick radius that was asked for, so that it is the contact's own also where a rig moves it.
+    pub fn amplitude_follows_stick(&self) -> bool {
+        self.amplitude_by_stick
+    }
+
+    /// Tangential amplitude `μ_f d/M`, m, from which on the whole contact slides.
+    pub fn amplitude_full_sliding(&self) -> f64 {
+        full_sliding_amplitude(self.half_space.stiffness_ratio(), self.friction.coefficient, self.indentation)
+    }
+
+    /// Spring compression at the edge of stick, `q_c = M U/μ_f`, m; from `d` on every spring slips.
+    pub fn slip_compression(&self) -> f64 {
+        self.slip_compression
+    }
+
+    /// What the oscillation does to the contact.
+    pub fn regime(&self) -> Regime {
+        match self.stick_logarithm {
+            None => Regime::FullSliding,
+            Some(logarithm) if logarithm > 0.0 => Regime::PartialSlip,
+            Some(_) => Regime::Stick,
+        }
+    }
+
+    /// Stick radius `c`, m: the contact radius where nothing slips, none under full sliding.
+    pub fn stick_radius(&self) -> Option<f64> {
+        self.stick_logarithm.map(|logarithm| self.contact_radius * (-logarithm).exp())
+    }
+
+    /// `ln(a0/c)`: zero where nothing slips, none under full sliding; it keeps the digits of the smallest amplitudes.
+    pub fn stick_logarithm(&self) -> Option<f64> {
+        self.stick_logarithm
+    }
+
+    /// `a0² - c²`, m², to full relative accuracy; `a0²` under full sliding.
+    pub fn slip_area_offset(&self) -> f64 {
+        let area = self.contact_radius * self.contact_radius;
+        self.stick_logarithm.map_or(area, |logarithm| area * -(-2.0 * logarithm).exp_m1())
+    }
+
+    /// Archard's law that stands for a law of wear in the closed form and the dimensionless time.
+    ///
+    /// For a power law it is the one under which the time of one cycle is the natural one of that law:
+    ///
+    /// ```text
+    /// k_w = k P^(α-1) L^(β-1),     P = c_N a0^(k-1) d,     L = 4 μ_f d/M     →     k P^α L^β/d = 4 k_w c_N a0^(k-1) μ_f d/M = τ/N
+    /// ```
+    ///
+    /// Numbers each allowed may give one too large or too small for a double.
+    pub fn reference_wear(&self, law: &WearLaw) -> Archard {
+        match *law {
+            WearLaw::Archard(law) => law,
+            WearLaw::DissipatedEnergy { coefficient } => {
+                Archard::from_dissipated_energy(coefficient, &self.friction)
+            }
+            WearLaw::Threshold { coefficient, .. } | WearLaw::NonLocal { coefficient, .. } => {
+                Archard { coefficient }
+            }
+            WearLaw::PowerLaw { coefficient, pressure_exponent, slip_exponent } => {
+                let radial = self.contact_radius.powf(self.half_space.grading() - 1.0);
+                let pressure = self.half_space.normal_stiffness() * (radial * self.indentation);
+                let path = 4.0 * self.amplitude_full_sliding();
+                let factor = pressure.powf(pressure_exponent - 1.0) * path.powf(slip_exponent - 1.0);
+                Archard { coefficient: coefficient * factor }
+            }
+        }
+    }
+
+    /// Dimensionless time `τ` of one cycle.
+    ///
+    /// ```text
+    /// τ/N = 4 k_w c_N a0^(k-1) μ_f d / M
+    /// ```
+    pub fn tau_per_cycle(&self) -> f64 {
+        self.tau_per_cycle
+    }
+}
+
+/// The normal contact.
+struct Press {
+    indentation: f64,
+    contact_radius: f64,
+    normal_force: f64,
+}
+
+impl Press {
+    fn new(profile: &EquivalentProfile, normal_stiffness: f64, load: Load) -> Result<Self> {
+        let key = load.key();
+        let (Load::Indentation(value) | Load::InitialForce(value) | Load::NormalForce(value)) = load;
+        positive(key, value)?;
+        let too_large = |error: Error| match error {
+            // That of a table has its own cure.
+            Error::Inconsistent { why, .. } if profile.end_of_table().is_some() => {
+                Error::Inconsistent { what: key, why }
+            }
+            Error::Inconsistent { why, .. } => Error::Inconsistent {
+                what: key,
+                why: format!("{value} is too large: {why}; make it smaller, or the indenter larger"),
+            },
+            other => other,
+        };
+        let indentation = match load {
+            Load::Indentation(indentation) => indentation,
+            Load::InitialForce(force) | Load::NormalForce(force) => {
+                let per_stiffness = force / normal_stiffness;
+                representable(
+                    "normal force per stiffness F_N/c_N, m^(2+k)",
+                    per_stiffness,
+                    &[key, "half_space"],
+                )?;
+                profile.depth_for_load(per_stiffness).map_err(too_large)?
+            }
+        };
+        representable("indentation, m", indentation, &[key])?;
+        let contact_radius = profile.radius_at(indentation).map_err(too_large)?;
+        representable("contact radius, m", contact_radius, &["indenter", "loading"])?;
+        // Worn volumes are fractions of it.
+        let volume = PI * contact_radius * contact_radius * indentation;
+        representable("volume π a0² d, m³", volume, &["indenter", "loading"])?;
+        let normal_force = match load {
+            Load::Indentation(_) => normal_stiffness * profile.load_integral(contact_radius),
+            Load::InitialForce(force) | Load::NormalForce(force) => force,
+        };
+        representable("normal force, N", normal_force, &["loading.indentation", "half_space"])?;
+        Ok(Self { indentation, contact_radius, normal_force })
+    }
+}
+
+/// The tangential oscillation.
+struct Slip {
+    amplitude: f64,
+    compression: f64,
+    stick_logarithm: Option<f64>,
+}
+
+impl Slip {
+    fn new(
+        profile: &EquivalentProfile,
+        indentation: f64,
+        contact_radius: f64,
+        stiffness_ratio: f64,
+        friction_coefficient: f64,
+        amplitude: Amplitude,
+    ) -> Result<Self> {
+        let from_displacement = |value: f64, displacement: f64| {
+            let key = amplitude.key();
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(Error::OutOfRange { name: key, value, range: "[0, inf)" });
+            }
+            let compression = slip_compression(stiffness_ratio, displacement, friction_coefficient);
+            if value > 0.0 {
+                representable("amplitude, m", displacement, &[key])?;
+                representable("compression at the edge of stick M U/μ_f, m", compression, &[key])?;
+            }
+            let stick_logarithm = match Regime::new(indentation, compression) {
+                Regime::Stick => Some(0.0),
+                Regime::FullSliding => None,
+                Regime::PartialSlip => {
+                    Some(stick_logarithm(profile, indentation, contact_radius, compression)?)
+                }
+            };
+            Ok(Self { amplitude: displacement, compression, stick_logarithm })
+        };
+        let slip = match amplitude {
+            Amplitude::Displacement(displacement) => from_displacement(displacement, displacement)?,
+            Amplitude::Ratio(ratio) => {
+                from_displacement(ratio, ratio * (friction_coefficient * indentation))?
+            }
+            Amplitude::StickRatio(ratio) => {
+                if !(ratio > 0.0 && ratio <= 1.0) {
+                    return Err(Error::OutOfRange { name: amplitude.key(), value: ratio, range: "(0, 1]" });
+                }
+                if contact_radius * ratio < profile.flat_radius() {
+                    return Err(Error::Inconsistent {
+                        what: amplitude.key(),
+                        why: format!(
+                            "{ratio} puts the edge of stick at {} m, but the profile is flat up to {} m, where all springs slip at once; \
+                             ask for a larger ratio",
+                            contact_radius * ratio,
+                            profile.flat_radius()
+                        ),
+                    });
+                }
+                // Zero minus: a ratio of 1 gives +0 throughout.
+                let logarithm = 0.0 - ratio.ln();
+                let compression = 0.0 - profile.at(contact_radius).rise(-logarithm);
+                let amplitude = slip_amplitude(stiffness_ratio, friction_coefficient, compression);
+                Self { amplitude, compression, stick_logarithm: Some(logarithm) }
+            }
+        };
+        if let Some(logarithm) = slip.stick_logarithm
+            && slip.compression > 0.0
+        {
+            let key = amplitude.key();
+            let share = -(-2.0 * logarithm).exp_m1();
+            representable("stick radius, m", contact_radius * (-logarithm).exp(), &[key])?;
+            representable("amplitude, m", slip.amplitude, &[key])?;
+            // The worn volume falls with the power (5-k)/2 of the annulus.
+            let least = contact_radius * contact_radius * indentation * share.powi(3);
+            representable("worn volume, m³, in order of size", least, &[key])?;
+        }
+        Ok(slip)
+    }
+}
+
+fn positive(name: &'static str, value: f64) -> Result<()> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(Error::OutOfRange { name, value, range: "(0, inf)" })
+}
+
+/// Passes what a double holds with all its digits.
+///
+/// `keys` are those of the scene that decide, of which the first is shown.
+fn representable(what: &str, value: f64, keys: &[&'static str]) -> Result<()> {
+    if value > 0.0 && value.is_normal() {
+        return Ok(());
+    }
+    let why = match value {
+        value if value.is_nan() => "comes from numbers too large and too small",
+        value if value > 1.0 => "is too large",
+        _ => "is too small",
+    };
+    Err(Error::Inconsistent {
+        what: keys[0],
+        why: format!(
+            "the {what} = {value:e} {why} to compute with; check the value and the unit of {}",
+            keys.join(", ")
+        ),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::indenter::TabulatedProfile;
+    use crate::laws::loading::Duration;
+
+    const FRICTION: f64 = 0.6;
+    const WEAR: f64 = 1e-14;
+
+    fn contact(
+        indenter: &Indenter,
+        grading: f64,
+        load: Load,
+        amplitude: Amplitude,
+    ) -> Result<InitialContact> {
+        InitialContact::new(
+            indenter,
+            &HalfSpace::from_stiffness(grading, 1e10, 0.7)?,
+            &Coulomb { coefficient: FRICTION },
+            &Archard { coefficient: WEAR },
+            &Loading { load, amplitude, duration: Duration::Tau(1.0) },
+        )
+    }
+
+    fn indenters() -> [Indenter; 5] {
+        let radius: Vec<f64> = (0..160).map(|i| 2e-6 * f64::from(i)).collect();
+        let height = radius.iter().map(|r| 30.0 * r * r + 1e-1 * r).collect();
+        let table = TabulatedProfile::new("rows", radius, height).unwrap();
+        [
+            Indenter::Table(std::sync::Arc::new(table)),
+            Indenter::Paraboloid { radius: 0.01 },
+            Indenter::Cone { slope: 0.05 },
+            Indenter::PowerLaw { coefficient: 1e3, exponent: 4.0 },
+            Indenter::Sphere { radius: 1e-4 },
+        ]
+    }
+
+    fn close(found: f64, expected: f64, tolerance: f64, place: &str) {
+        let error = (found / expected - 1.0).abs();
+        assert!(error <= tolerance, "{place}: {found:e} instead of {expected:e}, relative error {error:e}");
+    }
+
+    #[test]
+    fn the_three_forms_of_the_amplitude_agree() {
+        let depth = Load::Indentation(1e-6);
+        for indenter in indenters() {
+            for grading in [-0.9, -0.3, 0.0, 0.5, 0.95] {
+                for gap in [0.9, 0.3, 1e-3, 1e-9] {
+                    let place = format!("{indenter:?}, k = {grading}, c/a0 = 1 - {gap}");
+                    let stick_ratio = 1.0 - gap;
+                    let given =
+                        contact(&indenter, grading, depth, Amplitude::StickRatio(stick_ratio)).unwrap();
+                    let ratio = given.amplitude() / (FRICTION * given.indentation());
+                    for other in [Amplitude::Displacement(given.amplitude()), Amplitude::Ratio(ratio)] {
+                        let other = contact(&indenter, grading, depth, other).unwrap();
+                        close(other.slip_compression(), given.slip_compression(), 1e-15, &place);
+                        let stick = [&other, &given].map(|it| it.stick_radius().unwrap());
+                        // The rounding of q_c next to d is that of g0(c) = d - q_c.
+                        let tolerance =
+                            1e-15 * given.indentation() / given.equivalent_profile().value(stick[1]);
+                        let share = stick_ratio * stick_ratio;
+                        let area_tolerance = 1e-14 + tolerance * share;
+                        close(other.slip_area_offset(), given.slip_area_offset(), area_tolerance, &place);
+                        close(stick[0], stick[1], tolerance, &place);
+                        assert_eq!(other.regime(), Regime::PartialSlip, "{place}");
+                    }
+                    let (a, c) = (given.contact_radius(), given.stick_radius().unwrap());
+                    close(given.slip_area_offset(), (a - c) * (a + c), 1e-15 / gap, &place);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn indentation_and_force_are_inverse_to_each_other() {
+        for indenter in indenters() {
+            for grading in [-0.9, -0.3, 0.0, 0.5, 0.95] {
+                for depth in [1e-9, 1e-6, 2e-5] {
+                    let amplitude = Amplitude::StickRatio(0.7);
+                    let pressed = contact(&indenter, grading, Load::Indentation(depth), amplitude).unwrap();
+                    let loaded =
+                        contact(&indenter, grading, Load::InitialForce(pressed.normal_force()), amplitude)
+                            .unwrap();
+                    let place = format!("{indenter:?}, k = {grading}, d = {depth}");
+                    close(loaded.indentation(), depth, 2e-14, &place);
+                    close(loaded.contact_radius(), pressed.contact_radius(), 2e-14, &place);
+                    assert_eq!(loaded.normal_force(), pressed.normal_force());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn time_per_cycle_of_a_homogeneous_paraboloid_is_that_by_hand() {
+        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
+        let found =
+            contact(&paraboloid, 0.0, Load::Indentation(1e-6), Amplitude::Displacement(1e-7)).unwrap();
+        // a0 = √(1e-2 · 1e-6) = 1e-4;  4 · 1e-14 · 1e10 / 1e-4 · 0.6 · 1e-6 / 0.7
+        close(found.tau_per_cycle(), 2.4e-6 / 0.7, 1e-15, "tau per cycle");
+        // 0.7 · 1e-7 / 0.6
+        close(found.slip_compression(), 7e-7 / 6.0, 1e-15, "slip compression");
+        // c² = R (d - q_c)
+        close(found.slip_area_offset(), 7e-9 / 6.0, 1e-15, "slip area");
+        // (4/3) c_N √R d^(3/2)
+        close(found.normal_force(), 4.0 / 3.0, 1e-14, "force");
+    }
+
+    #[test]
+    fn the_regimes_are_told_apart() {
+        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
+        let regime = |amplitude| contact(&paraboloid, 0.0, Load::Indentation(1e-6), amplitude).unwrap();
+        for none in [Amplitude::Displacement(0.0), Amplitude::Ratio(0.0), Amplitude::StickRatio(1.0)] {
+            let stick = regime(none);
+            assert_eq!(stick.regime(), Regime::Stick, "{none:?}");
+            assert_eq!(stick.stick_radius(), Some(stick.contact_radius()), "{none:?}");
+            for zero in [stick.amplitude(), stick.slip_compression(), stick.slip_area_offset()] {
+                assert_eq!(zero.to_bits(), 0, "{none:?}");
+            }
+        }
+        for large in [Amplitude::Displacement(1e-6), Amplitude::Ratio(1.43)] {
+            let sliding = regime(large);
+            assert_eq!(sliding.regime(), Regime::FullSliding, "{large:?}");
+            assert_eq!(sliding.stick_radius(), None, "{large:?}");
+            close(sliding.slip_area_offset(), sliding.contact_radius().powi(2), 0.0, "slip area");
+        }
+        // Next to full sliding q_c rounds to d; the stick radius is there all the same.
+        let small = regime(Amplitude::StickRatio(1e-12));
+        assert_eq!(small.slip_compression(), small.indentation());
+        assert_eq!(small.regime(), Regime::PartialSlip);
+        close(small.stick_radius().unwrap(), 1e-12 * small.contact_radius(), 1e-14, "stick radius");
+    }
+
+    #[test]
+    fn absurd_values_are_refused_by_name_and_never_give_numbers_that_are_none() {
+        use Amplitude::{Displacement, Ratio, StickRatio};
+        use Load::{Indentation, InitialForce};
+
+        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
+        let sphere = Indenter::Sphere { radius: 1e-4 };
+        let ratio = StickRatio(0.7);
+        let cases = [
+            (&paraboloid, Indentation(0.0), ratio, "loading.indentation = 0 is outside"),
+            (&paraboloid, Indentation(f64::NAN), ratio, "loading.indentation = NaN is outside"),
+            (&paraboloid, InitialForce(-1.0), ratio, "loading.initial_force = -1 is outside"),
+            (&paraboloid, Indentation(1e308), ratio, "volume π a0² d, m³ = inf is too large"),
+            (&paraboloid, Indentation(1e-308), ratio, "indentation, m = 1e-308 is too small"),
+            (&paraboloid, InitialForce(1e-310), ratio, "unit of loading.initial_force, half_space"),
+            (&sphere, Indentation(1e-3), ratio, "loading.indentation: 0.001 is too large: a sphere"),
+            (&sphere, InitialForce(1e6), ratio, "loading.initial_force: 1000000 is too large: F_N"),
+            (&paraboloid, Indentation(1e-6), StickRatio(0.0), "loading.stick_ratio = 0 is"),
+            (&paraboloid, Indentation(1e-6), StickRatio(1e-320), "unit of loading.stick_ratio"),
+            (&paraboloid, Indentation(1e-6), Ratio(-0.1), "loading.amplitude_ratio = -0.1 is"),
+            (&paraboloid, Indentation(1e9), Ratio(1e308), "amplitude, m = inf is too large"),
+            (&paraboloid, Indentation(1e-6), Displacement(1e-300), "unit of loading.amplitude"),
+            (&paraboloid, Indentation(1e-6), Displacement(f64::INFINITY), "loading.amplitude ="),
+        ];
+        for (indenter, load, amplitude, words) in cases {
+            let found = contact(indenter, 0.0, load, amplitude).map(drop).unwrap_err().to_string();
+            assert!(found.contains(words), "{load:?}, {amplitude:?}: {found}");
+        }
+    }
+}

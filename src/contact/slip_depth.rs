@@ -1,0 +1,295 @@
+//! Slip of the unworn contact outside the zone that sticks.
+//!
+//! Spring `x` slips by the amplitude `(μ_f/M) (q_c - q)` where its compression `q` is below `q_c = M U/μ_f` [S, Eq. (11)], and Eq. (20)
+//! carries that to the surface: `s(r) = (μ_f/M) S(r)` with the slip depth `S = F(q_c - q)`, where
+//!
+//! ```text
+//! (F q)(r) = (2/π) cos(kπ/2) ∫_c^r x^k q(x) (r² - x²)^(-(1+k)/2) dx
+//! ```
+//!
+//! As wear changes nothing inside `c`, the depth worn away is the growth of the slip depth, `w = S - S_0`.
+
+use std::sync::Arc;
+
+use crate::contact::indenter::{EquivalentProfile, RiseTransform};
+use crate::error::{Error, Result};
+use crate::numerics::abel::profile_factor;
+use crate::numerics::chebyshev::{Chebyshev, PiecewiseChebyshev};
+use crate::numerics::quadrature::Rule;
+use crate::numerics::roots::bracketed;
+
+/// Nodes of the Gauss-Jacobi rule for `F`; in the variable used, the integrand is entire for a power law but for the kernel's
+/// own singularity at `ℓ v = 2πi`.
+const NODES: usize = 40;
+
+/// How far beyond the limiting contact edge the slip is tabulated, as a factor of `Z`.
+const MARGIN: f64 = RiseTransform::MARGIN;
+
+/// Where slip next to the edge of stick is taken, over the logarithm at the end.
+const AT_STICK: f64 = 1e-6;
+
+/// Slip depth of the unworn contact over the annulus outside the stick zone, as a function of `z = r² - c²`.
+#[derive(Debug, Clone)]
+pub struct UnwornSlip {
+    stick_radius_squared: f64,
+    slip_compression: f64,
+    /// By how much `q_c` exceeds the compression at `c`, m: where the whole contact slides, springs slip next to `c` too.
+    surplus: f64,
+    profile: EquivalentProfile,
+    mu: f64,
+    /// `(F 1)/ℓ^μ` over `ℓ = ln(r²/c²)`, with `μ = (1-k)/2`.
+    uniform: Chebyshev,
+    slip: SlipSeries,
+    rule: Rule,
+    table: Option<Arc<RiseTransform>>,
+    limit_edge: f64,
+}
+
+/// `(F(q_c - q_0))/ℓ^(1+μ)`.
+#[derive(Debug, Clone)]
+enum SlipSeries {
+    Smooth {
+        /// Of that times `e^(-λℓ)` with the growth as `λ`.
+        series: Chebyshev,
+        /// By how much its logarithm grows on average: where the stick zone is small, slip next to it is orders of magnitude below that at the
+        /// contact edge, and a series without that growth would keep as many digits fewer of it.
+        growth: f64,
+    },
+    /// Of a table, whose waves and kinks take a series each, over the factor given.
+    Table { series: Arc<PiecewiseChebyshev>, factor: f64 },
+}
+
+impl SlipSeries {
+    fn value(&self, logarithm: f64) -> f64 {
+        match self {
+            Self::Smooth { series, growth } => series.value(logarithm) * (growth * logarithm).exp(),
+            Self::Table { series, factor } => factor * series.value(logarithm),
+        }
+    }
+
+    /// Derivative of its logarithm.
+    fn log_slope(&self, logarithm: f64) -> f64 {
+        let ((value, slope), growth) = match self {
+            Self::Smooth { series, growth } => (series.value_and_derivative(logarithm), *growth),
+            Self::Table { series, .. } => (series.value_and_derivative(logarithm), 0.0),
+        };
+        slope / value + growth
+    }
+}
+
+/// Slip depths at one radius.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct UnwornValues {
+    /// `ln(r²/c²)`.
+    pub logarithm: f64,
+    /// `F q_c`, m: the slip depth where no pressure is left; that of the limit.
+    pub limit_slip: f64,
+    /// `S_0 = F(q_c - q_0)`, m: the slip depth of the unworn contact.
+    pub slip: f64,
+}
+
+/// Derivatives of the slip depths by `z = r² - c²` at one radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnwornSlopes {
+    /// Of `F q_c`, 1/m.
+    pub limit_slip: f64,
+    /// Of `ln S_0`, 1/m².
+    pub log_slip: f64,
+}
+
+impl UnwornValues {
+    /// `ln(F q_c/S_0)`: how much the logarithm of slip has grown where no pressure is left.
+    pub fn limit_log_slip(&self) -> f64 {
+        (self.limit_slip / self.slip).ln()
+    }
+
+    /// Depth that the limit takes away, m: zero where it would add.
+    pub fn limit_depth(&self) -> f64 {
+        (self.limit_slip - self.slip).max(0.0)
+    }
+}
+
+impl UnwornSlip {
+    /// Tabulates the slip depth by the quadrature of `F`: to round-off; for a table to some 1e-11 of itself, where its rows are rough to what a series
+    /// between two knots resolves.
+    ///
+    /// # Arguments
+    /// * `profile` -- the unworn equivalent profile
+    /// * `stick_radius` -- `c`, m
+    /// * `slip_compression` -- `q(c)`, m, of the unworn contact
+    /// * `surplus` -- `q_c - q(c)`, m; zero where `c` is an edge of stick
+    /// * `initial_edge` -- `a0² - c²`, m²
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] if no contact edge is found at which wear ends; [`Error::Inconsistent`] if a sphere would have to wear
+    /// beyond its equator, or a table beyond its end.
+    pub fn new(
+        profile: &EquivalentProfile,
+        stick_radius: f64,
+        slip_compression: f64,
+        surplus: f64,
+        initial_edge: f64,
+    ) -> Result<Self> {
+        let mu = 0.5 * (1.0 - profile.grading());
+        let transform = Transform::new(profile, stick_radius)?;
+        let squared = stick_radius * stick_radius;
+        let depth_left = |l: f64| slip_compression * transform.uniform(l) / l - transform.slip(l);
+        let low = (initial_edge / squared).ln_1p();
+        let largest = (2.0 * (profile.largest_radius() / stick_radius).ln()).min(700.0);
+        let mut high = low;
+        while depth_left(high) > 0.0 {
+            if high >= largest {
+                let radius = stick_radius * (0.5 * high).exp();
+                let (what, why) = match profile.end_of_table() {
+                    Some(end) => {
+                        ("indenter.table", format!("no limiting contact radius below {radius} m: {end}"))
+                    }
+                    None => (
+                        "limiting contact radius",
+                        format!("none below {radius} m; reduce the indentation or the amplitude"),
+                    ),
+                };
+                return Err(Error::Inconsistent { what, why });
+            }
+            high = (1.5 * high).min(largest);
+        }
+        let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
+        let limit_edge = squared * logarithm.exp_m1();
+        let end = (MARGIN * limit_edge / squared).ln_1p();
+        let slip = match &transform.table {
+            Some(table) => SlipSeries::Table { series: table.series(logarithm)?, factor: transform.factor },
+            None => {
+                let growth = (transform.slip(end) / transform.slip(AT_STICK * end)).ln() / end;
+                let series = Chebyshev::fit(|l| transform.slip(l) * (-growth * l).exp(), end);
+                SlipSeries::Smooth { series, growth }
+            }
+        };
+        Ok(Self {
+            stick_radius_squared: squared,
+            slip_compression: slip_compression + surplus,
+            surplus,
+            profile: profile.clone(),
+            mu,
+            uniform: Chebyshev::fit(|l| transform.uniform(l), end),
+            slip,
+            rule: transform.rule,
+            table: transform.table,
+            limit_edge,
+        })
+    }
+
+    /// `a∞² - c²`, m²: the edge at which the depth that can be worn away, `F q_0`, is zero.
+    pub fn limit_edge(&self) -> f64 {
+        self.limit_edge
+    }
+
+    /// Largest `z`, m², for which [`UnwornSlip::at`] holds.
+    pub fn largest_edge(&self) -> f64 {
+        MARGIN * self.limit_edge
+    }
+
+    /// Slip depths at `z = r² - c²`, m², in (0, [`UnwornSlip::largest_edge`]].
+    pub fn at(&self, z: f64) -> UnwornValues {
+        let logarithm = (z / self.stick_radius_squared).ln_1p();
+        self.values(logarithm, self.slip_compression, self.slip.value(logarithm))
+    }
+
+    /// With `(F(g_0 - g_0(c)))/ℓ^(1+μ)` as `rise`.
+    fn values(&self, logarithm: f64, slip_compression: f64, rise: f64) -> UnwornValues {
+        let power = logarithm.powf(self.mu);
+        let uniform = power * self.uniform.value(logarithm);
+        UnwornValues {
+            logarithm,
+            limit_slip: slip_compression * uniform,
+            slip: logarithm * power * rise + self.surplus * uniform,
+        }
+    }
+
+    /// Slip depths at `z = r² - c²`, m², of the unworn contact with another stick radius `c` and compression `q_c` there.
+    ///
+    /// A power law is the same at every scale; for other profiles the quadrature of `F` runs anew.
+    ///
+    /// # Arguments
+    /// * `stick_area` -- `c²`, m², at least that for which the slip was tabulated
+    /// * `slip_compression` -- `q_c`, m
+    pub fn at_stick(&self, stick_area: f64, slip_compression: f64, z: f64) -> UnwornValues {
+        let logarithm = (z / stick_area).ln_1p();
+        let slip = match self.profile.exponent() {
+            Some(exponent) => {
+                (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip.value(logarithm)
+            }
+            None => match &self.table {
+                Some(table) => {
+                    profile_factor(1.0 - self.mu, self.mu) * table.mean_from(stick_area, logarithm)
+                }
+                None => {
+                    Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm)
+                }
+            },
+        };
+        self.values(logarithm, slip_compression, slip)
+    }
+
+    /// Derivatives of the slip depths where `values` belong to.
+    pub fn slopes(&self, values: &UnwornValues) -> UnwornSlopes {
+        let logarithm = values.logarithm;
+        let by_z = (-logarithm).exp() / self.stick_radius_squared;
+        let (uniform, uniform_slope) = self.uniform.value_and_derivative(logarithm);
+        let of_uniform = uniform_slope / uniform + self.mu / logarithm;
+        let of_rise = self.slip.log_slope(logarithm) + (1.0 + self.mu) / logarithm;
+        // The part of the slip depth that the surplus makes.
+        let part = self.surplus / self.slip_compression * values.limit_slip / values.slip;
+        UnwornSlopes {
+            limit_slip: values.limit_slip * by_z * of_uniform,
+            log_slip: by_z * (of_rise + part * (of_uniform - of_rise)),
+        }
+    }
+}
+
+/// Quadrature of `F` in the variable `v` of `x² = r² e^(-ℓ v)`, `ℓ = ln(r²/c²)`.
+struct Transform<'a> {
+    profile: &'a EquivalentProfile,
+    stick_radius: f64,
+    nu: f64,
+    factor: f64,
+    rule: Rule,
+    /// What stands for the rule where the profile is a table.
+    table: Option<Arc<RiseTransform>>,
+}
+
+impl<'a> Transform<'a> {
+    fn new(profile: &'a EquivalentProfile, stick_radius: f64) -> Result<Self> {
+        let nu = 0.5 * (1.0 + profile.grading());
+        let transform = Self::with_rule(profile, stick_radius, Rule::jacobi(NODES, 0.0, -nu)?);
+        Ok(Self { table: profile.rise_transform(stick_radius)?, ..transform })
+    }
+
+    fn with_rule(profile: &'a EquivalentProfile, stick_radius: f64, rule: Rule) -> Self {
+        let (nu, mu) = (0.5 * (1.0 + profile.grading()), 0.5 * (1.0 - profile.grading()));
+        Self { profile, stick_radius, nu, factor: profile_factor(nu, mu), rule, table: None }
+    }
+
+    /// `(F 1)/ℓ^μ`.
+    fn uniform(&self, logarithm: f64) -> f64 {
+        self.factor * self.rule.mean(|v| self.kernel(logarithm * v))
+    }
+
+    /// `(F (g_0 - g_0(c)))/ℓ^(1+μ)`.
+    fn slip(&self, logarithm: f64) -> f64 {
+        if let Some(table) = &self.table {
+            return self.factor * table.mean(logarithm);
+        }
+        let squared = self.stick_radius * self.stick_radius;
+        let weighted = |(node, complement): (&f64, &f64)| {
+            let rise = self.profile.rise(self.stick_radius, squared * (logarithm * complement).exp_m1());
+            self.kernel(logarithm * node) * rise / logarithm
+        };
+        let terms = self.rule.nodes.iter().zip(&self.rule.complements).map(weighted);
+        self.factor * terms.zip(&self.rule.weights).map(|(term, weight)| term * weight).sum::<f64>()
+    }
+
+    /// `(expm1(y)/y)^(-ν)`.
+    fn kernel(&self, y: f64) -> f64 {
+        if y > 1e-300 { (y.exp_m1() / y).powf(-self.nu) } else { 1.0 }
+    }
+}

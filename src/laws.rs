@@ -1,0 +1,8 @@
+//! What a scene prescribes: laws of friction and wear, their change along the cycles, and the motion.
+
+pub mod conditions;
+pub mod friction;
+pub mod history;
+pub mod loading;
+pub mod path;
+pub mod wear;

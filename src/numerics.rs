@@ -1,0 +1,8 @@
+//! Numerical methods that know nothing of contacts: quadrature, roots, interpolation, linear algebra, Abel transforms on a mesh.
+
+pub mod abel;
+pub mod chebyshev;
+pub mod grid;
+pub mod linear;
+pub mod quadrature;
+pub mod roots;

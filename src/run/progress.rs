@@ -1,0 +1,103 @@
+//! A progress bar on a terminal.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::error::Result;
+use crate::solver::simulation::{End, Flow, Observer, Simulation};
+
+/// Parts into which the bar is divided.
+const PARTS: u64 = 1000;
+
+/// Shows how many scenes are done, how fast and how long the rest will take; draws nothing unless stderr is a terminal.
+#[derive(Debug)]
+pub struct SceneProgress {
+    bar: ProgressBar,
+    failed: AtomicU64,
+}
+
+impl Default for SceneProgress {
+    fn default() -> Self {
+        let bar = ProgressBar::new(0);
+        let template = "{bar:30} {pos}/{len} scenes  {per_sec}  {eta} left  {msg}";
+        bar.set_style(ProgressStyle::with_template(template).expect("the template is well formed"));
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar, failed: AtomicU64::new(0) }
+    }
+}
+
+impl SceneProgress {
+    /// So many scenes are to be done.
+    pub fn begin(&self, scenes: u64) {
+        self.bar.set_length(scenes);
+        self.bar.reset_eta();
+    }
+
+    /// One is done.
+    pub fn done(&self, failed: bool) {
+        self.bar.inc(1);
+        if failed {
+            let count = self.failed.fetch_add(1, Ordering::Relaxed) + 1;
+            self.bar.set_message(format!("{count} failed"));
+        }
+    }
+}
+
+impl Drop for SceneProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Shows cycles, τ, worn volume and the distance to the limit on stderr while a simulation runs; draws nothing unless that is a terminal.
+pub struct Progress {
+    bar: ProgressBar,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        let bar = ProgressBar::new(PARTS);
+        bar.set_style(
+            ProgressStyle::with_template("{bar:30} {elapsed} {msg}").expect("the template is well formed"),
+        );
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Observer for Progress {
+    fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
+        if self.bar.is_hidden() {
+            return Ok(Flow::Continue);
+        }
+        let (model, state) = (simulation.model(), simulation.state());
+        let done = match simulation.plan().end {
+            End::Cycles(cycles) => state.cycles / cycles,
+            End::Rate(fraction) => {
+                (simulation.wear_rate() / simulation.progress().first_rate).ln().min(0.0) / fraction.ln()
+            }
+        };
+        let left = model
+            .limit_depth()
+            .iter()
+            .zip(&simulation.wear_depth())
+            .fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+        self.bar.set_position((done.clamp(0.0, 1.0) * PARTS as f64) as u64);
+        self.bar.set_message(format!(
+            "cycle {:.4e}  τ {:.4}  worn {:.4e} m³  distance {:.1e}",
+            state.cycles,
+            state.cycles * model.contact().tau_per_cycle(),
+            model.wear_volume(simulation.fields()),
+            left / model.depth_scale()
+        ));
+        Ok(Flow::Continue)
+    }
+}

@@ -1,0 +1,522 @@
+//! The wearing contact in spring space: what is fixed during a run, what changes, and what follows from it.
+//!
+//! The springs sit at fixed fractions `ξ` of the slip annulus `c < x <= a`, whose outer edge moves with the wear: `x² = c² + Z ξ`,
+//! `Z = a² - c²`. Archard's law for the slip depth `S = F(q_c - q)` at a fixed radius is `dS/dN = κ p S`, so the state that evolves is
+//! the logarithm `λ = ln(S/S_0)`, and on the moving springs, with `W` the depth worn in a cycle (`κ p S` here),
+//!
+//! ```text
+//! dλ/dN - ξ (∂λ/∂ξ) (dZ/dN)/Z = W/S,     κ = 4 k_w μ_f/M,     w = S - S_0,     w = 0 at the edge
+//! ```
+//!
+//! Compressions and edge are what is stored ([`State`]); everything else is recomputed from them ([`Fields`]).
+
+mod cycle;
+mod derivatives;
+mod jacobian;
+mod loops;
+mod motion;
+mod moving;
+mod operators;
+mod output;
+mod past;
+mod reach;
+mod schedule;
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
+use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
+use crate::contact::stick_slip::Regime;
+use crate::error::{Error, Result};
+use crate::laws::conditions::Conditions;
+use crate::numerics::abel::{AbelOperators, Backend};
+use crate::numerics::grid::Clustering;
+use crate::numerics::linear::in_parallel;
+use crate::numerics::roots::{bracketed, next_to};
+pub use cycle::CycleFields;
+pub use jacobian::StageFactors;
+pub use loops::FrettingLoop;
+pub use moving::{MovingStick, StickEdge, StickTarget, StickTrial};
+pub use operators::OperatorStore;
+use operators::Operators;
+pub use output::RadialFields;
+use output::Shown;
+pub use past::{Linearised, Past, PastPoint};
+use reach::Reach;
+pub use schedule::{Demand, Drive, Resolution, Schedule};
+
+/// Part of the annulus, next to the edge of stick, of which the springs of a [`Clustering::Smooth`] mesh are not shown: the front in which wear
+/// proceeds towards the edge is followed well as long as some springs are left before it.
+const HIDDEN: f64 = 3e-5;
+
+/// Springs from which on hierarchical operators serve wear without kinks.
+const HIERARCHICAL: usize = 1000;
+
+/// Fewest springs on which the local polynomials fit.
+pub const FEWEST_SPRINGS: usize = 8;
+
+/// What a restart needs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct State {
+    /// Cycles done.
+    pub cycles: f64,
+    /// `Z = a² - c²`, m², of the contact edge `a`.
+    pub edge: f64,
+    /// Compression `q`, m, of the springs inside the contact edge, shape `(springs - 1,)`, outwards.
+    pub compression: Vec<f64>,
+    /// Energy dissipated by friction since the start, J.
+    pub dissipated_energy: f64,
+    /// Worn volume by the rates of the cycles, m³: from the dissipated energy where the two are in proportion.
+    pub volume_by_rate: f64,
+    /// Smallest stick radius of the cycles so far, m; infinite before the first.
+    pub least_stick_radius: f64,
+    /// Mean rate of the edge in the last step, m² per cycle; zero at the start. A first guess for the next step.
+    pub edge_rate: f64,
+    /// Mean rates of the compressions in the last step, m per cycle, shape `(springs - 1,)`; zero at the start.
+    pub compression_rate: Vec<f64>,
+    /// The edge of stick, where that moves.
+    pub stick: Option<StickEdge>,
+    /// What a method of several steps remembers.
+    pub past: Past,
+}
+
+/// What follows from a state, on the springs `ξ_1 ... ξ_n` of which the last is the contact edge.
+#[derive(Debug, Clone, Default)]
+pub struct Fields {
+    /// Where the mesh begins.
+    pub place: Place,
+    /// `Z = a² - c²`, m².
+    pub edge: f64,
+    /// `x^(k-1)`, the factor from compression to density.
+    pub density_factor: Vec<f64>,
+    /// `F q`, m.
+    pub elastic_depth: Vec<f64>,
+    /// Slip depth `S = F(q_c - q)`, m; the slip amplitude is `μ_f/M` times it.
+    pub slip_depth: Vec<f64>,
+    /// `λ = ln(S/S_0)`.
+    pub log_slip: Vec<f64>,
+    /// Wear depth `w`, m.
+    pub wear_depth: Vec<f64>,
+    /// Pressure `p`, Pa.
+    pub pressure: Vec<f64>,
+    /// The unworn slip at the same radii.
+    pub unworn: Vec<UnwornValues>,
+    density: Vec<f64>,
+}
+
+/// The edge of stick, where the mesh begins.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Place {
+    /// `c²`, m².
+    pub stick_area: f64,
+    /// Compression `q_c` below which springs slip, m: that of the springs there, and more where the contact slides as a whole.
+    pub slip_compression: f64,
+    /// `∫_0^c x^k q dx`, m^(2+k).
+    pub stick_load: f64,
+}
+
+impl Fields {
+    /// Whether slip is positive at every spring and every number finite: a state may exist that is none of a contact.
+    pub fn are_physical(&self) -> bool {
+        self.slip_depth.iter().all(|s| *s > 0.0 && s.is_finite())
+            && self.pressure.iter().all(|p| p.is_finite())
+    }
+}
+
+/// One wearing contact on its springs; immutable during a run.
+#[derive(Debug, Clone)]
+pub struct Model {
+    contact: InitialContact,
+    schedule: Schedule,
+    unworn: UnwornSlip,
+    operators: Arc<Operators>,
+    /// The unworn slip on the springs of the limit.
+    radial_unworn: Vec<UnwornValues>,
+    /// Springs next to the edge of stick that the output does not show.
+    hidden: usize,
+    /// Where the output shows the fields.
+    shown: Shown,
+    /// The edge of stick, its innermost place where it moves.
+    place: Place,
+    moving: Option<MovingStick>,
+    depth_scale: f64,
+    slides: bool,
+}
+
+impl Model {
+    /// Puts a contact on springs under the laws, mode, blocks and control of its scene.
+    ///
+    /// # Arguments
+    /// * `contact` -- the contact of the first cycle
+    /// * `conditions` -- those of its scene: the laws in the contact are but stand-ins of theirs
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] if nothing slips or the conditions do not go together; [`Error::OutOfRange`] for too few springs; those of the transforms.
+    pub fn new(
+        contact: &InitialContact,
+        conditions: &Conditions,
+        springs: usize,
+        clustering: Clustering,
+    ) -> Result<Self> {
+        let schedule = Schedule::new(contact, conditions, Resolution::default())?;
+        Self::under(contact, schedule, springs, clustering, &OperatorStore::default())
+    }
+
+    /// Puts a contact on springs for what a schedule does to it, with operators from a store that other models share.
+    ///
+    /// # Arguments
+    /// * `contact` -- the contact of the first cycle
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn under(
+        contact: &InitialContact,
+        schedule: Schedule,
+        springs: usize,
+        clustering: Clustering,
+        store: &OperatorStore,
+    ) -> Result<Self> {
+        let backend = Self::backend(contact, &schedule, springs);
+        let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
+        let Reach { contact, slides, surplus } = if uniform {
+            Reach { contact: contact.clone(), slides: false, surplus: 0.0 }
+        } else {
+            schedule.reach(contact)?
+        };
+        let contact = &contact;
+        let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
+        let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
+            what: "loading.amplitude",
+            why: format!(
+                "at an amplitude of {:e} m no spring slips in any cycle, so that nothing wears; ask for a larger one",
+                contact.amplitude()
+            ),
+        })?;
+        if springs < FEWEST_SPRINGS {
+            return Err(Error::OutOfRange {
+                name: "numerics.springs",
+                value: springs as f64,
+                range: "[8, inf)",
+            });
+        }
+        let profile = contact.equivalent_profile();
+        let grading = profile.grading();
+        // Where no stick is left in the end, the mesh reaches to the core from the start.
+        let moving = MovingStick::new(&schedule, contact, slides)?;
+        let farthest = match &moving {
+            Some(moving) => moving.farthest(contact)?,
+            None => contact.clone(),
+        };
+        if moving.is_some() && profile.end_of_table().is_some() {
+            // Where there is a closed form, that looks for rings.
+            LimitingShape::from_contact(&farthest)?;
+        }
+        let unworn = UnwornSlip::new(
+            profile,
+            stick_radius,
+            farthest.slip_compression(),
+            surplus,
+            farthest.slip_area_offset(),
+        )?;
+        let stick_radius_squared = stick_radius * stick_radius;
+        let first = contact.contact_radius().powi(2);
+        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_edge()));
+        let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
+        // Next to the core of a contact that slides as a whole nothing is singular that finer cells would resolve.
+        let clustering = match clustering {
+            Clustering::Cubic if surplus > 0.0 => Clustering::CreepingStick,
+            clustering => clustering,
+        };
+        let natural = (unworn.limit_edge() / stick_radius_squared).ln_1p();
+        let stretch = clustering.stretch(natural, grading);
+        let operators = store.get(grading, stretch, springs, clustering, backend)?;
+        let radial_unworn: Vec<_> =
+            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
+        let compression = contact.slip_compression();
+        let stick_load = 0.5 * profile.load_integral(stick_radius)
+            + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
+        let depth_scale = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
+        let hidden = match clustering {
+            Clustering::Smooth => operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN),
+            _ => 0,
+        };
+        Ok(Self {
+            contact: contact.clone(),
+            schedule,
+            shown: Shown::new(&unworn, operators.abel.mesh(), hidden),
+            unworn,
+            operators,
+            radial_unworn,
+            hidden,
+            place: Place {
+                stick_area: stick_radius_squared,
+                slip_compression: compression + surplus,
+                stick_load,
+            },
+            moving,
+            depth_scale,
+            slides,
+        })
+    }
+
+    /// The operators that serve a contact on a number of springs: hierarchical ones where those are many, wear has no kinks and the edge of
+    /// stick stays where it is.
+    pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
+        let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
+        let serve = springs >= HIERARCHICAL && schedule.wears_smoothly() && stays;
+        if serve { Backend::Hierarchical } else { Backend::Dense }
+    }
+
+    /// The unworn contact.
+    pub fn contact(&self) -> &InitialContact {
+        &self.contact
+    }
+
+    /// Whether the contact slides as a whole in some cycle, so that only the core of the mesh is not worn.
+    pub fn slides(&self) -> bool {
+        self.slides
+    }
+
+    /// Whether wear has no kinks, neither along the slip annulus nor in time.
+    pub fn wears_smoothly(&self) -> bool {
+        self.schedule.wears_smoothly() && self.moving.is_none() && !self.slides
+    }
+
+    /// What the core that stays unworn under full sliding makes the worn volume uncertain by, relative; zero where a stick zone is left.
+    pub fn core_uncertainty(&self) -> f64 {
+        if self.slides { reach::core_share(self.contact.half_space().grading()) } else { 0.0 }
+    }
+
+    /// What acts when.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// Cycles in which wear at the first pressures comes to the compression at the edge of stick.
+    pub fn cycles_of_wear(&self) -> f64 {
+        self.contact.indentation() / (self.contact.slip_compression() * self.contact.tau_per_cycle())
+    }
+
+    /// The transforms.
+    pub fn operators(&self) -> &AbelOperators {
+        &self.operators.abel
+    }
+
+    /// The unworn slip.
+    pub fn unworn(&self) -> &UnwornSlip {
+        &self.unworn
+    }
+
+    /// Gives back memory that only explicit steps and the search for a state need, where it is much.
+    pub fn release_factors(&self) {
+        self.operators.release_factors();
+    }
+
+    /// Number of springs, the contact edge included.
+    pub fn springs(&self) -> usize {
+        self.operators.abel.len()
+    }
+
+    /// Largest depth of the limit on the springs, m: what tolerances are relative to.
+    pub fn depth_scale(&self) -> f64 {
+        self.depth_scale
+    }
+
+    /// Radii of the output, m, shape `(node,)`, increasing from just outside the stick radius to the limiting contact radius.
+    pub fn radii(&self) -> Vec<f64> {
+        self.offsets().iter().map(|offset| (self.place.stick_area + offset).sqrt()).collect()
+    }
+
+    /// `r² - c²`, m², at [`Model::radii`], without the rounding of the radii.
+    pub fn offsets(&self) -> Vec<f64> {
+        self.shown.offsets().to_vec()
+    }
+
+    /// The unworn state: the edge and the compressions whose wear depth is zero at every spring.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] if no edge is found.
+    pub fn initial_state(&self) -> Result<State> {
+        let stick = self.moving.as_ref().map(|moving| moving.start(self)).transpose()?;
+        let place =
+            stick.as_ref().map_or(self.place, |stick| self.place_of(stick, &self.schedule.drive(0.0, 0.0)));
+        let guess = self.contact.contact_radius().powi(2) - place.stick_area;
+        let guess = if stick.is_some() { guess } else { self.contact.slip_area_offset() };
+        let limit = self.unworn.limit_edge() + self.place.stick_area - place.stick_area;
+        let mismatch = |edge: f64| self.mismatch_at(&place, edge, |_, values| values.slip);
+        let edge = match self.operators.abel.backend() {
+            Backend::Dense => {
+                let (mut low, mut high) = (0.98 * guess, (1.02 * guess).min(limit));
+                while mismatch(low) < 0.0 && low > 0.5 * guess {
+                    low *= 0.98;
+                }
+                while mismatch(high) > 0.0 && high < limit {
+                    high = (1.02 * high).min(limit);
+                }
+                bracketed(mismatch, low, high, 0.0)?
+            }
+            // On so many springs the guess is nearly right, and an evaluation takes long.
+            Backend::Hierarchical => next_to(mismatch, guess),
+        };
+        let compression = self.compression_at(&place, edge, |_, values| values.slip);
+        Ok(self.close_force(State {
+            cycles: 0.0,
+            edge,
+            compression_rate: vec![0.0; compression.len()],
+            compression,
+            dissipated_energy: 0.0,
+            volume_by_rate: 0.0,
+            least_stick_radius: f64::INFINITY,
+            edge_rate: 0.0,
+            stick,
+            past: Past::default(),
+        }))
+    }
+
+    /// Wear depth at the edge, m, of the compressions that give the inner springs the slip depth `slip(spring, unworn)`; zero at the
+    /// true contact edge.
+    pub fn edge_mismatch(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> f64 {
+        self.mismatch_at(&self.place, edge, slip)
+    }
+
+    pub(super) fn mismatch_at(
+        &self,
+        place: &Place,
+        edge: f64,
+        slip: impl Fn(usize, &UnwornValues) -> f64,
+    ) -> f64 {
+        let inner = self.springs() - 1;
+        let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
+        let elastic = |(i, values): (usize, &UnwornValues)| values.limit_slip - slip(i, values);
+        let carried = self.operators.depth_at_edge(values.iter().take(inner).enumerate().map(elastic));
+        values[inner].limit_slip - values[inner].slip - carried
+    }
+
+    /// Compressions, m, that give the inner springs the slip depth `slip(spring, unworn)` with the contact edge at `edge`.
+    pub fn compression(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> Vec<f64> {
+        self.compression_at(&self.place, edge, slip)
+    }
+
+    pub(super) fn compression_at(
+        &self,
+        place: &Place,
+        edge: f64,
+        slip: impl Fn(usize, &UnwornValues) -> f64,
+    ) -> Vec<f64> {
+        let inner = self.springs() - 1;
+        let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
+        let depth = |(i, v): (usize, &UnwornValues)| v.limit_slip - slip(i, v);
+        let mut solution: Vec<f64> = values.iter().take(inner).enumerate().map(depth).collect();
+        self.operators.solve_profile(&mut solution);
+        let (scale, at_stick) = (edge.powf(-self.mu()), self.density_factor_at_stick(place));
+        for (q, v) in solution.iter_mut().zip(&values) {
+            *q *= scale / (at_stick * self.density_ratio(v));
+        }
+        solution
+    }
+
+    /// Recomputes everything that follows from an edge, m², and the compressions, m, shape `(springs - 1,)`.
+    pub fn evaluate(&self, edge: f64, compression: &[f64], fields: &mut Fields) {
+        self.evaluate_at(&self.place, edge, compression, fields);
+    }
+
+    /// As [`Model::evaluate`], with the mesh beginning at another edge of stick.
+    pub fn evaluate_at(&self, place: &Place, edge: f64, compression: &[f64], fields: &mut Fields) {
+        let n = self.springs();
+        fields.place = *place;
+        let (mu, stiffness) = (self.mu(), self.contact.half_space().normal_stiffness());
+        fields.edge = edge;
+        for part in [
+            &mut fields.density_factor,
+            &mut fields.elastic_depth,
+            &mut fields.slip_depth,
+            &mut fields.log_slip,
+            &mut fields.wear_depth,
+            &mut fields.pressure,
+        ] {
+            part.resize(n, 0.0);
+        }
+        let nodes = &self.operators.abel.nodes()[1..];
+        fields.unworn.resize(n, UnwornValues::default());
+        self.on_springs(&mut fields.unworn, |i| self.unworn_at(place, edge * nodes[i]));
+        let at_stick = self.density_factor_at_stick(place);
+        let unworn = &fields.unworn;
+        self.on_springs(&mut fields.density_factor, |i| at_stick * self.density_ratio(&unworn[i]));
+        fields.density.clear();
+        fields.density.extend(compression.iter().zip(&fields.density_factor).map(|(q, factor)| q * factor));
+        let [profile, pressure] = self.operators.abel.transforms();
+        profile.apply(&fields.density, &mut fields.elastic_depth);
+        pressure.apply(compression, &mut fields.pressure);
+        let (profile_scale, pressure_scale) = (edge.powf(mu), stiffness / PI * edge.powf(-mu));
+        for (i, values) in fields.unworn.iter().enumerate() {
+            fields.elastic_depth[i] *= profile_scale;
+            fields.pressure[i] *= pressure_scale;
+            fields.slip_depth[i] = values.limit_slip - fields.elastic_depth[i];
+            fields.wear_depth[i] = fields.slip_depth[i] - values.slip;
+        }
+        let slip = &fields.slip_depth;
+        self.on_springs(&mut fields.log_slip, |i| (slip[i] / unworn[i].slip).ln());
+    }
+
+    /// Computes something at every spring, side by side where they are many.
+    fn on_springs<T: Send>(&self, values: &mut [T], value: impl Fn(usize) -> T + Sync) {
+        let fill = |first: usize, part: &mut [T]| {
+            part.iter_mut().enumerate().for_each(|(i, to)| *to = value(first + i));
+        };
+        match self.operators.abel.backend() {
+            Backend::Dense => fill(0, values),
+            Backend::Hierarchical => in_parallel(values, 1, fill),
+        }
+    }
+
+    /// The fields of a state.
+    pub fn fields(&self, state: &State) -> Fields {
+        let mut fields = Fields::default();
+        let drive = self.schedule.drive(state.cycles, state.cycles);
+        let place = state.stick.as_ref().map_or(self.place, |stick| self.place_of(stick, &drive));
+        self.evaluate_at(&place, state.edge, &state.compression, &mut fields);
+        fields
+    }
+
+    /// Contact radius `a`, m.
+    pub fn contact_radius(&self, state: &State) -> f64 {
+        let stick_area = state.stick.as_ref().map_or(self.place.stick_area, |stick| stick.area);
+        (stick_area + state.edge).sqrt()
+    }
+
+    /// Depth that the limit takes away at [`Model::radii`] by the program's own quadrature, m.
+    pub fn limit_depth(&self) -> Vec<f64> {
+        self.shown.limit_depth()
+    }
+
+    /// The unworn slip on every spring, with the contact edge at `edge`.
+    fn unworn_on_springs(&self, place: &Place, edge: f64) -> impl Iterator<Item = UnwornValues> {
+        let place = *place;
+        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn_at(&place, edge * x))
+    }
+
+    /// The unworn slip at `z = r² - c²`, m², of the edge of stick at `place`.
+    fn unworn_at(&self, place: &Place, z: f64) -> UnwornValues {
+        match &self.moving {
+            None => self.unworn.at(z),
+            Some(_) => self.unworn.at_stick(place.stick_area, place.slip_compression, z),
+        }
+    }
+
+    /// `μ = (1-k)/2`, the exponent with which the transforms scale with the edge.
+    pub(crate) fn mu(&self) -> f64 {
+        0.5 * (1.0 - self.contact.half_space().grading())
+    }
+
+    /// `c^(k-1)`.
+    fn density_factor_at_stick(&self, place: &Place) -> f64 {
+        place.stick_area.powf(-self.mu())
+    }
+
+    /// `(x/c)^(k-1)`.
+    fn density_ratio(&self, values: &UnwornValues) -> f64 {
+        (-self.mu() * values.logarithm).exp()
+    }
+}

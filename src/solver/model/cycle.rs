@@ -1,0 +1,575 @@
+//! What one cycle does to the contact: slip of the springs, wear of the surface, dissipated energy.
+//!
+//! Eq. (20) carries the slip of the springs in each step of the period to the surface, Eq. (21) their compressions, and the law of wear
+//! makes of both the depth `W` worn in the cycle. The slip depth `S` of the model grows by `W`, its logarithm by `W/S`.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+
+use super::motion::{Energies, Motion};
+use super::schedule::{Demand, Drive};
+use super::{Fields, Model};
+use crate::laws::friction::{Coulomb, FrictionLaw};
+use crate::laws::wear::{Archard, WearLaw};
+use crate::numerics::linear::dot;
+
+/// Change of the edge, relative, by which slopes are found.
+const DIFFERENCE: f64 = 1e-7;
+
+/// Pressure, relative to the mean one of the unworn contact, below which a power law of it goes on in proportion: else wear by `p^α` with
+/// `α < 1` would end at an instant, in a root.
+const LEAST_PRESSURE: f64 = 1e-9;
+
+/// Depth of the gap, over the compression at the edge of stick, that debris of a law that is not local still fills. A choice: without an
+/// end, ground that has lost contact would go on wearing for as long as anything nearby is pressed on, and the gap would deepen until no
+/// contact is left. With it the run ends, with springs between no compression and that gap, by their history.
+const DEBRIS_LAYER: f64 = 0.1;
+
+/// Pressure, over the mean one of the unworn contact, from which on debris passes it on whole: without a kink at none.
+const LEAST_DEBRIS: f64 = 1e-3;
+
+/// Columns of a dense matrix that are formed at a time where only what follows from them is kept.
+const BLOCK: usize = 128;
+
+/// Agreement of two amplitudes that are the same number by two ways.
+const SAME: f64 = 1e-13;
+
+/// What one cycle does.
+#[derive(Debug, Clone, Default)]
+pub struct CycleFields {
+    /// `W/S`, by which the logarithm of the slip depth grows in a cycle, at the springs.
+    pub growth: Vec<f64>,
+    /// Slip amplitude on the surface, m: a quarter of the path of slip in a cycle.
+    pub slip: Vec<f64>,
+    /// Energy that friction dissipates in a cycle, J.
+    pub dissipation: f64,
+    /// What jumps from static to kinetic friction lose in a cycle beyond that, J.
+    pub jump_loss: f64,
+    /// Work of the tangential force in a cycle, J.
+    pub work: f64,
+    /// Volume worn in a cycle, m³.
+    pub volume: f64,
+    /// Tangential amplitude of the contact, m.
+    pub amplitude: f64,
+    /// Radius within which no spring slips, m.
+    pub stick_radius: f64,
+}
+
+/// Derivatives of the growth in a plain cycle, which are in proportion to the transform of Eq. (21).
+#[derive(Debug)]
+pub struct PlainSlopes {
+    /// By `P` of the compressions.
+    pub by_pressure: f64,
+    /// By the edge, 1/m², shape `(springs,)`.
+    pub by_edge: Vec<f64>,
+}
+
+/// Wear of the surface, from pressures and paths of slip: shape `(springs, steps)` each, one column of pressures if they are all the same.
+struct Worn {
+    /// Depth worn in a period, m.
+    depth: Vec<f64>,
+    /// Derivatives by the pressure in each step.
+    by_pressure: Mat<f64>,
+    /// Derivatives by the path in each step.
+    by_path: Mat<f64>,
+}
+
+/// What is on the surface in the steps of a period.
+struct Surface {
+    /// What the law of wear takes as pressure, Pa, `(springs, steps)` or `(springs, 1)`.
+    pressure: Mat<f64>,
+    /// Direction of the slip in each step, `(springs, steps · components)`.
+    direction: Mat<f64>,
+    /// Path of slip, m, `(springs, steps)`.
+    path: Mat<f64>,
+}
+
+impl Model {
+    /// What a cycle does to the contact whose fields are given.
+    pub fn cycle(&self, drive: &Drive, compression: &[f64], fields: &Fields) -> CycleFields {
+        if let Some(cycle) = self.plain_cycle(drive, compression, fields) {
+            return cycle;
+        }
+        let motion = self.motion(drive, compression, fields, false);
+        let surface = self.surface(drive, &motion, compression, fields);
+        let worn = self.worn(&drive.wear, &surface, false);
+        let per_cycle = drive.cycles_per_period.recip();
+        let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
+        let energy = |part: fn(&Energies) -> f64| {
+            per_cycle * self.spring_energy(fields, motion.energies.iter().map(part))
+        };
+        let dissipation = energy(|spring| spring.dissipation);
+        // Where slip turns, that of neighbouring springs does not add up on the surface, while its energy does.
+        let volume = match self.volume_per_energy(drive).filter(|_| motion.components == 1) {
+            Some(factor) => factor * dissipation,
+            None => {
+                // Round-off about zero must not make up for what still wears elsewhere.
+                let worn: Vec<f64> = worn.depth.iter().map(|depth| depth.abs()).collect();
+                per_cycle * self.volume(fields.edge, &worn)
+            }
+        };
+        CycleFields {
+            growth: growth(drive, &worn, fields),
+            slip: slip.collect(),
+            dissipation,
+            jump_loss: energy(|spring| spring.jump_loss),
+            work: energy(|spring| spring.work),
+            volume,
+            amplitude: motion.amplitude,
+            stick_radius: self.stick_radius(&motion, fields),
+        }
+    }
+
+    /// The cycle in which slip on the surface is `μ_f/M` times the slip depth and wear is in proportion to pressure and slip.
+    fn plain_cycle(&self, drive: &Drive, compression: &[f64], fields: &Fields) -> Option<CycleFields> {
+        let factor = self.slip_per_depth(drive, fields)?;
+        let per_pressure = 4.0 * factor * self.archard(drive)?;
+        let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
+        let changed = coefficient / self.contact.friction().coefficient;
+        let dissipation = changed * changed * self.dissipation(fields, compression);
+        Some(CycleFields {
+            growth: fields.pressure.iter().map(|p| per_pressure * p).collect(),
+            slip: fields.slip_depth.iter().map(|s| factor * s).collect(),
+            dissipation,
+            jump_loss: 0.0,
+            work: dissipation,
+            volume: self.volume_per_energy(drive)? * dissipation,
+            amplitude: drive.amplitude,
+            stick_radius: fields.place.stick_area.sqrt(),
+        })
+    }
+
+    /// Slip over slip depth, `μ_f/M`, if the amplitude is that for which the mesh was made and the law is Coulomb's.
+    pub(super) fn slip_per_depth(&self, drive: &Drive, fields: &Fields) -> Option<f64> {
+        let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
+        let ratio = self.contact.half_space().stiffness_ratio();
+        let compression = ratio * drive.amplitude / coefficient;
+        let same = (compression / fields.place.slip_compression - 1.0).abs() < SAME;
+        (same && drive.path.is_none() && drive.lift == 0.0 && drive.demand == Demand::Displacement)
+            .then_some(coefficient / ratio)
+    }
+
+    /// `k_w` where wear is in proportion to pressure and slip.
+    fn archard(&self, drive: &Drive) -> Option<f64> {
+        match (drive.wear, drive.friction) {
+            (WearLaw::Archard(Archard { coefficient }), _) => Some(coefficient),
+            (WearLaw::DissipatedEnergy { coefficient }, FrictionLaw::Coulomb(friction)) => {
+                Some(coefficient * friction.coefficient)
+            }
+            _ => None,
+        }
+    }
+
+    /// Worn volume over dissipated energy, 1/Pa, where they are in proportion.
+    pub(super) fn volume_per_energy(&self, drive: &Drive) -> Option<f64> {
+        match (drive.wear, drive.friction) {
+            (WearLaw::DissipatedEnergy { coefficient }, _) => Some(coefficient),
+            (WearLaw::Archard(Archard { coefficient }), FrictionLaw::Coulomb(friction)) => {
+                Some(coefficient / friction.coefficient)
+            }
+            _ => None,
+        }
+    }
+
+    /// Pressures and slip on the surface in each step of the period.
+    fn surface(&self, drive: &Drive, motion: &Motion, compression: &[f64], fields: &Fields) -> Surface {
+        let (n, inner) = (self.springs(), self.springs() - 1);
+        let (steps, components) = (motion.steps(), motion.components);
+        let columns = steps * components;
+        let mut pressure = Mat::zeros(n, motion.load.ncols());
+        let pressure_scale = self.pressure_scale(fields);
+        self.pressures(&mut pressure, &motion.load, pressure_scale);
+        if let WearLaw::NonLocal { length, .. } = drive.wear {
+            // Debris passes pressure on, not tension, and into gaps that it can fill.
+            let least = LEAST_DEBRIS * self.contact.mean_pressure();
+            let pressed = Mat::from_fn(n, pressure.ncols(), |i, m| pressing(pressure[(i, m)], least).0);
+            product(&mut pressure, self.smearing(fields, length).as_ref(), pressed.as_ref(), 1.0);
+            for i in 0..n {
+                let (filled, _) = self.filled(drive, compression.get(i).copied());
+                (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
+            }
+        }
+        let plain = self.slip_per_depth(drive, fields);
+        let mut slip = Mat::zeros(n, columns);
+        let mut direction = Mat::from_fn(n, columns, |_, _| 1.0);
+        if let Some(factor) = plain {
+            slip = Mat::from_fn(n, 1, |i, _| 4.0 * factor * fields.slip_depth[i]);
+        } else {
+            let scale = fields.edge.powf(self.mu());
+            // Where slip reaches the inner end of the mesh, what a free spring would do is carried exactly.
+            let free: Vec<f64> =
+                (0..columns).map(|m| if motion.slip[(0, m)] == 0.0 { 0.0 } else { motion.free[m] }).collect();
+            // Without compression, at the contact edge, springs are free.
+            let slip_of = |j: usize, m: usize| if j < inner { motion.slip[(j, m)] } else { motion.free[m] };
+            let moved = Mat::from_fn(n, columns, |j, m| (slip_of(j, m) - free[m]) * fields.density_factor[j]);
+            product(&mut slip, self.operators.abel.profile().as_ref(), moved.as_ref(), scale);
+            for i in 0..n {
+                let uniform = self.uniform_slip(fields, i);
+                for m in 0..columns {
+                    slip[(i, m)] += free[m] * uniform;
+                }
+            }
+            // The stencils reach two springs ahead; where none of those inside slips, there is no slip.
+            for m in 0..columns {
+                let stuck = (0..inner).take_while(|j| motion.slip[(*j, m)] == 0.0).count();
+                (0..stuck).for_each(|i| slip[(i, m)] = 0.0);
+            }
+            if drive.path.is_some() {
+                let slipped =
+                    Mat::from_fn(inner, columns, |j, m| motion.slip[(j, m)] * fields.density_factor[j]);
+                product_without_signs(&mut direction, self.operators.abel.profile(), slipped.as_ref());
+                normalise(&mut direction, components);
+            }
+        }
+        let along = |i: usize, m: usize| -> f64 {
+            let columns = components * m..components * (m + 1);
+            columns.map(|c| slip[(i, c)] * direction[(i, c)]).sum::<f64>().max(0.0)
+        };
+        let path = Mat::from_fn(n, steps, along);
+        Surface { pressure, direction, path }
+    }
+
+    /// Depth worn in a period.
+    fn worn(&self, law: &WearLaw, surface: &Surface, slopes: bool) -> Worn {
+        let (n, steps) = (surface.path.nrows(), surface.path.ncols());
+        let size = if slopes { n } else { 0 };
+        let mut worn = Worn {
+            depth: vec![0.0; n],
+            by_pressure: Mat::zeros(size, steps),
+            by_path: Mat::zeros(size, steps),
+        };
+        let least = LEAST_PRESSURE * self.contact.mean_pressure();
+        for i in 0..n {
+            let total: f64 = (0..steps).map(|m| surface.path[(i, m)]).sum();
+            for m in 0..steps {
+                let p = surface.pressure[(i, m.min(surface.pressure.ncols() - 1))];
+                let path = surface.path[(i, m)];
+                let (coefficient, value, slope) = match *law {
+                    WearLaw::Archard(Archard { coefficient })
+                    | WearLaw::DissipatedEnergy { coefficient }
+                    | WearLaw::NonLocal { coefficient, .. } => (coefficient, p, 1.0),
+                    WearLaw::Threshold { coefficient, pressure } => {
+                        (coefficient, (p - pressure).max(0.0), if p > pressure { 1.0 } else { 0.0 })
+                    }
+                    WearLaw::PowerLaw { coefficient, pressure_exponent, slip_exponent } => {
+                        let (value, slope) = eased_power(p, pressure_exponent, least);
+                        let lengthened = if total > 0.0 { total.powf(slip_exponent - 1.0) } else { 0.0 };
+                        (coefficient * lengthened, value, slope)
+                    }
+                };
+                worn.depth[i] += coefficient * value * path;
+                if slopes {
+                    worn.by_pressure[(i, m)] = coefficient * slope * path;
+                    worn.by_path[(i, m)] = coefficient * value;
+                }
+            }
+            if let (true, WearLaw::PowerLaw { slip_exponent, .. }) = (slopes && total > 0.0, law) {
+                let shared = (slip_exponent - 1.0) * worn.depth[i] / total;
+                for m in 0..steps {
+                    worn.by_path[(i, m)] += shared;
+                }
+            }
+        }
+        worn
+    }
+
+    /// `factor` times the derivatives of the growth in a cycle that is plain.
+    pub fn plain_growth_slopes(
+        &self,
+        drive: &Drive,
+        fields: &Fields,
+        cycle: &CycleFields,
+        factor: f64,
+    ) -> Option<PlainSlopes> {
+        let per_pressure = factor * 4.0 * self.slip_per_depth(drive, fields)? * self.archard(drive)?;
+        Some(PlainSlopes {
+            by_pressure: per_pressure * self.pressure_scale(fields),
+            by_edge: cycle.growth.iter().map(|growth| -factor * self.mu() / fields.edge * growth).collect(),
+        })
+    }
+
+    /// Adds `factor` times the derivatives of the growth in a cycle by compressions and edge to a matrix with these columns.
+    pub fn add_growth_slopes(
+        &self,
+        drive: &Drive,
+        compression: &[f64],
+        fields: &Fields,
+        cycle: &CycleFields,
+        factor: f64,
+        matrix: &mut Mat<f64>,
+    ) {
+        let (n, inner) = (self.springs(), self.springs() - 1);
+        let pressure_scale = self.pressure_scale(fields);
+        if let Some(PlainSlopes { by_pressure, by_edge }) =
+            self.plain_growth_slopes(drive, fields, cycle, factor)
+        {
+            for j in 0..inner {
+                for i in 0..n {
+                    matrix[(i, j)] += by_pressure * self.operators.abel.pressure(i, j);
+                }
+            }
+            for (i, by_edge) in by_edge.into_iter().enumerate() {
+                matrix[(i, inner)] += by_edge;
+            }
+            return;
+        }
+        let motion = self.motion(drive, compression, fields, true);
+        let surface = self.surface(drive, &motion, compression, fields);
+        let worn = self.worn(&drive.wear, &surface, true);
+        let (steps, components) = (motion.steps(), motion.components);
+        let along = Mat::from_fn(n, steps * components, |i, c| {
+            let step = c / components;
+            let slips = surface.path[(i, step)] > 0.0;
+            if slips { worn.by_path[(i, step)] * surface.direction[(i, c)] } else { 0.0 }
+        });
+        let smeared = match drive.wear {
+            WearLaw::NonLocal { length, .. } => {
+                Some(self.smeared_pressure(drive, &motion, compression, fields, length))
+            }
+            _ => None,
+        };
+        let pressure = |i: usize, j: usize| match &smeared {
+            Some(smeared) => smeared[(i, j)],
+            None => self.operators.abel.pressure(i, j),
+        };
+        let per_cycle = factor / drive.cycles_per_period;
+        let scale = fields.edge.powf(self.mu());
+        let profile = self.operators.abel.profile();
+        let total: Vec<f64> = (0..n).map(|i| worn.by_pressure.row(i).iter().sum()).collect();
+        for columns in blocks(inner) {
+            let (first, count) = (columns.start, columns.len());
+            let mut by_slip = Mat::zeros(n, count);
+            product(&mut by_slip, along.as_ref(), motion.slip_slope.subrows(first, count).transpose(), 1.0);
+            let mut by_pressure = Mat::zeros(n, count);
+            if motion.load.ncols() == 1 {
+                by_pressure = Mat::from_fn(n, count, |i, j| total[i] * motion.load_slope[(first + j, 0)]);
+            } else {
+                let slopes = motion.load_slope.subrows(first, count).transpose();
+                product(&mut by_pressure, worn.by_pressure.as_ref(), slopes, 1.0);
+            }
+            for j in columns {
+                for i in 0..n {
+                    let carried = scale * profile[(i, j)] * fields.density_factor[j];
+                    let worn = by_pressure[(i, j - first)] * pressure_scale * pressure(i, j)
+                        + by_slip[(i, j - first)] * carried;
+                    matrix[(i, j)] +=
+                        (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
+                }
+            }
+        }
+        if let WearLaw::NonLocal { .. } = drive.wear {
+            for j in 0..inner {
+                let (filled, slope) = self.filled(drive, Some(compression[j]));
+                if filled > 0.0 {
+                    matrix[(j, j)] += factor * cycle.growth[j] * slope / filled;
+                }
+            }
+        }
+        if let Some(by_amplitude) = &motion.amplitude_slope {
+            // The amplitude follows from the balance of forces: all springs move a little farther.
+            let moved = self.carried(fields, (0..inner).map(|j| 4.0 * (by_amplitude.slips[j] - 1.0)));
+            for i in 0..n {
+                let slip = moved[i] + 4.0 * self.uniform_slip(fields, i);
+                let growth = per_cycle * worn.by_path[(i, 0)] * slip / fields.slip_depth[i];
+                for j in 0..inner {
+                    matrix[(i, j)] += growth * by_amplitude.by_compression[j];
+                }
+            }
+        }
+        let edge = fields.edge * (1.0 + DIFFERENCE);
+        let mut moved = Fields::default();
+        self.evaluate_at(&fields.place, edge, compression, &mut moved);
+        let after = if drive.path.is_some() {
+            // What springs do is a matter of their compressions alone.
+            let worn = self.worn(&drive.wear, &self.surface(drive, &motion, compression, &moved), false);
+            growth(drive, &worn, &moved)
+        } else {
+            self.cycle(drive, compression, &moved).growth
+        };
+        for i in 0..n {
+            matrix[(i, inner)] += factor * (after[i] - cycle.growth[i]) / (edge - fields.edge);
+        }
+    }
+
+    /// Pressures over `scale`, shape `(springs, steps)`, of loads of the springs inside the edge, shape `(springs - 1, steps)`.
+    fn pressures(&self, to: &mut Mat<f64>, load: &Mat<f64>, scale: f64) {
+        let inner = load.nrows();
+        let next = |j: usize, m: usize| if j + 1 < inner { load[(j + 1, m)] } else { 0.0 };
+        let differences = Mat::from_fn(inner, load.ncols(), |j, m| next(j, m) - load[(j, m)]);
+        let weights = self.operators.abel.pressure_by_differences().subcols(0, inner);
+        product(to, weights, differences.as_ref(), scale);
+    }
+
+    /// `c_N/π Z^(-μ)`, the factor of Eq. (21).
+    pub(super) fn pressure_scale(&self, fields: &Fields) -> f64 {
+        self.contact.half_space().normal_stiffness() / std::f64::consts::PI * fields.edge.powf(-self.mu())
+    }
+
+    /// `F 1` at a spring.
+    pub(super) fn uniform_slip(&self, fields: &Fields, spring: usize) -> f64 {
+        fields.unworn[spring].limit_slip / fields.place.slip_compression
+    }
+
+    /// `F` of values at the springs inside the edge, shape `(springs,)`.
+    pub(super) fn carried(&self, fields: &Fields, values: impl Iterator<Item = f64>) -> Vec<f64> {
+        let density: Vec<f64> =
+            values.zip(&fields.density_factor).map(|(value, factor)| value * factor).collect();
+        let mut depth = vec![0.0; self.springs()];
+        self.operators.abel.transforms()[0].apply(&density, &mut depth);
+        let scale = fields.edge.powf(self.mu());
+        depth.iter_mut().for_each(|value| *value *= scale);
+        depth
+    }
+
+    /// Energy, J, of energies per normal stiffness of the springs, m².
+    fn spring_energy(&self, fields: &Fields, energies: impl Iterator<Item = f64>) -> f64 {
+        let densities: Vec<f64> =
+            energies.zip(&fields.density_factor).map(|(e, factor)| e * factor).collect();
+        self.contact.half_space().normal_stiffness()
+            * fields.edge
+            * dot(self.operators.abel.spring_sum(), &densities)
+    }
+
+    /// How far debris fills the gap under a spring of some compression at the largest indentation, and the derivative.
+    ///
+    /// ```text
+    /// 1 in contact,    (1 - (q/h)²)² for -h < q < 0,    0 beyond
+    /// ```
+    fn filled(&self, drive: &Drive, compression: Option<f64>) -> (f64, f64) {
+        let Some(compression) = compression else { return (1.0, 0.0) };
+        let layer = DEBRIS_LAYER * self.contact.slip_compression();
+        let part = ((compression - drive.lift) / layer).clamp(-1.0, 0.0);
+        let left = 1.0 - part * part;
+        (left * left, -4.0 * left * part / layer)
+    }
+
+    /// How the pressure that debris passes on follows the compressions, over the factor of Eq. (21).
+    fn smeared_pressure(
+        &self,
+        drive: &Drive,
+        motion: &Motion,
+        compression: &[f64],
+        fields: &Fields,
+        length: f64,
+    ) -> Mat<f64> {
+        let (n, inner) = (self.springs(), self.springs() - 1);
+        let steps = motion.load.ncols();
+        let mut pressed = Mat::zeros(n, steps);
+        self.pressures(&mut pressed, &motion.load, self.pressure_scale(fields));
+        let least = LEAST_DEBRIS * self.contact.mean_pressure();
+        let mean = |i: usize| pressed.row(i).iter().sum::<f64>() / steps as f64;
+        let slopes: Vec<f64> = (0..n).map(|i| pressing(mean(i), least).1).collect();
+        let touching = Mat::from_fn(n, inner, |i, j| slopes[i] * self.operators.abel.pressure(i, j));
+        let mut smeared = Mat::zeros(n, inner);
+        product(&mut smeared, self.smearing(fields, length).as_ref(), touching.as_ref(), 1.0);
+        for i in 0..n {
+            let (filled, _) = self.filled(drive, compression.get(i).copied());
+            (0..inner).for_each(|j| smeared[(i, j)] *= filled);
+        }
+        smeared
+    }
+
+    /// Averages over a Gaussian weight along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well
+    /// inside and to nothing there: else ground would wear where no pressure is at all.
+    ///
+    /// ```text
+    /// sum of row r = 1 - exp(-(a - r)/length)
+    /// ```
+    fn smearing(&self, fields: &Fields, length: f64) -> Mat<f64> {
+        let radii: Vec<f64> = self.spring_radii(fields);
+        let n = radii.len();
+        let inside = fields.place.stick_area.sqrt();
+        let width = |j: usize| {
+            let before = if j == 0 { inside } else { radii[j - 1] };
+            0.5 * (radii[(j + 1).min(n - 1)] - before)
+        };
+        let widths: Vec<f64> = (0..n).map(width).collect();
+        let mut weights = Mat::from_fn(n, n, |i, j| {
+            let distance = (radii[i] - radii[j]) / length;
+            widths[j] * (-0.5 * distance * distance).exp()
+        });
+        for i in 0..n {
+            let sum: f64 = weights.row(i).iter().sum();
+            let kept = -(-(radii[n - 1] - radii[i]) / length).exp_m1();
+            for j in 0..n {
+                weights[(i, j)] *= kept / sum;
+            }
+        }
+        weights
+    }
+
+    /// Radii of the springs, m.
+    fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
+        let squared = |x: &f64| fields.place.stick_area + fields.edge * x;
+        self.operators.abel.nodes()[1..].iter().map(|x| squared(x).sqrt()).collect()
+    }
+
+    /// Radius of the innermost spring that slips; the mesh begins where the first one does.
+    fn stick_radius(&self, motion: &Motion, fields: &Fields) -> f64 {
+        let slips = |j: &usize| (0..motion.slip.ncols()).any(|m| motion.slip[(*j, m)] != 0.0);
+        match (0..motion.slip.nrows()).find(slips) {
+            Some(0) => fields.place.stick_area.sqrt(),
+            Some(j) => (fields.place.stick_area + fields.edge * self.operators.abel.nodes()[j]).sqrt(),
+            None => (fields.place.stick_area + fields.edge).sqrt(),
+        }
+    }
+}
+
+/// `W/S` at the springs.
+fn growth(drive: &Drive, worn: &Worn, fields: &Fields) -> Vec<f64> {
+    let per_cycle = drive.cycles_per_period.recip();
+    worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect()
+}
+
+/// `to = scale · left · right`.
+fn product(to: &mut Mat<f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>, scale: f64) {
+    matmul(to.as_mut(), Accum::Replace, left, right, scale, Par::Seq);
+}
+
+/// `to = |left| right` for the leading columns of `left`, some at a time, so that no second matrix of that size is held.
+fn product_without_signs(to: &mut Mat<f64>, left: &Mat<f64>, right: MatRef<'_, f64>) {
+    to.fill(0.0);
+    for columns in blocks(right.nrows()) {
+        let part = Mat::from_fn(left.nrows(), columns.len(), |i, j| left[(i, columns.start + j)].abs());
+        let rows = right.subrows(columns.start, columns.len());
+        matmul(to.as_mut(), Accum::Add, part.as_ref(), rows, 1.0, Par::Seq);
+    }
+}
+
+/// Columns of a matrix, some at a time.
+fn blocks(columns: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    (0..columns).step_by(BLOCK).map(move |first| first..(first + BLOCK).min(columns))
+}
+
+/// Makes the vectors along each row unit vectors, or zero.
+fn normalise(vectors: &mut Mat<f64>, components: usize) {
+    for first in (0..vectors.ncols()).step_by(components) {
+        for i in 0..vectors.nrows() {
+            let norm = (first..first + components).map(|c| vectors[(i, c)].powi(2)).sum::<f64>().sqrt();
+            for c in first..first + components {
+                vectors[(i, c)] = if norm > 0.0 { vectors[(i, c)] / norm } else { 0.0 };
+            }
+        }
+    }
+}
+
+/// Pressure that debris passes on, and its slope: none of tension, and from `least` on all but half of that.
+fn pressing(p: f64, least: f64) -> (f64, f64) {
+    if p <= 0.0 {
+        (0.0, 0.0)
+    } else if p < least {
+        (0.5 * p * p / least, p / least)
+    } else {
+        (p - 0.5 * least, 1.0)
+    }
+}
+
+/// `p^α` and its slope, odd in `p`, in proportion to `p` well below `least`.
+fn eased_power(p: f64, exponent: f64, least: f64) -> (f64, f64) {
+    if exponent == 1.0 {
+        return (p, 1.0);
+    }
+    let squared = p * p + least * least;
+    let power = squared.powf(0.5 * (exponent - 1.0));
+    (p * power, power * (1.0 + (exponent - 1.0) * p * p / squared))
+}

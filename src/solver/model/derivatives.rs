@@ -1,0 +1,159 @@
+//! How the fields change with the state, and the rates of the state that follow.
+
+use faer::Mat;
+
+use super::{CycleFields, Fields, Model};
+use crate::error::{Error, Result};
+use crate::numerics::grid::{Clustering, MOST_POINTS, Mesh};
+use crate::numerics::linear::dot;
+
+/// Weights of a derivative `ξ d/dξ` at one spring.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stencil {
+    first: usize,
+    count: usize,
+    weights: [f64; MOST_POINTS],
+}
+
+impl Stencil {
+    /// The first spring, and the weights of it and the next ones.
+    pub(super) fn parts(&self) -> (usize, &[f64]) {
+        (self.first, &self.weights[..self.count])
+    }
+
+    fn apply(&self, values: &[f64]) -> f64 {
+        dot(&self.weights[..self.count], &values[self.first..self.first + self.count])
+    }
+}
+
+/// Weights of `ξ d/dξ` at every spring.
+///
+/// The material moves inwards past the springs, so the stencils lean outwards. On a smooth mesh they reach beyond the contact edge, where
+/// nothing wears: so do those of the last springs not depend on what lies behind the wave alone.
+pub(super) fn derivative_stencils(mesh: &Mesh) -> Vec<Stencil> {
+    let last = mesh.cells();
+    let smooth = mesh.clustering() == Clustering::Smooth;
+    let points = mesh.clustering().degree() + 1;
+    let stencil = |node: usize| {
+        let nodes = Mesh::stencil(node, points, if smooth { last + points } else { last });
+        let place = mesh.node(node);
+        // At the contact edge itself the slope of the map is zero, and nothing asks for a derivative there.
+        let scale = if node == last { 0.0 } else { place.value / place.slope };
+        let weights = mesh.lagrange_derivative(&nodes, node as f64, &place).map(|w| w * scale);
+        Stencil { first: nodes.start - 1, count: nodes.end.min(last + 1) - nodes.start, weights }
+    };
+    (1..=last).map(stencil).collect()
+}
+
+impl Model {
+    /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
+    pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
+        self.operators.derivative.iter().map(|stencil| stencil.apply(values)).collect()
+    }
+
+    /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.
+    pub fn elastic_depth_by_edge(&self, fields: &Fields) -> Vec<f64> {
+        let mu = self.mu();
+        let nodes = &self.operators.abel.nodes()[1..];
+        let moved: Vec<f64> = fields
+            .density
+            .iter()
+            .zip(nodes)
+            .map(|(u, x)| -mu * u * x / (fields.place.stick_area + fields.edge * x))
+            .collect();
+        let mut change = vec![0.0; self.springs()];
+        self.operators.abel.transforms()[0].apply(&moved, &mut change);
+        let scale = fields.edge.powf(mu);
+        change
+            .iter()
+            .zip(&fields.elastic_depth)
+            .map(|(c, depth)| scale * c + mu / fields.edge * depth)
+            .collect()
+    }
+
+    /// Derivative of `λ` by the edge at constant compressions, 1/m², shape `(springs,)`.
+    pub fn log_slip_by_edge(&self, fields: &Fields) -> Vec<f64> {
+        let elastic = self.elastic_depth_by_edge(fields);
+        let nodes = &self.operators.abel.nodes()[1..];
+        let rate = |i: usize| {
+            let slopes = self.unworn.slopes(&fields.unworn[i]);
+            (nodes[i] * slopes.limit_slip - elastic[i]) / fields.slip_depth[i] - nodes[i] * slopes.log_slip
+        };
+        let mut by_edge = vec![0.0; nodes.len()];
+        self.on_springs(&mut by_edge, rate);
+        by_edge
+    }
+
+    /// Derivative of the elastic depth at spring `i` by the compression of spring `j`, over `Z^(1-ν)`: `F_ij x_j^(k-1)`.
+    pub fn elastic_depth_by_compression(&self, fields: &Fields, i: usize, j: usize) -> f64 {
+        self.operators.abel.profile()[(i, j)] * fields.density_factor[j]
+    }
+
+    /// Rates per cycle of the edge, m², and of the compressions, m, that follow from a cycle: wear as an explicit differential
+    /// equation.
+    pub fn rates(&self, fields: &Fields, cycle: &CycleFields) -> (f64, Vec<f64>) {
+        let inner = self.springs() - 1;
+        let by_edge = self.log_slip_by_edge(fields);
+        let along = self.along_annulus(&fields.log_slip);
+        let slip = &fields.slip_depth;
+        let mut worn: Vec<f64> = (0..inner).map(|i| -cycle.growth[i] * slip[i]).collect();
+        let mut moved: Vec<f64> =
+            (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
+        // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.
+        let edge_slope = slip[inner] * by_edge[inner];
+        let at_edge = [&mut worn, &mut moved].map(|depth| self.operators.solve_profile(depth));
+        let edge_rate = -at_edge[0] / (at_edge[1] - edge_slope);
+        let scale = fields.edge.powf(-self.mu());
+        let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * edge_rate);
+        (edge_rate, (0..inner).map(rate).collect())
+    }
+
+    /// Moves the edge to where the wear depth of the compressions is zero.
+    pub fn close_edge(&self, edge: f64, compression: &[f64]) -> Result<f64> {
+        let last = self.springs() - 1;
+        let mut edge = edge;
+        let mut fields = Fields::default();
+        for _ in 0..20 {
+            self.evaluate(edge, compression, &mut fields);
+            let slopes = self.unworn.slopes(&fields.unworn[last]);
+            let slope = slopes.limit_slip
+                - fields.unworn[last].slip * slopes.log_slip
+                - self.elastic_depth_by_edge(&fields)[last];
+            let change = -fields.wear_depth[last] / slope;
+            edge += change;
+            if change.abs() <= 1e-15 * edge {
+                return Ok(edge);
+            }
+            if !(edge > 0.0 && edge < self.unworn.largest_edge()) {
+                break;
+            }
+        }
+        Err(Error::NotConverged {
+            what: "contact edge",
+            why: format!("a² - c² = {edge:e} m² after 20 iterations"),
+        })
+    }
+
+    /// Adds the derivatives of `λ` by the compressions, from the left times `I - θ ξ ∂/∂ξ`, to the leading columns of a matrix.
+    pub fn add_log_slip_by_compression(&self, fields: &Fields, theta: f64, matrix: &mut Mat<f64>) {
+        let n = self.springs();
+        let scale = fields.edge.powf(self.mu());
+        let per_slip: Vec<f64> = fields.slip_depth.iter().map(|s| -scale / s).collect();
+        let mut changed = vec![0.0; n];
+        for j in 0..n - 1 {
+            // Cells inside a radius add nothing to it but through the stencils that reach one node back and two ahead.
+            let first = j.saturating_sub(MOST_POINTS);
+            let factor = fields.density_factor[j];
+            let column = self.operators.abel.profile().col_as_slice(j);
+            for ((change, column), slip) in changed.iter_mut().zip(column).zip(&per_slip).skip(first) {
+                *change = factor * column * slip;
+            }
+            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.operators.derivative);
+            for (i, (entry, stencil)) in rows.enumerate().take(n - 1).skip(first) {
+                let along = stencil.apply(&changed);
+                *entry += changed[i] - theta * along;
+            }
+            changed[first] = 0.0;
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Fretting loops: tangential displacement and force along one period.
+
+use std::f64::consts::PI;
+
+use super::schedule::Drive;
+use super::{CycleFields, Fields, Model};
+use crate::contact::spring::{Shakedown, SpringCycle, steady_cycle};
+use crate::laws::friction::FrictionLaw;
+use crate::laws::loading::Mode;
+use crate::laws::path::{Path, PathPoint};
+use crate::numerics::quadrature::Rule;
+
+/// Nodes of the quadrature over the core that no cycle reaches.
+const CORE_NODES: usize = 24;
+
+/// Displacement and force along one period, the last point of which is the first again.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FrettingLoop {
+    /// Tangential displacement along x and y, m, shape `(point,)` each.
+    pub displacement: [Vec<f64>; 2],
+    /// Tangential force along x and y, N, shape `(point,)` each.
+    pub force: [Vec<f64>; 2],
+    /// Work of the tangential displacement in the period, J: energy that friction dissipates and what jumps from the static to the
+    /// kinetic limit lose.
+    pub work: f64,
+}
+
+impl FrettingLoop {
+    /// Largest tangential force along the loop, N.
+    pub fn largest_force(&self) -> f64 {
+        let [x, y] = &self.force;
+        x.iter().zip(y).map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max)
+    }
+
+    /// Area of the loop by the trapezoidal rule, J: [`FrettingLoop::work`] to second order in the distance of the points.
+    ///
+    /// ```text
+    /// ∮ F·du
+    /// ```
+    pub fn area(&self) -> f64 {
+        let along = |force: &[f64], displacement: &[f64]| -> f64 {
+            let steps = force.windows(2).zip(displacement.windows(2));
+            steps.map(|(f, u)| 0.5 * (f[0] + f[1]) * (u[1] - u[0])).sum()
+        };
+        (0..2).map(|axis| along(&self.force[axis], &self.displacement[axis])).sum()
+    }
+}
+
+impl Model {
+    /// The loop of the cycle that is under way.
+    ///
+    /// Where the plain cycle holds, by Masing's rule ([`Model::fretting_loop`]); else from the springs, each of which follows the path by
+    /// [`steady_cycle`], and is exact at every point:
+    ///
+    /// ```text
+    /// F = M c_N { 2 ∫_0^c x^k e dx + 2 ∫_c^a x^k e dx }
+    /// ```
+    ///
+    /// with the deflections `e`. The springs of the core within `c` stick and follow the indenter, each from the place where it came to rest
+    /// while the contact was pressed on.
+    ///
+    /// # Arguments
+    /// * `drive` -- what acts
+    /// * `cycle` -- what it does, of [`Model::cycle`]
+    /// * `compression` -- of the springs, m, of the state
+    /// * `fields` -- of the state
+    /// * `steps` -- even; of a loop to and fro at constant indentation. Other modes have those of their path.
+    pub fn cycle_loop(
+        &self,
+        drive: &Drive,
+        cycle: &CycleFields,
+        compression: &[f64],
+        fields: &Fields,
+        steps: usize,
+    ) -> FrettingLoop {
+        let first = FrictionLaw::Coulomb(*self.contact.friction());
+        let unchanged = drive.friction == first && drive.amplitude == self.contact.amplitude();
+        if unchanged && self.slip_per_depth(drive, fields).is_some() {
+            let displacement = to_and_fro(self.contact.amplitude(), steps);
+            let force = self.fretting_loop(fields, compression, &displacement);
+            let none = vec![0.0; displacement.len()];
+            return FrettingLoop {
+                displacement: [displacement, none.clone()],
+                force: [force, none],
+                work: cycle.dissipation,
+            };
+        }
+        let tangential = self.schedule.conditions().mode == Mode::Tangential;
+        match drive.path.as_deref().filter(|_| !tangential) {
+            Some(path) => self.spring_loop(drive, path, compression, fields),
+            None => {
+                let lift = drive.path.as_ref().map_or(drive.lift, |path| path.points[0].lift);
+                let place = |u: f64| PathPoint { tangential: [u, 0.0], lift };
+                let mut points: Vec<PathPoint> =
+                    to_and_fro(cycle.amplitude, steps).into_iter().map(place).collect();
+                points.pop();
+                self.spring_loop(drive, &Path { points }, compression, fields)
+            }
+        }
+    }
+
+    fn spring_loop(&self, drive: &Drive, path: &Path, compression: &[f64], fields: &Fields) -> FrettingLoop {
+        let half_space = self.contact.half_space();
+        let ratio = half_space.stiffness_ratio();
+        let steps = path.points.len();
+        let displacement =
+            [0, 1].map(|axis| (0..=steps).map(|m| path.points[m % steps].tangential[axis]).collect());
+        let mut force = [0, 1].map(|_| vec![0.0; steps + 1]);
+        let mut work = 0.0;
+        let mut spring = SpringCycle::default();
+        let mut add = |stiffness: f64, compression: f64| {
+            steady_cycle(path, &drive.friction, ratio, compression, &Shakedown::default(), &mut spring);
+            work += stiffness * spring.work;
+            for (axis, force) in force.iter_mut().enumerate() {
+                for (total, deflection) in force[1..].iter_mut().zip(&spring.deflection) {
+                    *total += ratio * stiffness * deflection[axis];
+                }
+            }
+        };
+        // In y = x^(1+k), which leaves no power of x.
+        let exponent = 1.0 + half_space.grading();
+        let core =
+            2.0 * half_space.normal_stiffness() * fields.place.stick_area.powf(0.5 * exponent) / exponent;
+        let (profile, radius) = (self.contact.equivalent_profile(), fields.place.stick_area.sqrt());
+        let rule = Rule::legendre(CORE_NODES).expect("a rule of few nodes");
+        for (part, weight) in rule.nodes.iter().zip(&rule.weights) {
+            let x = radius * part.powf(exponent.recip());
+            add(core * weight, self.contact.indentation() - profile.value(x));
+        }
+        let annulus = half_space.normal_stiffness() * fields.edge;
+        let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
+        for ((q, factor), sum) in springs {
+            add(annulus * sum * factor, q.max(0.0));
+        }
+        for force in &mut force {
+            force[0] = force[steps];
+        }
+        FrettingLoop { displacement, force, work }
+    }
+}
+
+/// Displacements, m, from the amplitude to its negative and back, denser next to the reversals.
+fn to_and_fro(amplitude: f64, steps: usize) -> Vec<f64> {
+    let turn = steps / 2;
+    let way_down = |i: usize| amplitude * (PI * i as f64 / turn as f64).cos();
+    // Exactly the same displacements on the way back.
+    (0..=steps).map(|i| way_down(i.min(steps - i))).collect()
+}

@@ -1,0 +1,333 @@
+//! How the springs slip in one period, in closed form or step by step.
+
+use faer::Mat;
+
+use super::schedule::{Demand, Drive};
+use super::{Fields, Model};
+use crate::contact::spring::{Response, Shakedown, SpringCycle, steady_cycle};
+use crate::contact::stick_slip::slip_amplitude_of_spring;
+use crate::laws::path::Path;
+use crate::laws::wear::WearLaw;
+use crate::numerics::linear::dot;
+use crate::numerics::roots::bracketed;
+
+/// Change of a compression, relative to the one at the edge of stick, by which slopes are found.
+const DIFFERENCE: f64 = 1e-7;
+
+/// What the springs inside the contact edge do in one period.
+pub(super) struct Motion {
+    /// Tangential amplitude of the contact, m.
+    pub amplitude: f64,
+    /// Slip in each step, m, shape `(springs - 1, steps · components)`.
+    pub slip: Mat<f64>,
+    /// Slip of a spring without compression, m, shape `(steps · components,)`.
+    pub free: Vec<f64>,
+    /// One where all slip along a line, else two.
+    pub components: usize,
+    /// What presses in each step, m: the mean compression, or what resists slip where wear goes by energy; shape
+    /// `(springs - 1, steps)`, or one column if it is the same in all.
+    pub load: Mat<f64>,
+    /// By spring, shape `(springs - 1,)`.
+    pub energies: Vec<Energies>,
+    /// Derivatives of `slip` and `load` by the compression of their spring.
+    pub slip_slope: Mat<f64>,
+    pub load_slope: Mat<f64>,
+    /// Where the amplitude depends on the compressions.
+    pub amplitude_slope: Option<AmplitudeSlope>,
+}
+
+/// Energies of one spring in one period, over its normal stiffness, m².
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Energies {
+    /// Work of kinetic friction.
+    pub dissipation: f64,
+    /// What jumps from static to kinetic friction lose beyond it.
+    pub jump_loss: f64,
+    /// Work of the indenter.
+    pub work: f64,
+}
+
+/// How the amplitude follows the compressions.
+pub(super) struct AmplitudeSlope {
+    /// Derivatives of the amplitude by the compressions.
+    pub by_compression: Vec<f64>,
+    /// One for the springs that slip, zero for the others.
+    pub slips: Vec<f64>,
+}
+
+impl Motion {
+    /// Steps of the period.
+    pub fn steps(&self) -> usize {
+        self.free.len() / self.components
+    }
+}
+
+impl Model {
+    /// How the springs slip; slopes only if they are asked for.
+    pub(super) fn motion(&self, drive: &Drive, compression: &[f64], fields: &Fields, slopes: bool) -> Motion {
+        match &drive.path {
+            Some(path) => self.resolved_motion(drive, path, compression, slopes),
+            None => self.closed_form_motion(drive, compression, fields, slopes),
+        }
+    }
+
+    /// Tangential oscillation at constant indentation: `4 σ(q)` in a single step.
+    fn closed_form_motion(
+        &self,
+        drive: &Drive,
+        compression: &[f64],
+        fields: &Fields,
+        slopes: bool,
+    ) -> Motion {
+        let ratio = self.contact.half_space().stiffness_ratio();
+        let lifted: Vec<f64> = compression.iter().map(|q| q - drive.lift).collect();
+        let amplitude = self.amplitude(drive, &lifted, fields);
+        let slip: Vec<(f64, f64)> =
+            lifted.iter().map(|q| slip_amplitude_of_spring(&drive.friction, ratio, amplitude, *q)).collect();
+        let energies = |(q, slip): (&f64, &(f64, f64))| -> Energies {
+            if slip.0 == 0.0 {
+                return Energies::default();
+            }
+            let held = drive.friction.static_strength(*q);
+            let dragged = drive.friction.kinetic_strength(*q);
+            // Each way from the kinetic limit on one side to the static one on the other, and from there on at the kinetic one.
+            let stuck = 0.5 * (held * held - dragged * dragged) / ratio;
+            let slides = 2.0 * amplitude - (held + dragged) / ratio;
+            Energies {
+                dissipation: 4.0 * dragged * slip.0,
+                jump_loss: (held - dragged).powi(2) / ratio,
+                work: 2.0 * (stuck + dragged * slides),
+            }
+        };
+        let inner = compression.len();
+        let amplitude_slope = (slopes && drive.demand != Demand::Displacement)
+            .then(|| self.amplitude_slope(drive, &lifted, &slip, fields));
+        let rows = if slopes { inner } else { 0 };
+        Motion {
+            amplitude,
+            slip: Mat::from_fn(inner, 1, |j, _| 4.0 * slip[j].0),
+            free: vec![4.0 * amplitude],
+            components: 1,
+            load: Mat::from_fn(inner, 1, |j, _| bearing(drive, compression[j], drive.lift)),
+            energies: lifted.iter().zip(&slip).map(energies).collect(),
+            slip_slope: Mat::from_fn(rows, 1, |j, _| 4.0 * slip[j].1),
+            load_slope: Mat::from_fn(rows, 1, |j, _| {
+                self.slope(|q| bearing(drive, q, drive.lift), compression[j])
+            }),
+            amplitude_slope,
+        }
+    }
+
+    /// Springs through the period of a path, with what goes one way between reversals as one step.
+    fn resolved_motion(&self, drive: &Drive, path: &Path, compression: &[f64], slopes: bool) -> Motion {
+        let components = if path.is_straight() { 1 } else { 2 };
+        let ways = path.ways();
+        let steps = ways.iter().max().map_or(0, |last| last + 1);
+        let (inner, columns) = (compression.len(), steps * components);
+        let mut springs = PathSprings {
+            drive,
+            path,
+            components,
+            ways,
+            ratio: self.contact.half_space().stiffness_ratio(),
+            difference: DIFFERENCE * self.contact.slip_compression(),
+            cycle: SpringCycle::default(),
+        };
+        let mut values = vec![0.0; columns];
+        let mut slope = vec![0.0; if slopes { columns } else { 0 }];
+        springs.pass(0.0, &mut values, &mut []);
+        let mut motion = Motion {
+            amplitude: drive.amplitude,
+            slip: Mat::zeros(inner, columns),
+            free: values.clone(),
+            components,
+            load: Mat::zeros(0, 0),
+            energies: Vec::with_capacity(inner),
+            slip_slope: Mat::zeros(if slopes { inner } else { 0 }, columns),
+            load_slope: Mat::zeros(0, 0),
+            amplitude_slope: None,
+        };
+        for (j, q) in compression.iter().enumerate() {
+            motion.energies.push(springs.pass(q.max(0.0), &mut values, &mut slope));
+            for (m, value) in values.iter().enumerate() {
+                motion.slip[(j, m)] = *value;
+            }
+            for (m, value) in slope.iter().enumerate() {
+                motion.slip_slope[(j, m)] = *value;
+            }
+        }
+        let count = path.points.len();
+        let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
+        let different = if path.is_level() { 1 } else { steps };
+        let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing(drive, q, lift)).iter().sum::<f64>();
+        motion.load = Mat::from_fn(inner, different, |j, m| mean(compression[j], m));
+        motion.load_slope = Mat::from_fn(if slopes { inner } else { 0 }, different, |j, m| {
+            self.slope(|q| mean(q, m), compression[j])
+        });
+        motion
+    }
+
+    /// Tangential amplitude of the contact, m: as prescribed, or by the balance of forces.
+    fn amplitude(&self, drive: &Drive, lifted: &[f64], fields: &Fields) -> f64 {
+        if drive.demand == Demand::Displacement {
+            return drive.amplitude;
+        }
+        let strength = drive.friction.static_strength(self.contact.slip_compression() - drive.lift);
+        let largest = strength / self.contact.half_space().stiffness_ratio();
+        let excess = |amplitude: f64| drive.excess(self.force(drive, lifted, fields, amplitude), amplitude);
+        // At the last stick radius the contact gives way.
+        bracketed(excess, 0.0, largest, 0.0).unwrap_or(largest)
+    }
+
+    /// Derivatives of the amplitude in the balance of forces.
+    fn amplitude_slope(
+        &self,
+        drive: &Drive,
+        lifted: &[f64],
+        slip: &[(f64, f64)],
+        fields: &Fields,
+    ) -> AmplitudeSlope {
+        let half_space = self.contact.half_space();
+        let slips: Vec<f64> = slip.iter().map(|(value, _)| f64::from(u8::from(*value > 0.0))).collect();
+        let weights: Vec<f64> = self
+            .operators
+            .abel
+            .spring_sum()
+            .iter()
+            .zip(&fields.density_factor)
+            .map(|(weight, factor)| half_space.normal_stiffness() * fields.edge * weight * factor)
+            .collect();
+        let ratio = half_space.stiffness_ratio();
+        let sticking: f64 =
+            weights.iter().zip(&slips).map(|(weight, slips)| ratio * weight * (1.0 - slips)).sum();
+        let by_amplitude = self.stuck_force(fields, 1.0) + sticking;
+        let [by_force, direct] = drive.demand.factors();
+        let by_compression = (0..lifted.len()).map(|j| {
+            let strength = slips[j] * self.slope(|q| drive.friction.kinetic_strength(q), lifted[j]);
+            -by_force * weights[j] * strength / (by_force * by_amplitude + direct)
+        });
+        AmplitudeSlope { by_compression: by_compression.collect(), slips: slips.clone() }
+    }
+
+    /// Amplitude of the tangential force, N, of springs lifted to `lifted`, m, moved by `amplitude`, m.
+    pub(super) fn force(&self, drive: &Drive, lifted: &[f64], fields: &Fields, amplitude: f64) -> f64 {
+        let half_space = self.contact.half_space();
+        let ratio = half_space.stiffness_ratio();
+        let borne: Vec<f64> = lifted
+            .iter()
+            .zip(&fields.density_factor)
+            .map(|(q, factor)| factor * (ratio * amplitude).min(drive.friction.kinetic_strength(*q)))
+            .collect();
+        self.stuck_force(fields, amplitude)
+            + half_space.normal_stiffness() * fields.edge * dot(self.operators.abel.spring_sum(), &borne)
+    }
+
+    /// Tangential force, N, of the springs within the last stick radius.
+    fn stuck_force(&self, fields: &Fields, amplitude: f64) -> f64 {
+        let half_space = self.contact.half_space();
+        let q = 1.0 + half_space.grading();
+        let tangential = half_space.stiffness_ratio() * half_space.normal_stiffness();
+        2.0 * tangential * amplitude * fields.place.stick_area.powf(0.5 * q) / q
+    }
+
+    /// Slope of a function of the compression of one spring, by a difference to the side of more compression.
+    fn slope(&self, function: impl Fn(f64) -> f64, compression: f64) -> f64 {
+        let difference = DIFFERENCE * self.contact.slip_compression();
+        (function(compression + difference) - function(compression)) / difference
+    }
+}
+
+/// Springs on the path of a drive.
+struct PathSprings<'a> {
+    drive: &'a Drive,
+    path: &'a Path,
+    components: usize,
+    /// The step to which each substep belongs.
+    ways: Vec<usize>,
+    ratio: f64,
+    /// Change of the compression, m, by which slopes are found.
+    difference: f64,
+    cycle: SpringCycle,
+}
+
+impl PathSprings<'_> {
+    /// Slip of a spring in each step, m, and its derivatives by the compression where there is room for them; energies.
+    fn pass(&mut self, compression: f64, slip: &mut [f64], slopes: &mut [f64]) -> Energies {
+        if let Some(response) = &self.drive.response {
+            return self.tabulated(response, compression, slip, slopes);
+        }
+        let energies = self.direct(compression, slip);
+        if !slopes.is_empty() {
+            self.direct(compression + self.difference, slopes);
+            for (slope, value) in slopes.iter_mut().zip(slip) {
+                *slope = (*slope - *value) / self.difference;
+            }
+        }
+        energies
+    }
+
+    fn tabulated(
+        &self,
+        response: &Response,
+        compression: f64,
+        slip: &mut [f64],
+        slopes: &mut [f64],
+    ) -> Energies {
+        let lifted = compression - self.path.points[0].lift;
+        if lifted < 0.0 {
+            slip.fill(0.0);
+            slopes.fill(0.0);
+            return Energies::default();
+        }
+        let limit = |q: f64| self.drive.friction.kinetic_strength(q) / self.ratio;
+        let by_limit = (!slopes.is_empty()).then_some(&mut *slopes);
+        let [dissipation, work] = response.at(limit(lifted), slip, by_limit);
+        let by_compression = (limit(lifted + self.difference) - limit(lifted)) / self.difference;
+        slopes.iter_mut().for_each(|slope| *slope *= by_compression);
+        Energies { dissipation: self.ratio * dissipation, jump_loss: 0.0, work: self.ratio * work }
+    }
+
+    fn direct(&mut self, compression: f64, slip: &mut [f64]) -> Energies {
+        let cycle = &mut self.cycle;
+        steady_cycle(self.path, &self.drive.friction, self.ratio, compression, &Shakedown::default(), cycle);
+        slip.fill(0.0);
+        if self.components == 1 && self.path.is_level() {
+            // What moved less what the deflection took up: a sum over the substeps would round off as many times.
+            let count = self.path.points.len();
+            let place = |m: usize| {
+                self.path.points[m % count].tangential[0] - cycle.deflection[(m + count - 1) % count][0]
+            };
+            let slips = if cycle.slip_path > 0.0 { 1.0 } else { 0.0 };
+            for (m, way) in self.ways.iter().enumerate() {
+                let before = self.ways[(m + count - 1) % count];
+                if before != *way {
+                    slip[before] += slips * place(m);
+                    slip[*way] -= slips * place(m);
+                }
+            }
+        } else {
+            for (way, substep) in self.ways.iter().zip(&cycle.slip) {
+                for (axis, value) in substep[..self.components].iter().enumerate() {
+                    slip[self.components * way + axis] += value;
+                }
+            }
+        }
+        Energies { dissipation: cycle.dissipation, jump_loss: cycle.jump_loss, work: cycle.work }
+    }
+}
+
+/// What the law of wear takes for the load of a spring of this compression at the largest indentation, lifted by `lift`, m: its
+/// compression, or what resists its slip where wear goes by energy.
+fn bearing(drive: &Drive, compression: f64, lift: f64) -> f64 {
+    let lifted = compression - lift;
+    // A spring that is never lifted loses contact by round-off only, about zero in the limit; that is better left as it is, for it wears
+    // back. Else springs may lose contact.
+    let by_round_off = lift == 0.0 && lifted < 0.0;
+    match drive.wear {
+        WearLaw::DissipatedEnergy { .. } if by_round_off => -drive.friction.kinetic_strength(-lifted),
+        WearLaw::DissipatedEnergy { .. } => drive.friction.kinetic_strength(lifted),
+        WearLaw::NonLocal { .. } => lifted.max(0.0),
+        _ if by_round_off => lifted,
+        _ => lifted.max(0.0),
+    }
+}

@@ -1,0 +1,440 @@
+//! An edge of stick that moves, and the mesh that begins there.
+//!
+//! `G = d - q_c` is the height of the equivalent profile at the edge of stick, `C = c²`, `S = F_c(q_c - q)` the slip depth from there on and
+//! `S_0` that of the unworn profile with the same edge. At a fixed radius
+//!
+//! ```text
+//! ∂S/∂N = W - G' Φ,    ∂S_0/∂N = -G_0' Φ,    Φ = F_c 1,    G_0 = g_0(c)
+//! ```
+//!
+//! since the integrand is zero at the edge and the ground within it at rest. So for `λ = ln(S/S_0)` on the moving springs
+//!
+//! ```text
+//! dλ/dN = W/S + (Φ/S_0) (G_0' - G' e^(-λ)) + (∂λ/∂ξ) (C' + ξ Z')/Z
+//! ```
+//!
+//! An edge that moves inwards comes upon unworn ground, `G = g_0(c)` and `λ = 0` there. One that moves outwards leaves worn ground behind,
+//! and `λ` stays finite: `g_0'(c) c' = G' e^(-λ)`. Where nothing wears, `S` is `S_0` less what was left behind,
+//! `K' = -(G' - G_0') Φ`, which the contact edge needs to know: there `S = S_0 + K`.
+
+mod jump;
+mod stage;
+
+use std::f64::consts::PI;
+
+use super::schedule::{Demand, Drive, Schedule};
+use super::{Fields, Model, Place, State};
+use crate::contact::InitialContact;
+use crate::contact::indenter::EquivalentProfile;
+use crate::error::{Error, Result};
+use crate::laws::history::History;
+use crate::laws::loading::TangentialControl;
+use crate::numerics::grid::Clustering;
+use crate::numerics::roots::bracketed;
+pub use stage::{StickTarget, StickTrial};
+
+/// Radii at which what was left behind is known, for interpolation over where the contact edge can be.
+const STATIONS: usize = 24;
+
+/// Indentation over the first one up to which a contact that slides under a held force is followed.
+const FARTHEST: f64 = 5.0;
+
+/// Compressions that differ by less than this part are the same by two ways.
+const SAME_COMPRESSION: f64 = 1e-9;
+
+/// What moves the edge of stick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Cause {
+    /// The coefficient of friction changes.
+    Friction,
+    /// This normal force, N, is held.
+    NormalForce(f64),
+    /// The tangential amplitude follows from a balance of forces.
+    Tangential,
+    /// This normal force, N, is held while the whole contact slides: the edge stays at the core of the mesh, `q_c = d - g_0(c)` grows.
+    Sliding(f64),
+}
+
+/// How the edge of stick moves.
+#[derive(Debug, Clone)]
+pub struct MovingStick {
+    cause: Cause,
+    /// Whether it moves outwards and leaves worn ground behind.
+    outwards: bool,
+    /// Whether it does so between blocks only.
+    jumps: bool,
+    /// Logarithms of the squares of the first and last radius of the stations.
+    span: [f64; 2],
+}
+
+/// The edge of stick, in a state.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StickEdge {
+    /// `C = c²`, m².
+    pub area: f64,
+    /// `G`, m.
+    pub depth: f64,
+    /// `∫_0^c x^k q dx`, m^(2+k).
+    pub load: f64,
+    /// Slip depth left behind, `K`, m, at the stations; empty where the edge moves inwards.
+    pub left_behind: Vec<f64>,
+    /// Wear depth at the radii of the output, m; empty where the edge moves inwards.
+    pub wear_depth: Vec<f64>,
+    /// Squared radii, m², increasing to the edge of stick, between which the ground that jumps of the edge left at rest is known; and by how much
+    /// wear has raised the equivalent profile there, m. Empty where none was left.
+    pub places_at_rest: Vec<f64>,
+    /// See [`StickEdge::places_at_rest`].
+    pub raised_at_rest: Vec<f64>,
+    /// Mean rates of area, m², and depth, m, per cycle in the last step.
+    pub rates: [f64; 2],
+}
+
+impl MovingStick {
+    /// How the edge of stick moves under a schedule; none if it stays, or moves to and fro.
+    ///
+    /// # Arguments
+    /// * `slides` -- whether no stick is left in some cycle
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] for a force that is held while friction falls or amplitudes grow, and for friction that changes under
+    /// normal oscillation, or is less in between than in the end, and for blocks of which the last slips less far than others before, unless they
+    /// differ by their amplitudes alone.
+    pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
+        let conditions = schedule.conditions();
+        if slides {
+            let sliding = conditions.holds_normal_force && conditions.blocks.is_empty();
+            let cause = Cause::Sliding(contact.normal_force());
+            return Ok(sliding.then_some(Self { cause, outwards: false, jumps: false, span: [0.0; 2] }));
+        }
+        let cause = match (conditions.holds_normal_force, conditions.tangential_control) {
+            (true, TangentialControl::Displacement) => Some(Cause::NormalForce(contact.normal_force())),
+            (true, _) => unreachable!("no schedule holds both forces"),
+            (false, TangentialControl::Displacement) => {
+                let changes = conditions.friction_history != History::Constant;
+                match &conditions.blocks[..] {
+                    [] => changes.then_some(Cause::Friction),
+                    blocks => {
+                        let shrink =
+                            blocks.windows(2).any(|pair| pair[1].amplitude_factor < pair[0].amplitude_factor)
+                                && blocks.iter().all(|it| {
+                                    it.indentation_factor == 1.0
+                                        && (f64::MIN_POSITIVE..=blocks[0].amplitude_factor)
+                                            .contains(&it.amplitude_factor)
+                                });
+                        let jumps = shrink && !changes && !conditions.repeat;
+                        if !jumps {
+                            check_rest(schedule, contact)?;
+                            return Ok(None);
+                        }
+                        let (cause, span) = (Cause::Friction, [0.0; 2]);
+                        return Ok(Some(Self { cause, outwards: true, jumps, span }));
+                    }
+                }
+            }
+            (false, _) => Some(Cause::Tangential),
+        };
+        let Some(cause) = cause else { return Ok(None) };
+        if cause == Cause::Friction && schedule.lifts() {
+            return Err(Error::Inconsistent {
+                what: "friction.history",
+                why: "is not followed where the indentation changes within a period: springs that are loaded for a part of it would be \
+                      worn too deep at an edge of stick that moves; leave out the history, or the normal oscillation"
+                    .into(),
+            });
+        }
+        let [falls, rises] = directions(&conditions.friction_history);
+        let outwards = match cause {
+            Cause::NormalForce(_) if falls || !conditions.blocks.is_empty() => {
+                return Err(Error::Inconsistent {
+                    what: "loading.normal_force",
+                    why: "is held with a constant or rising coefficient of friction and without blocks only: else the edge of stick \
+                          moves to and fro over worn ground; hold the indentation"
+                        .into(),
+                });
+            }
+            Cause::NormalForce(_) | Cause::Sliding(_) => true,
+            Cause::Friction if falls && rises => {
+                check_rest(schedule, contact)?;
+                return Ok(None);
+            }
+            Cause::Friction => rises,
+            Cause::Tangential if rises || !conditions.blocks.is_empty() => return Ok(None),
+            Cause::Tangential => false,
+        };
+        Ok(Some(Self { cause, outwards, jumps: false, span: [0.0; 2] }))
+    }
+
+    /// The contact with the largest indentation that can come, of which the limit bounds where wear can reach.
+    ///
+    /// Under a held force the unworn stick zone alone would bear it there.
+    pub(super) fn farthest(&self, contact: &InitialContact) -> Result<InitialContact> {
+        if let Cause::Sliding(_) = self.cause {
+            // Wear goes on without end; this is how far it is followed.
+            let core = contact.stick_radius().unwrap_or_default();
+            return contact.with_core(FARTHEST * contact.indentation(), core);
+        }
+        let Cause::NormalForce(force) = self.cause else { return Ok(contact.clone()) };
+        let half_space = contact.half_space();
+        let exponent = 1.0 + half_space.grading();
+        let profile = contact.equivalent_profile();
+        let stick = contact.stick_radius().unwrap_or_default();
+        let left = force / half_space.normal_stiffness() - profile.load_integral(stick);
+        let compression = left * exponent / (2.0 * stick.powf(exponent));
+        contact.at(profile.value(stick) + compression, compression)
+    }
+
+    /// The mesh that serves, where `asked` is the one for an edge of stick that stays.
+    pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
+        match self.cause {
+            _ if self.rests() => asked,
+            _ if self.outwards => Clustering::CreepingStick,
+            _ => Clustering::MovingStick,
+        }
+    }
+
+    /// Whether the contact slides as a whole under a held normal force, so that wear never ends.
+    pub fn slides(&self) -> bool {
+        matches!(self.cause, Cause::Sliding(_))
+    }
+
+    /// Whether the edge moves inwards, upon unworn ground.
+    pub fn recedes(&self) -> bool {
+        !self.outwards && !self.rests()
+    }
+
+    /// By how much area and depth of the edge of stick have changed in a stage, as far as ground passes it.
+    fn motion(&self, target: &StickTarget, area: f64, depth: f64) -> (f64, f64) {
+        if self.slides() { (0.0, 0.0) } else { (area - target.stick.area, depth - target.stick.depth) }
+    }
+
+    /// Whether the edge stays where it is during a step.
+    fn rests(&self) -> bool {
+        self.jumps || self.slides()
+    }
+
+    pub(super) fn with_span(mut self, first: f64, last: f64) -> Self {
+        self.span = [first.ln(), last.ln()];
+        self
+    }
+
+    /// What was left behind at a squared radius, m², of ground that the contact has come to; none where it was from the start.
+    pub(super) fn left_behind_outside(&self, stick: &StickEdge, squared: f64) -> Option<f64> {
+        (self.outwards && squared >= self.span[0].exp())
+            .then(|| self.left_behind(&stick.left_behind, squared))
+    }
+
+    /// Squares of the radii of the stations, m².
+    fn stations(&self) -> impl Iterator<Item = f64> {
+        let [first, last] = self.span;
+        (0..STATIONS).map(move |j| {
+            let part = 0.5 - 0.5 * (PI * (j as f64 + 0.5) / STATIONS as f64).cos();
+            (first + (last - first) * part).exp()
+        })
+    }
+
+    /// What was left behind at a squared radius, m².
+    fn left_behind(&self, values: &[f64], squared: f64) -> f64 {
+        let [first, last] = self.span;
+        let x = (squared.ln() - first) / (last - first);
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (j, value) in values.iter().enumerate() {
+            let angle = PI * (j as f64 + 0.5) / STATIONS as f64;
+            let distance = x - (0.5 - 0.5 * angle.cos());
+            if distance == 0.0 {
+                return *value;
+            }
+            let weight = if j % 2 == 0 { 1.0 } else { -1.0 } * angle.sin() / distance;
+            sum += weight * value;
+            weights += weight;
+        }
+        if weights == 0.0 { 0.0 } else { sum / weights }
+    }
+
+    /// The edge of stick of the unworn contact.
+    pub(super) fn start(&self, model: &Model) -> Result<StickEdge> {
+        let profile = model.contact.equivalent_profile();
+        let drive = model.schedule.drive(0.0, 0.0);
+        let compression = match self.cause {
+            Cause::Sliding(_) => {
+                let radius = model.place.stick_area.sqrt();
+                return Ok(StickEdge {
+                    area: model.place.stick_area,
+                    depth: model.place.slip_compression,
+                    load: unworn_load(profile, radius, model.contact.slip_compression()),
+                    ..StickEdge::default()
+                });
+            }
+            Cause::Tangential => model.first_slip_compression(&drive)?,
+            _ => drive.slip_compression(model.contact.half_space().stiffness_ratio()),
+        };
+        let depth = model.contact.indentation() - compression;
+        if depth <= 0.0 {
+            return Err(Error::Inconsistent {
+                what: "loading.amplitude",
+                why: format!(
+                    "at an amplitude of {:e} m the whole contact slides in the first cycle under a force that is held; reduce it",
+                    drive.amplitude
+                ),
+            });
+        }
+        let radius = profile.radius_at(depth)?;
+        let load = unworn_load(profile, radius, compression);
+        let behind = if self.outwards { STATIONS } else { 0 };
+        let nodes = if self.outwards { model.shown.offsets().len() } else { 0 };
+        Ok(StickEdge {
+            area: radius * radius,
+            depth,
+            load,
+            left_behind: vec![0.0; behind],
+            wear_depth: vec![0.0; nodes],
+            places_at_rest: vec![],
+            raised_at_rest: vec![],
+            rates: [0.0; 2],
+        })
+    }
+}
+
+/// Refuses an edge of stick that comes to rest on worn ground amidst a mesh that begins farther inside: what the springs next to it are off by grows
+/// as slip does, and moves it inwards. Worn volumes were 0.4 to 8 % off with any number of springs.
+fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
+    let ratio = contact.half_space().stiffness_ratio();
+    let largest = |drives: &mut dyn Iterator<Item = Drive>| {
+        drives.map(|drive| drive.slip_compression(ratio)).fold(0.0, f64::max)
+    };
+    let [last, most] = [largest(&mut schedule.lasting()), largest(&mut schedule.extremes())];
+    if last >= most * (1.0 - SAME_COMPRESSION) {
+        return Ok(());
+    }
+    let part = last / most;
+    let in_the_end = format!(
+        "in the end springs slip below {part:.4} of the largest compression at which they slipped before, so that the edge of stick comes to rest          within worn ground, which is not followed to any accuracy"
+    );
+    let (what, cure) = if schedule.conditions().blocks.is_empty() {
+        ("friction.history", "let the factors only fall, only rise, or end at their smallest")
+    } else {
+        (
+            "loading.blocks",
+            "repeat them, end with the one that slips farthest, or begin with it and let only positive amplitude factors differ",
+        )
+    };
+    Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
+}
+
+/// `∫_0^c x^k q dx` of unworn ground, m^(2+k).
+fn unworn_load(profile: &EquivalentProfile, radius: f64, slip_compression: f64) -> f64 {
+    let exponent = 1.0 + profile.grading();
+    0.5 * profile.load_integral(radius) + slip_compression * radius.powf(exponent) / exponent
+}
+
+/// Whether a history falls, and whether it rises, somewhere.
+fn directions(history: &History) -> [bool; 2] {
+    match history {
+        History::Constant => [false, false],
+        History::Exponential { last, .. } => [*last < 1.0, *last > 1.0],
+        History::Table { factors, .. } => [
+            factors.windows(2).any(|pair| pair[1] < pair[0]),
+            factors.windows(2).any(|pair| pair[1] > pair[0]),
+        ],
+    }
+}
+
+impl Model {
+    /// How the edge of stick moves, if it does.
+    pub fn moving(&self) -> Option<&MovingStick> {
+        self.moving.as_ref()
+    }
+
+    /// Where the mesh begins in a state.
+    pub(super) fn place_of(&self, stick: &StickEdge, drive: &Drive) -> Place {
+        let moving = self.moving.as_ref().expect("a stick edge in the state is one that moves");
+        let slip_compression = match moving.cause {
+            Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
+            Cause::NormalForce(_) => drive.slip_compression(self.contact.half_space().stiffness_ratio()),
+            Cause::Sliding(_) => stick.depth,
+        };
+        Place { stick_area: stick.area, slip_compression, stick_load: stick.load }
+    }
+
+    /// Puts what the quadrature over the springs leaves of a held force in the first cycle on the stick zone.
+    pub(super) fn close_force(&self, mut state: State) -> State {
+        let cause = self.moving.as_ref().map(|moving| moving.cause);
+        let Some(Cause::NormalForce(force) | Cause::Sliding(force)) = cause else { return state };
+        let left = force - self.normal_force(&self.fields(&state));
+        if let Some(stick) = &mut state.stick {
+            stick.load += 0.5 * left / self.contact.half_space().normal_stiffness();
+        }
+        state
+    }
+
+    /// What acts in a state: the amplitude is that at which springs at the edge of stick begin to slip.
+    pub fn drive_in(&self, state: &State, drive: Drive) -> Drive {
+        let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
+        match &state.stick {
+            Some(stick) if tangential => self.displaced(drive, self.contact.indentation() - stick.depth),
+            _ => drive,
+        }
+    }
+
+    pub(super) fn displaced(&self, drive: Drive, slip_compression: f64) -> Drive {
+        let amplitude =
+            drive.friction.static_strength(slip_compression) / self.contact.half_space().stiffness_ratio();
+        Drive { amplitude, demand: Demand::Displacement, ..drive }
+    }
+
+    /// Indentation in a state, m.
+    pub fn indentation(&self, state: &State) -> f64 {
+        match (&self.moving, &state.stick) {
+            (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
+                let drive = self.schedule.drive(state.cycles, state.cycles);
+                stick.depth + self.place_of(stick, &drive).slip_compression
+            }
+            (Some(MovingStick { cause: Cause::Sliding(_), .. }), Some(stick)) => {
+                self.contact.indentation() - self.place.slip_compression + stick.depth
+            }
+            _ => self.contact.indentation(),
+        }
+    }
+
+    /// Wear depth, m, at the radii of the output that the first contact did not cover, of a state with its fields: what slip has grown by.
+    ///
+    /// By the rates of the steps it would be off there, for wear sets in where the contact edge comes past a radius within a step.
+    pub fn settle_depth(&self, state: &mut State, fields: &Fields) {
+        let (Some(moving), Some(stick)) = (&self.moving, &mut state.stick) else { return };
+        let first = moving.span[0].exp();
+        for (offset, depth) in self.shown.offsets().iter().zip(&mut stick.wear_depth) {
+            let squared = self.place.stick_area + offset;
+            let z = squared - stick.area;
+            if squared < first || z <= 0.0 {
+                continue;
+            }
+            let x = z / fields.edge;
+            *depth = if x < 1.0 {
+                let unworn = self.unworn.at_stick(stick.area, fields.place.slip_compression, z).slip;
+                let grown = unworn * self.between_springs(&fields.log_slip, x).exp_m1();
+                (grown - moving.left_behind(&stick.left_behind, squared)).max(0.0)
+            } else {
+                0.0
+            };
+        }
+    }
+
+    /// Value between the springs of a quantity given at all of them.
+    pub(super) fn between_springs(&self, values: &[f64], x: f64) -> f64 {
+        let mesh = self.operators.abel.mesh();
+        mesh.interpolate(values, mesh.place(x))
+    }
+
+    /// Compression at the edge of stick of the unworn contact in the balance of forces, m.
+    fn first_slip_compression(&self, drive: &Drive) -> Result<f64> {
+        let ratio = self.contact.half_space().stiffness_ratio();
+        let depth = self.contact.indentation();
+        let largest = self.contact.slip_compression();
+        let excess = |compression: f64| {
+            let amplitude = drive.friction.static_strength(compression) / ratio;
+            let force = super::reach::first_force(&self.contact, &drive.friction, amplitude, depth)
+                .unwrap_or(f64::NAN);
+            drive.excess(force, amplitude)
+        };
+        bracketed(excess, 1e-12 * largest, largest, 0.0)
+    }
+}

@@ -1,0 +1,176 @@
+//! A jump of the edge of stick between two blocks.
+
+use super::StickEdge;
+use crate::error::Result;
+use crate::numerics::roots::bracketed;
+use crate::solver::model::{Model, Past, Place, State};
+
+/// Steps of the integrals over the ground that comes to rest, or that leaves it, in a jump of the edge of stick.
+const JUMP_STEPS: usize = 1000;
+
+/// Squared radii and compressions that differ by less than this part are the same by two ways.
+const SAME_PLACE: f64 = 1e-12;
+
+/// The equivalent profile when a block ends, from the springs and, within the edge of stick, from what was left there.
+struct Ground<'a> {
+    model: &'a Model,
+    /// Squared radius of the edge of stick, m².
+    stick_area: f64,
+    /// `Z`, m².
+    edge: f64,
+    /// Compressions at the springs, the contact edge included, m.
+    compression: Vec<f64>,
+    /// That at the edge of stick, m.
+    before: f64,
+    stick: &'a StickEdge,
+}
+
+impl Ground<'_> {
+    /// By how much wear has raised the equivalent profile at a squared radius, m.
+    fn raised(&self, squared: f64) -> f64 {
+        if squared < self.stick_area {
+            return self.stick.raised_at_rest(squared);
+        }
+        let (nodes, model) = (&self.model.operators.abel.nodes()[1..], self.model);
+        let compression = match (squared - self.stick_area) / self.edge {
+            // Next to the old edge, where springs may have lost their load within the first cell, the first spring's.
+            x if x < nodes[0] => {
+                self.compression[0] + (self.before - self.compression[0]) * (1.0 - x / nodes[0])
+            }
+            x => model.between_springs(&self.compression, x),
+        };
+        model.contact.indentation() - compression - model.contact.equivalent_profile().value(squared.sqrt())
+    }
+
+    /// Compression at a squared radius, m.
+    fn compression(&self, squared: f64) -> f64 {
+        let unworn = self.model.contact.equivalent_profile().value(squared.sqrt());
+        self.model.contact.indentation() - unworn - self.raised(squared)
+    }
+}
+
+impl StickEdge {
+    /// By how much wear has raised the equivalent profile within the edge of stick, m: linear between the places known.
+    fn raised_at_rest(&self, squared: f64) -> f64 {
+        let after = self.places_at_rest.partition_point(|place| *place <= squared);
+        match after {
+            0 => 0.0,
+            after if after == self.places_at_rest.len() => self.raised_at_rest[after - 1],
+            after => {
+                let [low, high] =
+                    [after - 1, after].map(|i| (self.places_at_rest[i], self.raised_at_rest[i]));
+                low.1 + (high.1 - low.1) * (squared - low.0) / (high.0 - low.0)
+            }
+        }
+    }
+}
+
+impl Model {
+    /// The state in which a new block begins: where the edge of stick jumps, the mesh begins anew there.
+    ///
+    /// Outwards the ground that comes to rest is kept. Inwards it is given back to the springs; within all that ever came to rest it is unworn.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`](crate::Error::NotConverged) if no spring has the compression at which stick would end.
+    pub fn begin_block(&self, state: State) -> Result<State> {
+        let (Some(moving), Some(stick)) = (&self.moving, &state.stick) else { return Ok(state) };
+        let drive = self.schedule.drive(state.cycles, state.cycles);
+        let compression = drive.slip_compression(self.contact.half_space().stiffness_ratio());
+        let before = self.contact.indentation() - stick.depth;
+        if !moving.jumps || (compression / before - 1.0).abs() < SAME_PLACE {
+            return Ok(state);
+        }
+        let profile = self.contact.equivalent_profile();
+        let exponent = 1.0 + profile.grading();
+        let mut on_springs = state.compression.clone();
+        on_springs.push(0.0);
+        let (old, edge) = (stick.area, state.edge);
+        let ground = Ground { model: self, stick_area: old, edge, compression: on_springs, before, stick };
+        let excess = |squared: f64| ground.compression(squared) - compression;
+        let [least, most] = [self.place.stick_area, old + edge];
+        let new = match compression {
+            _ if compression < before => bracketed(excess, old, most, 0.0)?,
+            _ if excess(least) <= 0.0 => least,
+            _ => bracketed(excess, least, old, 0.0)?,
+        };
+        let (mut left_behind, mut load) = (stick.left_behind.clone(), stick.load);
+        let (mut places_at_rest, mut raised_at_rest) =
+            (stick.places_at_rest.clone(), stick.raised_at_rest.clone());
+        // Outwards denser next to the old edge, as the springs are; inwards at the places known.
+        let mut places: Vec<f64> = if new > old {
+            (0..=JUMP_STEPS).map(|i| old + (new - old) * (i as f64 / JUMP_STEPS as f64).powi(4)).collect()
+        } else {
+            let known = places_at_rest.iter().copied().filter(|place| *place > new && *place < old);
+            let first = places_at_rest.first().map_or(old, |first| first.min(old));
+            let unworn = (0..JUMP_STEPS).map(|i| new + (first - new) * i as f64 / JUMP_STEPS as f64);
+            let unworn = unworn.filter(|place| *place < first);
+            let within = std::iter::once(new).filter(|_| new >= first);
+            unworn.chain(within).chain(known).chain([old]).collect()
+        };
+        places.dedup();
+        let sign = if new > old { 1.0 } else { -1.0 };
+        let raised: Vec<f64> = places.iter().map(|place| ground.raised(*place)).collect();
+        for (ends, heights) in places.windows(2).zip(raised.windows(2)) {
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let rise = sign * (heights[1] - heights[0]);
+            if rise != 0.0 {
+                for (value, squared) in left_behind.iter_mut().zip(moving.stations()) {
+                    *value -= rise * self.unworn.at_stick(middle, 1.0, squared - middle).limit_slip;
+                }
+            }
+            let borne = ground.compression(middle) * middle.powf(0.5 * (exponent - 2.0));
+            load += sign * 0.5 * (ends[1] - ends[0]) * borne;
+        }
+        if new > old {
+            let known = usize::from(!places_at_rest.is_empty());
+            places_at_rest.extend(&places[known..]);
+            raised_at_rest.extend(&raised[known..]);
+        } else {
+            let kept = places_at_rest.partition_point(|place| *place < new * (1.0 - SAME_PLACE));
+            places_at_rest.truncate(kept);
+            raised_at_rest.truncate(kept);
+            if kept > 0 {
+                places_at_rest.push(new);
+                raised_at_rest.push(stick.raised_at_rest(new));
+            } else {
+                // The ground within is unworn.
+                left_behind.fill(0.0);
+            }
+        }
+        let next = Place { stick_area: new, slip_compression: compression, stick_load: load };
+        // Slip is what is carried over: small numbers next to the edge of stick, where compressions differ by little.
+        let edge = edge - (new - old);
+        let mut fields = self.fields(&state);
+        self.evaluate_at(&next, edge, &state.compression, &mut fields);
+        let nodes = &self.operators.abel.nodes()[1..];
+        let (radius, at_edge) = (new.sqrt(), ground.raised(new));
+        let slipping = nodes.iter().map(|x| {
+            let rise = profile.rise(radius, edge * x) + ground.raised(new + edge * x) - at_edge;
+            rise.max(0.0)
+        });
+        let slip = self.carried(&fields, slipping);
+        // What is left behind is by another quadrature than the slip: the contact edge stays where it is.
+        let behind = moving.left_behind(&left_behind, new + edge);
+        let off = self.mismatch_at(&next, edge, |i, _| slip[i]) - behind;
+        left_behind.iter_mut().for_each(|value| *value += off);
+        let moved = self.compression_at(&next, edge, |i, _| slip[i]);
+        Ok(State {
+            edge,
+            compression_rate: vec![0.0; moved.len()],
+            compression: moved,
+            edge_rate: 0.0,
+            past: Past::default(),
+            stick: Some(StickEdge {
+                area: new,
+                depth: self.contact.indentation() - compression,
+                load,
+                left_behind,
+                wear_depth: stick.wear_depth.clone(),
+                places_at_rest,
+                raised_at_rest,
+                rates: [0.0; 2],
+            }),
+            ..state
+        })
+    }
+}

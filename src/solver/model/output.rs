@@ -1,0 +1,374 @@
+//! What is reported of a contact: integrals over it, and its fields at fixed radii.
+
+use std::f64::consts::PI;
+
+use super::{CycleFields, Fields, HIDDEN, Model, State, StickEdge};
+use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
+use crate::contact::stick_slip::Regime;
+use crate::numerics::grid::{Clustering, Mesh};
+use crate::numerics::linear::dot;
+
+/// Distance from the contact edge, over the annulus, that is round-off.
+const AT_EDGE: f64 = 1e-13;
+
+/// Places at which the fields on a smooth mesh are shown where its springs are fewer.
+const SHOWN: usize = 128;
+
+/// Most places shown: of more springs every second one, or every third, and so on, inwards from the contact edge. A file of a hundred snapshots
+/// takes 40 MB then.
+const MOST_SHOWN: usize = 16_384;
+
+/// Most springs at which the depth is compared from step to step.
+const MOST_JUDGED: usize = 4096;
+
+/// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
+/// innermost of them may be as strong as the core.
+const MIDDLE: f64 = 2.0;
+
+/// The fields on the fixed radii of the output, shape `(node,)` each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RadialFields {
+    /// Wear depth, m.
+    pub wear_depth: Vec<f64>,
+    /// Pressure, Pa, zero outside the contact; not a number where the ground has come to stick: springs tell it in the annulus alone.
+    pub pressure: Vec<f64>,
+    /// Slip amplitude, m, zero outside the contact.
+    pub slip: Vec<f64>,
+}
+
+impl Model {
+    /// The same contact on the same springs, with the radii of the output at `r² - c²`, m², increasing, instead of its own.
+    pub(crate) fn shown_at(mut self, offsets: Vec<f64>) -> Self {
+        self.shown =
+            Shown { unworn: offsets.iter().map(|offset| self.unworn.at(*offset)).collect(), offsets };
+        self
+    }
+
+    /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
+    pub fn wear_volume(&self, fields: &Fields) -> f64 {
+        self.volume(fields.edge, &fields.wear_depth)
+    }
+
+    /// Worn volume in a state, m³: where the edge of stick has left worn ground behind, by the rates of the cycles.
+    pub fn worn_volume(&self, state: &State, fields: &Fields) -> f64 {
+        match &state.stick {
+            Some(stick) if !stick.wear_depth.is_empty() => state.volume_by_rate,
+            _ => self.wear_volume(fields),
+        }
+    }
+
+    /// Worn volume of the limit by the program's own quadrature, m³.
+    pub fn limit_volume(&self) -> f64 {
+        let depth: Vec<f64> = self.radial_unworn.iter().map(UnwornValues::limit_depth).collect();
+        self.volume(self.unworn.limit_edge(), &depth)
+    }
+
+    /// Depth between the springs of the limit that these do not see in the unworn slip, over the limit's largest: waves of a table that are too
+    /// short for them. None where the indenter is no table, or the edge of stick moves.
+    pub fn unseen_depth(&self) -> Option<f64> {
+        self.contact.equivalent_profile().end_of_table()?;
+        if self.moving.is_some() {
+            return None;
+        }
+        let (mesh, count) = (self.operators.abel.mesh(), self.springs());
+        let smooth = |unworn: &UnwornValues| unworn.slip.ln() - (1.0 + self.mu()) * unworn.logarithm.ln();
+        let springs: Vec<f64> = self.radial_unworn.iter().map(smooth).collect();
+        let missed = |y: f64| {
+            let unworn = self.unworn.at(self.unworn.limit_edge() * mesh.at(y).value);
+            unworn.slip * (mesh.local(y, count).sum(&springs) - smooth(&unworn)).abs()
+        };
+        let between = (1..count).flat_map(|i| [0.25, 0.5, 0.75].map(|part| i as f64 + part));
+        Some(between.map(missed).fold(0.0, f64::max) / self.depth_scale)
+    }
+
+    pub(super) fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
+        PI * edge * dot(self.operators.abel.depth_sum(), wear_depth)
+    }
+
+    /// Normal force, N [S, Eq. (22)].
+    pub fn normal_force(&self, fields: &Fields) -> f64 {
+        let slipping =
+            fields.edge * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density);
+        self.contact.half_space().normal_stiffness() * (2.0 * fields.place.stick_load + slipping)
+    }
+
+    /// Energy that friction dissipates in one cycle, J.
+    ///
+    /// ```text
+    /// W = 8 μ_f c_N ∫_c^a x^k q (μ_f/M) (q_c - q) dx
+    /// ```
+    pub fn dissipation(&self, fields: &Fields, compression: &[f64]) -> f64 {
+        let friction = self.contact.friction().coefficient;
+        let half_space = self.contact.half_space();
+        let slipping = fields.place.slip_compression;
+        let sum: f64 = compression
+            .iter()
+            .zip(&fields.density)
+            .zip(self.operators.abel.spring_sum())
+            .map(|((q, u), weight)| weight * u * (slipping - q))
+            .sum();
+        4.0 * friction * friction / half_space.stiffness_ratio()
+            * half_space.normal_stiffness()
+            * fields.edge
+            * sum
+    }
+
+    /// Tangential force, N, when a contact without tangential load is moved by `u`, m, in one direction.
+    ///
+    /// ```text
+    /// F_x(u) = 2 c_T ∫_0^a x^k min(u, μ_f q/M) dx,     c_T = M c_N
+    /// ```
+    pub fn tangential_force(&self, fields: &Fields, compression: &[f64], displacement: f64) -> f64 {
+        let half_space = self.contact.half_space();
+        let q = 1.0 + half_space.grading();
+        let limit = self.contact.friction().coefficient / half_space.stiffness_ratio();
+        let stuck = 2.0 * displacement * fields.place.stick_area.powf(0.5 * q) / q;
+        let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
+        let moved: f64 =
+            springs.map(|((q, factor), weight)| weight * factor * displacement.min(limit * q)).sum();
+        half_space.stiffness_ratio() * half_space.normal_stiffness() * (stuck + fields.edge * moved)
+    }
+
+    /// Tangential force, N, along one steady fretting loop, at displacements, m, that go from `U` to `-U` and back.
+    ///
+    /// After a reversal every spring repeats its first loading at twice the scale (Masing):
+    ///
+    /// ```text
+    /// F = F_x(U) - 2 F_x((U - u)/2)  on the way down,     F = 2 F_x((U + u)/2) - F_x(U)  on the way up
+    /// ```
+    pub fn fretting_loop(&self, fields: &Fields, compression: &[f64], displacements: &[f64]) -> Vec<f64> {
+        let amplitude = self.contact.amplitude();
+        let force = |displacement: f64| self.tangential_force(fields, compression, displacement);
+        let largest = force(amplitude);
+        let turn = displacements.len() / 2;
+        let along = |(index, u): (usize, &f64)| match index <= turn {
+            true => largest - 2.0 * force(0.5 * (amplitude - u)),
+            false => 2.0 * force(0.5 * (amplitude + u)) - largest,
+        };
+        displacements.iter().enumerate().map(along).collect()
+    }
+
+    /// What a cycle does to the contact: stick if no spring slips, full sliding if the innermost one does and no stick zone bears the load.
+    pub fn regime(&self, state: &State, cycle: &CycleFields) -> Regime {
+        if cycle.stick_radius >= self.contact_radius(state) {
+            Regime::Stick
+        } else if self.reaches_the_middle(cycle.stick_radius) {
+            Regime::FullSliding
+        } else {
+            Regime::PartialSlip
+        }
+    }
+
+    /// A stick radius of [`CycleFields`] or [`State`], m, without the core that stands for the middle of a contact that slides.
+    pub fn without_core(&self, stick_radius: f64) -> f64 {
+        if self.reaches_the_middle(stick_radius) { 0.0 } else { stick_radius }
+    }
+
+    fn reaches_the_middle(&self, stick_radius: f64) -> bool {
+        self.slides && stick_radius < MIDDLE * self.place.stick_area.sqrt()
+    }
+
+    /// Wear depth, m, at `offset = r² - c²`, m², any place of the annulus, where the edge of stick left no worn ground behind.
+    pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
+        let z = state.stick.as_ref().map_or(offset, |stick| offset - (stick.area - self.place.stick_area));
+        let x = z / fields.edge;
+        if x <= 0.0 || x >= 1.0 - AT_EDGE {
+            return 0.0;
+        }
+        let unworn = self.unworn_at(&fields.place, z);
+        let of_limit = |spring: usize| fields.unworn[spring].limit_log_slip();
+        unworn.slip * self.log_slip_at(fields, x, &unworn, of_limit).1.exp_m1()
+    }
+
+    /// The coordinate of `ξ` on the mesh, and `λ` there, where the unworn slip is known.
+    ///
+    /// On a smooth mesh it is the local polynomial, corrected by what that is off by for the limit's `λ_∞`, which is known everywhere, as far as
+    /// wear has come: so the limit is met between the springs as it is at them.
+    fn log_slip_at(
+        &self,
+        fields: &Fields,
+        fraction: f64,
+        unworn: &UnwornValues,
+        of_limit: impl Fn(usize) -> f64,
+    ) -> (f64, f64) {
+        let mesh = self.operators.abel.mesh();
+        let y = mesh.place(fraction);
+        let local = mesh.local(y, self.springs());
+        let log_slip = local.sum(&fields.log_slip);
+        if mesh.clustering() != Clustering::Smooth {
+            return (y, log_slip);
+        }
+        let between = local.sum_of(of_limit);
+        let worn = if between > 0.0 { (log_slip / between).clamp(0.0, 1.0) } else { 1.0 };
+        (y, log_slip + worn * (unworn.limit_log_slip() - between))
+    }
+
+    /// Wear depth, m, at the places of the limit's springs that are not hidden, or of one in several where they are many; at least zero.
+    pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
+        if let Some(stick) = state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
+            let of_limit = self.limit_log_slip(fields);
+            let shown = self.shown.offsets.iter().zip(&self.shown.unworn).zip(&stick.wear_depth);
+            let depth = |((offset, unworn), worn): ((&f64, &UnwornValues), &f64)| {
+                let spot = self.spot(state, fields, &of_limit, *offset, unworn);
+                self.depth_beyond(stick, *offset, spot.as_ref(), *worn)
+            };
+            return shown.map(depth).collect();
+        }
+        let every = self.springs().div_ceil(MOST_JUDGED);
+        let places = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
+        let places = places.step_by(every);
+        let of_limit = self.limit_log_slip(fields);
+        let depth = |(x, unworn): (&f64, &UnwornValues)| {
+            let spot = self.spot(state, fields, &of_limit, self.unworn.limit_edge() * x, unworn);
+            spot.map_or(0.0, |spot| spot.wear_depth())
+        };
+        places.map(depth).collect()
+    }
+
+    /// Wear depth, m, at `offset` where the edge of stick leaves worn ground behind: `worn`, what every cycle took there; but outside the first
+    /// contact, where wear sets in as the contact edge passes, that of the slip, for steps do not resolve the passage.
+    ///
+    /// ```text
+    /// w = S - S_0 - K
+    /// ```
+    fn depth_beyond(&self, stick: &StickEdge, offset: f64, spot: Option<&Spot>, worn: f64) -> f64 {
+        let moving = self.moving.as_ref();
+        let squared = self.place.stick_area + offset;
+        match moving.and_then(|moving| moving.left_behind_outside(stick, squared)) {
+            Some(behind) => spot.map_or(0.0, |spot| (spot.grown() - behind).max(0.0)),
+            None => worn,
+        }
+    }
+
+    /// The fields at [`Model::radii`], by the local polynomials between the springs.
+    pub fn radial_fields(&self, state: &State, fields: &Fields, cycle: &CycleFields) -> RadialFields {
+        let mesh = self.operators.abel.mesh();
+        let nu = 1.0 - self.mu();
+        // Slip over slip depth is smooth along the annulus.
+        let per_depth: Vec<f64> =
+            cycle.slip.iter().zip(&fields.slip_depth).map(|(slip, depth)| slip / depth).collect();
+        let eased: Vec<f64> = (0..self.springs() - 1)
+            .map(|i| fields.pressure[i] * mesh.node(i + 1).complement.powf(-nu))
+            .collect();
+        let shown = self.shown.offsets.len();
+        let mut radial =
+            RadialFields { wear_depth: vec![0.0; shown], pressure: vec![0.0; shown], slip: vec![0.0; shown] };
+        let of_limit = self.limit_log_slip(fields);
+        let stick = state.stick.as_ref();
+        for (i, (offset, unworn)) in self.shown.offsets.iter().zip(&self.shown.unworn).enumerate() {
+            let spot = self.spot(state, fields, &of_limit, *offset, unworn);
+            let passed = stick.and_then(|stick| Some((stick, stick.wear_depth.get(i)?)));
+            radial.wear_depth[i] = match passed {
+                Some((stick, worn)) => self.depth_beyond(stick, *offset, spot.as_ref(), *worn),
+                None => spot.as_ref().map_or(0.0, Spot::wear_depth),
+            };
+            if self.sticks_at(state, *offset) {
+                radial.pressure[i] = f64::NAN;
+            }
+            let Some(Spot { x, y, unworn, log_slip }) = spot else { continue };
+            radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
+            radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
+            if mesh.clustering() == Clustering::Smooth {
+                radial.pressure[i] = radial.pressure[i].max(0.0);
+            }
+        }
+        radial
+    }
+
+    /// Whether an edge of stick that moves outwards has passed the place `offset = r² - c²`, m², with the edge at rest.
+    fn sticks_at(&self, state: &State, offset: f64) -> bool {
+        state.stick.as_ref().is_some_and(|stick| self.place.stick_area + offset <= stick.area)
+    }
+
+    /// `λ_∞` on the springs.
+    fn limit_log_slip(&self, fields: &Fields) -> Vec<f64> {
+        fields.unworn.iter().map(UnwornValues::limit_log_slip).collect()
+    }
+
+    /// A place of the annulus at `offset = r² - c²`, m², with the edge of stick at rest, where the unworn slip of that is known; none outside.
+    fn spot(
+        &self,
+        state: &State,
+        fields: &Fields,
+        of_limit: &[f64],
+        offset: f64,
+        at_rest: &UnwornValues,
+    ) -> Option<Spot> {
+        let (z, unworn) = match &state.stick {
+            None => (offset, *at_rest),
+            Some(stick) => {
+                let z = self.place.stick_area + offset - stick.area;
+                (z, if z > 0.0 { self.unworn_at(&fields.place, z) } else { *at_rest })
+            }
+        };
+        let x = z / fields.edge;
+        if x <= 0.0 || x >= 1.0 - AT_EDGE {
+            return None;
+        }
+        let (y, log_slip) = self.log_slip_at(fields, x, &unworn, |spring| of_limit[spring]);
+        Some(Spot { x, y, unworn: unworn.slip, log_slip })
+    }
+}
+
+/// A place between the springs.
+struct Spot {
+    /// `ξ`.
+    x: f64,
+    /// Its coordinate on the mesh.
+    y: f64,
+    /// Slip depth of the unworn contact, m.
+    unworn: f64,
+    /// `λ`.
+    log_slip: f64,
+}
+
+impl Spot {
+    /// At least zero: before the contact edge the polynomial may pass below nothing, by less than the run is off.
+    fn wear_depth(&self) -> f64 {
+        self.grown().max(0.0)
+    }
+
+    /// `S - S_0`, m.
+    fn grown(&self) -> f64 {
+        self.unworn * self.log_slip.exp_m1()
+    }
+}
+
+/// Where fields are shown.
+#[derive(Debug, Clone)]
+pub(super) struct Shown {
+    /// `r² - c²`, m², increasing.
+    offsets: Vec<f64>,
+    /// The unworn slip there.
+    unworn: Vec<UnwornValues>,
+}
+
+impl Shown {
+    /// The places of the limit's springs, but for the first ones, or of one in several where they are more than [`MOST_SHOWN`]; on a smooth mesh of few springs, whose polynomials serve between them, at
+    /// least [`SHOWN`] places, graded as the mesh is, from [`HIDDEN`] to the contact edge.
+    pub(super) fn new(unworn: &UnwornSlip, mesh: &Mesh, hidden: usize) -> Self {
+        let springs = &mesh.nodes()[1 + hidden..];
+        let fractions: Vec<f64> = if mesh.clustering() == Clustering::Smooth && springs.len() < SHOWN {
+            let like = Mesh::new(SHOWN, mesh.stretch(), Clustering::Smooth);
+            let first = like.place(HIDDEN);
+            let spacing = (SHOWN as f64 - first) / (SHOWN - 1) as f64;
+            (0..SHOWN).map(|i| like.at(SHOWN as f64 - spacing * (SHOWN - 1 - i) as f64).value).collect()
+        } else {
+            let every = springs.len().div_ceil(MOST_SHOWN);
+            let skipped = (springs.len() - 1) % every;
+            springs.iter().skip(skipped).step_by(every).copied().collect()
+        };
+        let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_edge() * x).collect();
+        Self { unworn: offsets.iter().map(|offset| unworn.at(*offset)).collect(), offsets }
+    }
+
+    /// `r² - c²`, m².
+    pub(super) fn offsets(&self) -> &[f64] {
+        &self.offsets
+    }
+
+    /// Depth that the limit takes away, m.
+    pub(super) fn limit_depth(&self) -> Vec<f64> {
+        self.unworn.iter().map(UnwornValues::limit_depth).collect()
+    }
+}

@@ -1,0 +1,157 @@
+//! How far wear can reach: the contact at the largest indentation of a run and the smallest stick radius.
+
+use super::schedule::Schedule;
+use crate::contact::InitialContact;
+use crate::error::{Error, Result};
+use crate::laws::friction::FrictionLaw;
+use crate::laws::loading::TangentialControl;
+use crate::numerics::quadrature::Rule;
+use crate::numerics::roots::bracketed;
+
+/// Radius, over that of the contact, of the core within which nothing is worn under full sliding: the springs need a smallest radius, and
+/// 60 of them serve for 1e-3, 120 for 1e-4.
+const CORE: f64 = 1e-3;
+
+/// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact slides as a whole: the
+/// slip depth, of which wear is the growth, keeps its digits next to the core, however flat the profile is there.
+const LEAST_SURPLUS: f64 = 1e-2;
+
+/// Largest one: more says nothing more about the slip of springs, and would cost digits of the depth.
+const LARGEST_SURPLUS: f64 = 1e3;
+
+/// Largest share of the load on the core for which full sliding is followed.
+const LARGEST_CORE_SHARE: f64 = 5e-3;
+
+/// Share of the load, in order of size, on the core that stays unworn under full sliding.
+pub(super) fn core_share(grading: f64) -> f64 {
+    CORE.powf(1.0 + grading)
+}
+
+/// Nodes of the quadrature of the first cycle's force.
+const FORCE_NODES: usize = 100;
+
+/// Steps in the search for the last stick radius.
+const SEARCH: usize = 400;
+
+/// Where springs slip and wear in some cycle of a run.
+#[derive(Debug, Clone)]
+pub struct Reach {
+    /// The contact at the largest indentation, with the smallest stick radius.
+    pub contact: InitialContact,
+    /// Whether no stick radius is left in some cycle.
+    pub slides: bool,
+    /// By how much the compression below which springs slip exceeds that at the edge of stick, m; zero where that is one.
+    pub surplus: f64,
+}
+
+impl Schedule {
+    /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
+    ///
+    /// Under full sliding a core stays of a thousandth of the contact radius.
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`](crate::Error::Inconsistent) if nothing slips; those of [`InitialContact::at`].
+    pub fn reach(&self, contact: &InitialContact) -> Result<Reach> {
+        let ratio = contact.half_space().stiffness_ratio();
+        let depth = self.largest_indentation();
+        let compression = match self.conditions().tangential_control {
+            TangentialControl::Displacement => {
+                self.extremes().map(|drive| drive.slip_compression(ratio)).fold(0.0, f64::max)
+            }
+            _ => self.last_slip_compression(contact)?,
+        };
+        let profile = contact.equivalent_profile();
+        let radius = if depth == contact.indentation() {
+            contact.contact_radius()
+        } else {
+            profile.radius_at(depth)?
+        };
+        let largest = depth - profile.value(CORE * radius);
+        let grading = contact.half_space().grading();
+        let slides = compression > largest;
+        if slides && core_share(grading) > LARGEST_CORE_SHARE {
+            return Err(Error::Inconsistent {
+                what: "loading.amplitude",
+                why: format!(
+                    "at an amplitude of {:e} m the contact comes to slide as a whole, and at grading {grading} the core of its mesh, a \
+                     thousandth of its radius, would bear {:.2} of the load unworn; reduce the amplitude or the force",
+                    contact.amplitude(),
+                    core_share(grading)
+                ),
+            });
+        }
+        if !slides {
+            return Ok(Reach { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
+        }
+        let held = self.conditions().tangential_control != TangentialControl::Displacement;
+        let contact = contact.with_core(depth, CORE * radius)?;
+        let at_core = contact.slip_compression();
+        let surplus = (compression - at_core).clamp(LEAST_SURPLUS * at_core, LARGEST_SURPLUS * at_core);
+        // Under a held tangential force the core gives way only in the end, and all slip is counted from there.
+        Ok(Reach { contact, slides, surplus: if held { 0.0 } else { surplus } })
+    }
+
+    /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the
+    /// balance of forces then gives; the whole indentation if stick cannot bear the load.
+    ///
+    /// ```text
+    /// F_x(c) = 2 μ_f c_N (d - g0(c)) c^(1+k)/(1+k),    F_x(c) = Q    or    U(c) + F_x(c)/k_r = U_r,  M U(c) = μ_f (d - g0(c))
+    /// ```
+    fn last_slip_compression(&self, contact: &InitialContact) -> Result<f64> {
+        let half_space = contact.half_space();
+        let ratio = half_space.stiffness_ratio();
+        let exponent = 1.0 + half_space.grading();
+        let profile = contact.equivalent_profile();
+        let mut largest = 0.0_f64;
+        for drive in self.extremes() {
+            let depth = self.largest_indentation() - drive.lift;
+            let excess = |radius: f64| {
+                let strength = drive.friction.static_strength(depth - profile.value(radius));
+                let force = 2.0 * half_space.normal_stiffness() * strength * radius.powf(exponent) / exponent;
+                drive.excess(force, strength / ratio)
+            };
+            // From the contact edge inwards: stick is lost from there.
+            let radius = profile.radius_at(depth)?;
+            let inwards = |i: usize| radius * (-16.0 * i as f64 / (SEARCH as f64 * exponent)).exp();
+            let first = (1..=SEARCH).find(|i| excess(inwards(*i)) >= 0.0);
+            let compression = match first {
+                Some(i) => {
+                    let edge = bracketed(excess, inwards(i), inwards(i - 1), 0.0)?;
+                    depth - profile.value(edge)
+                }
+                None => depth,
+            };
+            largest = largest.max(compression + drive.lift);
+        }
+        Ok(largest)
+    }
+}
+
+/// Amplitude of the tangential force, N, on the unworn contact under the law of friction at the start.
+///
+/// ```text
+/// F_x = 2 c_T ∫_0^a x^k min(U, μ_f(q) q/M) dx
+/// ```
+pub(super) fn first_force(
+    contact: &InitialContact,
+    friction: &FrictionLaw,
+    amplitude: f64,
+    depth: f64,
+) -> Result<f64> {
+    let half_space = contact.half_space();
+    let (ratio, exponent) = (half_space.stiffness_ratio(), 1.0 + half_space.grading());
+    let profile = contact.equivalent_profile();
+    let edge = profile.radius_at(depth)?;
+    let sticking = friction.compression_at(ratio * amplitude);
+    let stick = if sticking < depth { profile.radius_at(depth - sticking)? } else { 0.0 };
+    let stuck = ratio * amplitude * stick.powf(exponent) / exponent;
+    // In y = x^(1+k), which leaves no power of x.
+    let (low, high) = (stick.powf(exponent), edge.powf(exponent));
+    let rule = Rule::legendre(FORCE_NODES)?;
+    let strength = |part: f64| {
+        let x = (low + (high - low) * part).powf(exponent.recip());
+        friction.kinetic_strength(depth - profile.value(x))
+    };
+    let slipping = (high - low) / exponent * rule.mean(strength);
+    Ok(2.0 * half_space.normal_stiffness() * (stuck + slipping))
+}

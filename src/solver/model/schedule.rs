@@ -1,0 +1,387 @@
+//! What acts on the contact in each cycle: laws, amplitude and path, by block and by history.
+
+use std::sync::Arc;
+
+use super::reach::first_force;
+use crate::contact::InitialContact;
+use crate::contact::spring::{Response, stick_compression};
+use crate::error::{Error, Result};
+use crate::laws::conditions::Conditions;
+use crate::laws::friction::FrictionLaw;
+use crate::laws::history::History;
+use crate::laws::loading::{Block, Clock, Mode, TangentialControl, has_come};
+use crate::laws::path::{Path, SampledPath};
+use crate::laws::wear::WearLaw;
+
+/// What is asked of the contact tangentially in one cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Demand {
+    /// The displacement given.
+    Displacement,
+    /// An amplitude of the force, N.
+    Force(f64),
+    /// The displacement given is that of the far end of a spring of this stiffness, N/m.
+    Rig(f64),
+}
+
+impl Demand {
+    /// Factors of force, N, and displacement, m, in what has to equal what is asked, see [`Drive::excess`].
+    pub fn factors(self) -> [f64; 2] {
+        match self {
+            Self::Displacement => [0.0, 1.0],
+            Self::Force(_) => [1.0, 0.0],
+            Self::Rig(stiffness) => [stiffness.recip(), 1.0],
+        }
+    }
+}
+
+/// What acts in one cycle.
+#[derive(Debug, Clone)]
+pub struct Drive {
+    /// Law of friction.
+    pub friction: FrictionLaw,
+    /// Law of wear.
+    pub wear: WearLaw,
+    /// Tangential amplitude `U`, m, as given: of the contact in the first cycle, or of the far end of a rig.
+    pub amplitude: f64,
+    /// What decides the amplitude of the contact.
+    pub demand: Demand,
+    /// How far the indenter is lifted from its largest indentation of the run, m, where the cycle is not resolved.
+    pub lift: f64,
+    /// The path over one period where the cycle is resolved, seen from the largest indentation of the run.
+    pub path: Option<Arc<Path>>,
+    /// What springs do on that path, where their limit alone decides it.
+    pub response: Option<Arc<Response>>,
+    /// Cycles in that period.
+    pub cycles_per_period: f64,
+}
+
+impl Drive {
+    /// What is asked: an amplitude of the displacement, m, or of the force, N.
+    pub fn asked(&self) -> f64 {
+        if let Demand::Force(asked) = self.demand { asked } else { self.amplitude }
+    }
+
+    /// Compression at the largest indentation below which springs slip in this cycle, m, at the amplitude given.
+    pub fn slip_compression(&self, stiffness_ratio: f64) -> f64 {
+        match &self.path {
+            Some(path) => stick_compression(path, &self.friction, stiffness_ratio),
+            None => self.friction.compression_at(stiffness_ratio * self.amplitude) + self.lift,
+        }
+    }
+
+    /// By how much the contact, at an amplitude of force, N, and displacement, m, exceeds what is asked.
+    pub fn excess(&self, force: f64, displacement: f64) -> f64 {
+        let [by_force, by_displacement] = self.demand.factors();
+        by_force * force + by_displacement * displacement - self.asked()
+    }
+}
+
+/// How one period is passed through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Resolution {
+    /// Whether every period is resolved; else only those without a closed form are.
+    pub resolved: bool,
+    /// Steps within a resolved period, at least 2; chosen by the mode if not given.
+    pub substeps: Option<usize>,
+}
+
+/// Substeps of a period by default: enough where only the reversals matter, and for paths that turn or press.
+const FEWEST_SUBSTEPS: usize = 2;
+const SUBSTEPS: usize = 96;
+
+/// What acts when.
+#[derive(Debug, Clone)]
+pub struct Schedule {
+    conditions: Conditions,
+    /// Units of the clock in one cycle.
+    clock_rate: f64,
+    /// Ends of the blocks within one pass, cycles, increasing; empty for a single block without end.
+    ends: Vec<f64>,
+    /// At the start of the histories, one per block, at least one.
+    drives: Vec<Drive>,
+    largest_indentation: f64,
+}
+
+impl Schedule {
+    /// What acts on a contact under some conditions.
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] where a normal force is held beside a tangential one or a rig; those of the indentation of a block.
+    pub fn new(contact: &InitialContact, conditions: &Conditions, resolution: Resolution) -> Result<Self> {
+        check_forces(conditions)?;
+        let whole = Block { duration: f64::INFINITY, amplitude_factor: 1.0, indentation_factor: 1.0 };
+        let blocks = if conditions.blocks.is_empty() { vec![whole] } else { conditions.blocks.clone() };
+        let clock_rate = match conditions.clock {
+            Clock::Cycles => 1.0,
+            Clock::Tau => contact.tau_per_cycle(),
+        };
+        let mut end = 0.0;
+        let ends = conditions.blocks.iter().map(|block| {
+            end += block.duration / clock_rate;
+            end
+        });
+        let ends: Vec<f64> = ends.collect();
+        let resolved = resolution.resolved || conditions.mode != Mode::Tangential;
+        let friction = conditions.friction.scaled(conditions.friction_history.at(0.0));
+        let driven = driven_amplitude(contact, conditions, &friction)?;
+        let mut drives = Vec::with_capacity(blocks.len());
+        let mut depths = Vec::with_capacity(blocks.len());
+        for block in &blocks {
+            let (amplitude, indentation) =
+                (driven * block.amplitude_factor, contact.indentation() * block.indentation_factor);
+            let mut drive = Drive {
+                friction: conditions.friction,
+                wear: conditions.wear,
+                amplitude,
+                demand: match conditions.tangential_control {
+                    TangentialControl::Displacement => Demand::Displacement,
+                    TangentialControl::Rig { stiffness } => Demand::Rig(stiffness),
+                    TangentialControl::Force => {
+                        Demand::Force(first_force(contact, &friction, amplitude, indentation)?)
+                    }
+                },
+                lift: 0.0,
+                path: None,
+                response: None,
+                cycles_per_period: 1.0,
+            };
+            let mut depth = indentation;
+            if resolved {
+                let fewest = if conditions.mode == Mode::Tangential { FEWEST_SUBSTEPS } else { SUBSTEPS };
+                let mode = scaled(&conditions.mode, block.amplitude_factor);
+                let sampled =
+                    SampledPath::new(&mode, amplitude, indentation, resolution.substeps.unwrap_or(fewest));
+                depth = sampled.largest_indentation;
+                drive.cycles_per_period = f64::from(sampled.oscillations);
+                drive.response = response(&sampled.path, &drive.friction, &drives);
+                drive.path = Some(Arc::new(sampled.path));
+            }
+            drives.push(drive);
+            depths.push(depth);
+        }
+        let largest_indentation = depths.iter().fold(0.0, |largest: f64, depth| largest.max(*depth));
+        for (drive, depth) in drives.iter_mut().zip(&depths) {
+            let lift = largest_indentation - depth;
+            match drive.path.as_mut().map(Arc::make_mut) {
+                Some(path) => path.points.iter_mut().for_each(|point| point.lift += lift),
+                None => drive.lift = lift,
+            }
+        }
+        Ok(Self { conditions: conditions.clone(), clock_rate, ends, drives, largest_indentation })
+    }
+
+    /// Largest indentation of the run at which cycles begin, m.
+    pub fn largest_indentation(&self) -> f64 {
+        self.largest_indentation
+    }
+
+    /// The conditions that it follows.
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
+    }
+
+    /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning.
+    pub fn drive(&self, start: f64, cycles: f64) -> Drive {
+        let mut drive = self.drives[self.block(start).1].clone();
+        let factor = |history: &History| history.at(cycles * self.clock_rate);
+        if self.conditions.friction_history != History::Constant {
+            drive.friction = drive.friction.scaled(factor(&self.conditions.friction_history));
+        }
+        if self.conditions.wear_history != History::Constant {
+            drive.wear = drive.wear.scaled(factor(&self.conditions.wear_history));
+        }
+        drive
+    }
+
+    /// The first cycle of each block, with the laws as they are at the start.
+    pub fn first_cycles(&self) -> impl Iterator<Item = Drive> {
+        let mut start = 0.0;
+        self.drives.iter().enumerate().map(move |(block, _)| {
+            let drive = self.drive(start, 0.0);
+            start = self.ends.get(block).copied().unwrap_or_default();
+            drive
+        })
+    }
+
+    /// Whether every block that is still to come was under way between two times, cycles.
+    pub fn has_shown_all(&self, since: f64, now: f64) -> bool {
+        match self.ends.last() {
+            None => true,
+            Some(whole) if self.conditions.repeat => now - since >= *whole,
+            Some(_) => self.block(now).1 == self.drives.len() - 1,
+        }
+    }
+
+    /// Everything that acts at some time, with friction at its smallest and at its largest.
+    pub fn extremes(&self) -> impl Iterator<Item = Drive> {
+        let range = self.conditions.friction_history.range();
+        self.drives.iter().flat_map(move |drive| {
+            range.map(|factor| Drive { friction: drive.friction.scaled(factor), ..drive.clone() })
+        })
+    }
+
+    /// Everything that acts in the end: the last block, or all of them where they are repeated, with friction as it is then.
+    pub fn lasting(&self) -> impl Iterator<Item = Drive> {
+        let factor = self.conditions.friction_history.last();
+        let passed = if self.conditions.repeat { 0 } else { self.drives.len() - 1 };
+        self.drives[passed..]
+            .iter()
+            .map(move |drive| Drive { friction: drive.friction.scaled(factor), ..drive.clone() })
+    }
+
+    /// The next time after `cycles` at which what acts changes abruptly or has a kink, in cycles: a step may end there but not cross it.
+    pub fn next_break(&self, cycles: f64) -> Option<f64> {
+        let histories = [&self.conditions.friction_history, &self.conditions.wear_history];
+        let kinks = histories.into_iter().flat_map(|history| history.kinks()).map(|t| t / self.clock_rate);
+        let block = (!self.ends.is_empty()).then(|| {
+            let (pass, block) = self.block(cycles);
+            self.end(pass, block)
+        });
+        kinks.chain(block).filter(|time| !has_come(*time, cycles) && time.is_finite()).min_by(f64::total_cmp)
+    }
+
+    /// How many breaks there are up to a number of cycles.
+    pub fn breaks_until(&self, cycles: f64) -> f64 {
+        let histories = [&self.conditions.friction_history, &self.conditions.wear_history];
+        let passed = |time: &&f64| **time / self.clock_rate < cycles;
+        let kinks: usize = histories.iter().map(|it| it.kinks().iter().filter(passed).count()).sum();
+        let ends = match self.ends.last() {
+            Some(whole) if self.conditions.repeat => cycles / whole * self.ends.len() as f64,
+            _ => self.ends.iter().filter(|end| **end < cycles).count() as f64,
+        };
+        kinks as f64 + ends
+    }
+
+    /// Pass through the blocks, and index of the block, that begins at `cycles` or is under way then.
+    fn block(&self, cycles: f64) -> (f64, usize) {
+        let Some(whole) = self.ends.last() else { return (0.0, 0) };
+        if !self.conditions.repeat {
+            return (0.0, self.ends.partition_point(|end| has_come(*end, cycles)).min(self.drives.len() - 1));
+        }
+        // The quotient may round to either side of a whole number of passes.
+        let first = ((cycles / whole).floor() - 1.0).max(0.0);
+        let ahead =
+            (0..3 * self.ends.len()).map(|i| (first + (i / self.ends.len()) as f64, i % self.ends.len()));
+        ahead
+            .into_iter()
+            .find(|(pass, block)| !has_come(self.end(*pass, *block), cycles))
+            .unwrap_or((first, 0))
+    }
+
+    /// End of a block, cycles; the last one goes on where they are not repeated.
+    fn end(&self, pass: f64, block: usize) -> f64 {
+        let last = self.ends.len() - 1;
+        if !self.conditions.repeat && block == last {
+            return f64::INFINITY;
+        }
+        pass * self.ends[last] + self.ends[block]
+    }
+
+    /// Whether the indenter is lifted within a period, so that springs lose contact.
+    pub fn lifts(&self) -> bool {
+        self.drives.iter().any(|drive| drive.path.as_ref().is_some_and(|path| !path.is_level()))
+    }
+
+    /// Whether periods are passed through step by step.
+    pub fn resolves(&self) -> bool {
+        self.drives.iter().any(|drive| drive.path.is_some())
+    }
+
+    /// Steps of the loop of every period, for which one to and fro at constant indentation takes `plain`.
+    pub fn loop_steps(&self, plain: usize) -> usize {
+        if self.conditions.mode == Mode::Tangential {
+            return plain;
+        }
+        let paths = self.drives.iter().filter_map(|drive| drive.path.as_ref());
+        paths.map(|path| path.points.len()).max().unwrap_or(plain)
+    }
+
+    /// Whether the indenter leaves the x axis in some block.
+    pub fn leaves_axis(&self) -> bool {
+        let mut paths = self.drives.iter().filter_map(|drive| drive.path.as_ref());
+        paths.any(|path| path.points.iter().any(|point| point.tangential[1] != 0.0))
+    }
+
+    /// Whether the mesh of the plain contact serves: one amplitude at one indentation under Coulomb's law.
+    pub fn is_uniform(&self) -> bool {
+        let conditions = &self.conditions;
+        conditions.blocks.is_empty()
+            && conditions.mode == Mode::Tangential
+            && matches!(conditions.friction, FrictionLaw::Coulomb(_))
+            && conditions.friction_history == History::Constant
+            && conditions.tangential_control == TangentialControl::Displacement
+    }
+
+    /// Whether nothing makes a kink in wear along the slip annulus. A resolved cycle does: it takes what is pulled as without contact.
+    pub fn wears_smoothly(&self) -> bool {
+        self.is_uniform()
+            && !self.resolves()
+            && matches!(self.conditions.wear, WearLaw::Archard(_) | WearLaw::DissipatedEnergy { .. })
+    }
+}
+
+/// Refuses two forces that are held at once.
+fn check_forces(conditions: &Conditions) -> Result<()> {
+    let (other, remedy) = match conditions.tangential_control {
+        TangentialControl::Displacement => return Ok(()),
+        TangentialControl::Force => ("tangential_control = \"force\"".to_owned(), "tangential_control"),
+        TangentialControl::Rig { stiffness } => {
+            (format!("rig_stiffness = {stiffness:e} N/m"), "rig_stiffness")
+        }
+    };
+    if !conditions.holds_normal_force {
+        return Ok(());
+    }
+    Err(Error::Inconsistent {
+        what: "loading.normal_force",
+        why: format!(
+            "is held, and so is what loading.{other} asks for, which this version does not follow together; give loading.initial_force or \
+             loading.indentation instead, or remove loading.{remedy}"
+        ),
+    })
+}
+
+/// Tangential amplitude that is given, m: of the contact, or of the far end of a rig.
+///
+/// A stick radius that is asked for is the contact's; then the far end moves by `U_far = U + F_x(U)/k_r`.
+fn driven_amplitude(
+    contact: &InitialContact,
+    conditions: &Conditions,
+    friction: &FrictionLaw,
+) -> Result<f64> {
+    let amplitude = contact.amplitude();
+    match conditions.tangential_control {
+        TangentialControl::Rig { stiffness } if contact.amplitude_follows_stick() => {
+            Ok(amplitude + first_force(contact, friction, amplitude, contact.indentation())? / stiffness)
+        }
+        _ => Ok(amplitude),
+    }
+}
+
+/// The table of a path that turns at constant indentation; that of an earlier block with the same path, if there is one.
+fn response(path: &Path, friction: &FrictionLaw, before: &[Drive]) -> Option<Arc<Response>> {
+    if path.is_straight() || friction.static_factor() != 1.0 {
+        return None;
+    }
+    let same = before.iter().find(|drive| drive.path.as_deref() == Some(path));
+    same.map_or_else(|| Response::new(path).map(Arc::new), |drive| drive.response.clone())
+}
+
+/// The mode with the transverse displacements of a block.
+fn scaled(mode: &Mode, factor: f64) -> Mode {
+    let times = |values: &[f64]| values.iter().map(|value| factor * value).collect();
+    match mode {
+        Mode::Tangential | Mode::NormalOscillation { .. } => mode.clone(),
+        Mode::Orbit { transverse_amplitude, phase, centre } => Mode::Orbit {
+            transverse_amplitude: factor * transverse_amplitude,
+            phase: *phase,
+            centre: *centre,
+        },
+        Mode::Recorded(path) => Mode::Recorded(Arc::new(crate::laws::loading::RecordedPath {
+            x: times(&path.x),
+            y: times(&path.y),
+            ..path.as_ref().clone()
+        })),
+    }
+}

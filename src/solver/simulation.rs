@@ -1,0 +1,562 @@
+//! The loop over time: which step to try, where to land, when to stop.
+
+use std::f64::consts::PI;
+
+use crate::error::{Error, Result};
+use crate::laws::loading::has_come;
+use crate::numerics::grid::Clustering;
+use crate::solver::model::{CycleFields, Fields, Model, MovingStick, RadialFields, State};
+use crate::solver::stepper::{self, Stepper};
+
+mod failure;
+
+use failure::{STEPPING, nothing_wears};
+
+/// Safety factor and bounds of the choice of steps.
+const SAFETY: f64 = 0.9;
+const SMALLEST_FACTOR: f64 = 0.2;
+const LARGEST_FACTOR: f64 = 2.5;
+
+/// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
+const SMALLEST_GROWTH: f64 = 1e-13;
+
+/// Growth of the slip in the first step tried.
+const FIRST_GROWTH: f64 = 1e-3;
+
+/// Compression, relative to `q_c`, below which no pressure is left but round-off.
+const WORN_OUT: f64 = 1e-13;
+
+/// Loss of wear depth, relative to the limit's largest, that the output's interpolation between moving springs may show: at least this, and
+/// `(3/n)^4` on few springs of a smooth mesh. Explicit steps are rejected by it before they are unstable.
+const INTERPOLATION: f64 = 1e-6;
+const COARSE_INTERPOLATION: f64 = 3.0;
+
+/// The same where the edge of stick moves through the mesh.
+const KINKED_INTERPOLATION: f64 = 1e-2;
+
+/// How far the rate may fall below the one asked for in the last step.
+const OVERSHOT: f64 = 0.5;
+
+/// Part of the rate of worn volume by trapezoids that is wear for certain: the quadrature of the volume, which is more accurate, has weights
+/// that are not all positive, and where the ground next to the edge of stick wears long after the rest it may come to nothing.
+const CERTAIN_WEAR: f64 = 0.5;
+
+/// How far a compression, over `q_c`, may leave the range from 0 to 1 in which that of the slip annulus lies. Where the pressure at the edge of
+/// stick blows up it passes below nothing for a while, by more than 0.1 as `k → -1`; meshes that are unstable swing by more than one.
+const BEYOND_CONTACT: f64 = 0.3;
+
+/// Rejected steps beyond which a run is given up if they are also more than half of the accepted ones: where a held force loses its stick
+/// zone the edge of stick is followed in ever smaller steps.
+const MOST_REJECTED: u64 = 4000;
+
+/// Dimensionless time for which wear without end is followed when a run is to last until its rate has fallen.
+const SHOWN_UNENDING: f64 = 1.0;
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum End {
+    /// After this many cycles.
+    Cycles(f64),
+    /// When the worn volume per cycle has fallen to this fraction of its first value.
+    Rate(f64),
+}
+
+/// When to take snapshots and when to stop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Cycles at which steps land, increasing, positive, none beyond the end.
+    pub outputs: Vec<f64>,
+    /// When to stop.
+    pub end: End,
+}
+
+/// How a simulation ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The last cycle was reached.
+    End,
+    /// The rate fell to the fraction asked for.
+    Rate,
+    /// No pressure is left, so that the rate asked for is below round-off.
+    WornOut,
+    /// The rate asked for is never reached: the contact slides as a whole under a held normal force.
+    Unending,
+    /// An observer asked to stop.
+    Interrupted,
+}
+
+/// Part of a step that was wanted below which the one to an output or a break tells nothing about the next.
+const CUT_SHORT: f64 = 1e-3;
+
+/// What an observer wants after a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flow {
+    /// Go on.
+    Continue,
+    /// Stop here; the simulation can be resumed.
+    Stop,
+}
+
+/// Whoever looks on: snapshots, checkpoints, a progress bar.
+pub trait Observer {
+    /// Called where the plan asks for output, the start and the end included.
+    ///
+    /// # Errors
+    /// Ends the simulation.
+    fn output(&mut self, simulation: &Simulation) -> Result<()> {
+        let _ = simulation;
+        Ok(())
+    }
+
+    /// Called after every accepted step.
+    ///
+    /// # Errors
+    /// Ends the simulation.
+    fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
+        let _ = simulation;
+        Ok(Flow::Continue)
+    }
+}
+
+/// What besides the state a restart needs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Progress {
+    /// Step to be tried next, cycles.
+    pub next_step: f64,
+    /// Worn volume per cycle at the start, m³.
+    pub first_rate: f64,
+    /// Cycles until which the rate was above the one at which to stop.
+    pub busy_until: f64,
+    /// Index of the next entry of the plan's outputs.
+    pub next_output: u64,
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps rejected.
+    pub rejected_steps: u64,
+    /// Evaluations of pressure, slip and wear.
+    pub rate_evaluations: u64,
+}
+
+/// A step to try.
+struct Landing {
+    step: f64,
+    /// Cycles at which it ends exactly, on an output or where what acts changes.
+    at: Option<f64>,
+    /// Whether that is an output.
+    output: bool,
+}
+
+/// A model on its way through time.
+pub struct Simulation {
+    model: Model,
+    stepper: Box<dyn Stepper + Send>,
+    tolerance: f64,
+    plan: Plan,
+    state: State,
+    fields: Fields,
+    cycle: CycleFields,
+    /// Wear depth on the limit's springs, m.
+    depth: Vec<f64>,
+    rate: f64,
+    progress: Progress,
+    /// Radius, m, at which the last state that was refused had lost wear depth.
+    healed_at: Option<f64>,
+}
+
+impl Simulation {
+    /// Starts from the unworn contact.
+    ///
+    /// # Arguments
+    /// * `tolerance` -- largest error of one step in the wear depth, relative to the largest depth of the limit
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] if the method of stepping does not follow the edge of stick of the model as it moves or stays; those of
+    /// [`Model::initial_state`].
+    pub fn new(model: Model, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Result<Self> {
+        stepper::check_stick(&*stepper, model.moving().is_some())?;
+        let state = model.initial_state()?;
+        let fields = model.fields(&state);
+        let mut first_rate = 0.0_f64;
+        let mut growth = 0.0_f64;
+        let mut finite = true;
+        for drive in model.schedule().first_cycles() {
+            let cycle = model.cycle(&model.drive_in(&state, drive), &state.compression, &fields);
+            first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
+            growth = growth.max(largest(&cycle.growth));
+            finite &= cycle.volume.is_finite() && cycle.growth.iter().all(|it| it.is_finite());
+        }
+        if !(finite && growth > 0.0 && first_rate > 0.0) {
+            return Err(nothing_wears(&model, finite));
+        }
+        let next_step = FIRST_GROWTH / growth;
+        let progress = Progress { next_step, first_rate, rate_evaluations: 1, ..Progress::default() };
+        Ok(Self::resume(model, stepper, tolerance, plan, state, progress))
+    }
+
+    /// Goes on from a state, as if there had been no interruption.
+    pub fn resume(
+        model: Model,
+        stepper: Box<dyn Stepper + Send>,
+        tolerance: f64,
+        plan: Plan,
+        state: State,
+        progress: Progress,
+    ) -> Self {
+        let fields = model.fields(&state);
+        let cycle = cycle_of(&model, &state, &fields, state.cycles);
+        let depth = model.depth_on_springs(&state, &fields);
+        let rate = rate_of_wear(&model, &fields, &cycle);
+        Self { model, stepper, tolerance, plan, state, fields, cycle, depth, rate, progress, healed_at: None }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The model alone, when nothing more is to be simulated.
+    pub fn into_model(self) -> Model {
+        self.model
+    }
+
+    /// The state reached.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The fields of the state reached.
+    pub fn fields(&self) -> &Fields {
+        &self.fields
+    }
+
+    /// What the next cycle does.
+    pub fn cycle(&self) -> &CycleFields {
+        &self.cycle
+    }
+
+    /// The fields at the radii of the output.
+    pub fn radial_fields(&self) -> RadialFields {
+        self.model.radial_fields(&self.state, &self.fields, &self.cycle)
+    }
+
+    /// Wear depth at the radii of the output, m, shape `(node,)`.
+    pub fn wear_depth(&self) -> Vec<f64> {
+        self.radial_fields().wear_depth
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What besides the state a restart needs.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    /// Largest error of one step in the wear depth, relative to the largest depth of the limit.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Worn volume per cycle, m³: by the quadrature of the worn volume, where that is less than half of what trapezoids find by the latter.
+    pub fn wear_rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Tries a step of so many cycles and forgets it, for its cost.
+    ///
+    /// # Errors
+    /// Those of the stepper.
+    pub fn measure_step(&mut self, cycles: f64) -> Result<()> {
+        self.stepper.step(&self.model, &self.state, cycles).map(|_| ())
+    }
+
+    /// Steps to the end of the plan or until an observer stops it. The start is an output too, unless steps were made before.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] if the step would have to become smaller than round-off allows; those of stepper and observers.
+    pub fn run(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Outcome> {
+        if self.progress.steps == 0 {
+            self.tell(observers)?;
+        }
+        loop {
+            if let Some(outcome) = self.outcome() {
+                return Ok(outcome);
+            }
+            let landed = self.advance(observers).map_err(|error| match error {
+                // A search within a step knows nothing of the moment.
+                Error::NotConverged { what, why } if what != STEPPING => {
+                    self.stuck(&format!("{what}: {why}"))
+                }
+                other => other,
+            })?;
+            let ended = self.outcome().is_some();
+            if landed || ended {
+                self.tell(observers)?;
+            }
+            let mut flow = Flow::Continue;
+            for observer in observers.iter_mut() {
+                if observer.step(self)? == Flow::Stop {
+                    flow = Flow::Stop;
+                }
+            }
+            if flow == Flow::Stop && !ended {
+                return Ok(Outcome::Interrupted);
+            }
+        }
+    }
+
+    /// States at the outputs that lie within a step; none if one of them is that of no contact.
+    fn passed(&self, state: &State) -> Option<Vec<(State, Fields)>> {
+        let outputs = &self.plan.outputs[self.progress.next_output as usize..];
+        let within = outputs.iter().take_while(|output| **output < state.cycles);
+        let states = within.map(|output| {
+            let between = self.stepper.between(&self.model, state, *output)?;
+            let fields = self.model.fields(&between);
+            fields.are_physical().then_some((between, fields))
+        });
+        states.collect()
+    }
+
+    /// Shows the states within the last step.
+    fn tell_passed(
+        &mut self,
+        passed: Vec<(State, Fields)>,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<()> {
+        for (state, fields) in passed {
+            let cycle = cycle_of(&self.model, &state, &fields, state.cycles);
+            let mut shown = (state, fields, cycle);
+            self.progress.next_output += 1;
+            self.exchange(&mut shown);
+            let told = self.tell(observers);
+            self.exchange(&mut shown);
+            told?;
+        }
+        Ok(())
+    }
+
+    fn exchange(&mut self, other: &mut (State, Fields, CycleFields)) {
+        std::mem::swap(&mut self.state, &mut other.0);
+        std::mem::swap(&mut self.fields, &mut other.1);
+        std::mem::swap(&mut self.cycle, &mut other.2);
+    }
+
+    fn tell(&self, observers: &mut [&mut dyn Observer]) -> Result<()> {
+        observers.iter_mut().try_for_each(|observer| observer.output(self))
+    }
+
+    /// How it ended; none while it goes on or can be resumed.
+    pub fn outcome(&self) -> Option<Outcome> {
+        match self.plan.end {
+            End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
+            End::Rate(_) if self.model.moving().is_some_and(MovingStick::slides) => {
+                let tau = self.state.cycles * self.model.contact().tau_per_cycle();
+                (tau >= SHOWN_UNENDING).then_some(Outcome::Unending)
+            }
+            End::Rate(fraction) => {
+                // A step that went beyond the limit wears back: that is none of the rates asked for.
+                let spent = self.cycle.volume >= 0.0
+                    && self.wear_rate() <= fraction * self.progress.first_rate
+                    && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
+                let limit = WORN_OUT * self.model.contact().slip_compression();
+                let worn_out = self.state.compression.iter().all(|q| q.abs() <= limit);
+                spent.then_some(Outcome::Rate).or(worn_out.then_some(Outcome::WornOut))
+            }
+        }
+    }
+
+    /// Makes one step, of which the length may have to be found; whether it landed on an output.
+    fn advance(&mut self, observers: &mut [&mut dyn Observer]) -> Result<bool> {
+        loop {
+            let landing = self.choose_step()?;
+            let step = landing.step;
+            let trial = self.stepper.step(&self.model, &self.state, step)?;
+            self.progress.rate_evaluations += trial.rate_evaluations;
+            let error = trial.error / self.tolerance;
+            let accepted = match trial.state {
+                Some(state) if error <= 1.0 => {
+                    let fields = trial.fields.unwrap_or_else(|| self.model.fields(&state));
+                    let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
+                    let rate = rate_of_wear(&self.model, &fields, &cycle);
+                    if let Some(shorter) = self.overshoot(rate, step) {
+                        self.progress.next_step = shorter;
+                        continue;
+                    }
+                    let passed = self.passed(&state);
+                    match passed {
+                        Some(passed) => {
+                            let accepted = self.accept(state, fields, cycle, rate, landing.at)?;
+                            if accepted {
+                                self.tell_passed(passed, observers)?;
+                            }
+                            accepted
+                        }
+                        None => false,
+                    }
+                }
+                _ => false,
+            };
+            if self.stepper.prescribed_step().is_some() {
+                if !accepted {
+                    return Err(self.stuck("the wear of one cycle leaves no contact that wear can lead to"));
+                }
+            } else {
+                self.adapt(step, error, accepted, trial.next_step);
+            }
+            if accepted {
+                self.progress.steps += 1;
+                self.progress.next_output += u64::from(landing.output);
+                return Ok(landing.output);
+            }
+            self.progress.rejected_steps += 1;
+            let rejected = self.progress.rejected_steps;
+            if rejected > MOST_REJECTED && 2 * rejected > self.progress.steps {
+                return Err(self.stuck("wear goes on in ever smaller steps, of which most are rejected"));
+            }
+        }
+    }
+
+    /// The step to try, and where it lands if it does.
+    fn choose_step(&self) -> Result<Landing> {
+        let now = self.state.cycles;
+        let output = match self.plan.end {
+            End::Cycles(end) if self.stepper.interpolates() => Some(end),
+            End::Rate(_) if self.stepper.interpolates() => None,
+            _ => self.plan.outputs.get(self.progress.next_output as usize).copied(),
+        };
+        let target = match (self.model.schedule().next_break(now), output) {
+            // Where the two are one, at the time that was asked for.
+            (Some(kink), Some(output)) => Some(if has_come(output, kink) { output } else { kink }),
+            (kink, output) => kink.or(output),
+        };
+        let landing = |step: f64, at: Option<f64>| Landing { step, at, output: at.is_some() && at == output };
+        if let Some(step) = self.stepper.prescribed_step() {
+            return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
+        }
+        let step = self.progress.next_step;
+        let growth = step * largest(&self.cycle.growth);
+        if !(growth > SMALLEST_GROWTH || (now > 0.0 && step > 1e-6 * now)) {
+            return Err(self.stuck("no step is small enough for wear to go on from there"));
+        }
+        let Some(target) = target else { return Ok(landing(step, None)) };
+        let remaining = target - now;
+        Ok(if step >= remaining * (1.0 - 1e-9) {
+            landing(remaining, Some(target))
+        } else {
+            landing(if 2.0 * step > remaining { 0.5 * remaining } else { step }, None)
+        })
+    }
+
+    /// The step that ends where the rate is what was asked for, if this one leaves it far behind; the rate falls exponentially.
+    fn overshoot(&self, rate: f64, step: f64) -> Option<f64> {
+        let End::Rate(fraction) = self.plan.end else { return None };
+        if self.stepper.prescribed_step().is_some() {
+            return None;
+        }
+        let wanted = fraction * self.progress.first_rate;
+        let reached = rate.max(f64::MIN_POSITIVE);
+        let now = self.wear_rate();
+        let part = (now / wanted).ln() / (now / reached).ln();
+        (now > wanted && reached < OVERSHOT * wanted && part < 1.0)
+            .then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
+    }
+
+    /// Takes a state over if it is one that wear can lead to.
+    fn accept(
+        &mut self,
+        mut state: State,
+        fields: Fields,
+        cycle: CycleFields,
+        rate: f64,
+        target: Option<f64>,
+    ) -> Result<bool> {
+        let depth = self.model.depth_on_springs(&state, &fields);
+        let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
+        let interpolation = match self.model.operators().mesh().clustering() {
+            Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
+            _ if self.model.schedule().is_uniform() => INTERPOLATION,
+            _ => KINKED_INTERPOLATION,
+        };
+        let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
+        let mut pairs = depth.iter().zip(&self.depth);
+        let grew = pairs.all(|(now, before)| *now >= before - allowed);
+        if !(grew && fields.are_physical() && self.presses(&state)) {
+            self.healed_at =
+                depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed).map(|at| {
+                    let stick = self.model.contact().stick_radius().unwrap_or_default();
+                    let nodes = self.model.operators().nodes();
+                    (stick * stick + self.model.unworn().limit_edge() * nodes[(at + 1).min(nodes.len() - 1)])
+                        .sqrt()
+                });
+            return Ok(false);
+        }
+        self.healed_at = None;
+        if let Some(target) = target {
+            state.cycles = target;
+        }
+        if let End::Rate(fraction) = self.plan.end
+            && rate > fraction * self.progress.first_rate
+        {
+            self.progress.busy_until = state.cycles;
+        }
+        // Steppers look at their ends; the first cycle of a block is where springs come to slip.
+        state.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
+        let (mut fields, mut cycle, mut rate) = (fields, cycle, rate);
+        if target.is_some() {
+            state = self.model.begin_block(state)?;
+            fields = self.model.fields(&state);
+            cycle = cycle_of(&self.model, &state, &fields, state.cycles);
+            rate = rate_of_wear(&self.model, &fields, &cycle);
+        }
+        (self.state, self.fields, self.cycle, self.depth, self.rate) = (state, fields, cycle, depth, rate);
+        Ok(true)
+    }
+
+    /// Whether the springs press no less than not at all and no more than where they stick, under the plain laws: beside others single
+    /// springs next to the edge of stick swing further and come back.
+    fn presses(&self, state: &State) -> bool {
+        let most = self.model.contact().slip_compression();
+        let within = |q: &f64| (-BEYOND_CONTACT..=1.0 + BEYOND_CONTACT).contains(&(q / most));
+        !self.model.schedule().conditions().is_plain() || state.compression.iter().all(within)
+    }
+
+    /// Chooses the next step from the error of this one over the tolerance.
+    fn adapt(&mut self, step: f64, error: f64, accepted: bool, wanted: Option<f64>) {
+        let order = self.stepper.estimate_order();
+        let by_error = || step * SAFETY * error.max(1e-12).powf(-1.0 / order);
+        let best = if error.is_finite() { wanted.unwrap_or_else(by_error) } else { 0.25 * step };
+        let planned = self.progress.next_step;
+        self.progress.next_step = if accepted && step < CUT_SHORT * planned {
+            planned
+        } else if accepted {
+            best.clamp(SMALLEST_FACTOR * step, LARGEST_FACTOR * step.max(planned))
+        } else {
+            best.clamp(SMALLEST_FACTOR * step, 0.5 * step)
+        };
+    }
+}
+
+/// Worn volume per cycle, m³, at least the part of it that is certain.
+fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
+    let nodes = model.operators().nodes();
+    let wear = |i: usize| (cycle.growth[i] * fields.slip_depth[i]).max(0.0);
+    let last = cycle.growth.len().min(fields.slip_depth.len());
+    // No wear at the edge of stick.
+    let first = 0.5 * wear(0) * nodes[1];
+    let cells = (1..last).map(|i| 0.5 * (wear(i - 1) + wear(i)) * (nodes[i + 1] - nodes[i]));
+    let trapezoids = PI * fields.edge * (first + cells.sum::<f64>());
+    cycle.volume.max(CERTAIN_WEAR * trapezoids)
+}
+
+/// Largest of some rates of growth, at least zero.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m: f64, value| m.max(*value))
+}
+
+/// What the cycle does that follows a state, in the block that is under way at `start`.
+fn cycle_of(model: &Model, state: &State, fields: &Fields, start: f64) -> CycleFields {
+    let drive = model.drive_in(state, model.schedule().drive(start, state.cycles));
+    model.cycle(&drive, &state.compression, fields)
+}

@@ -1,0 +1,64 @@
+//! Why a run cannot begin, or go on: the physical moment, and what can be done.
+
+use super::Simulation;
+use crate::error::Error;
+use crate::laws::wear::WearLaw;
+use crate::solver::model::Model;
+
+/// What of a run does not converge.
+pub(super) const STEPPING: &str = "time stepping";
+
+/// Why a run cannot begin.
+pub(super) fn nothing_wears(model: &Model, finite: bool) -> Error {
+    let (what, why) = match model.schedule().conditions().wear {
+        _ if !finite => (
+            "numerics.springs",
+            format!(
+                "on {} springs slip next to the edge of stick has no digits left; ask for fewer",
+                model.springs()
+            ),
+        ),
+        WearLaw::Threshold { pressure, .. } => (
+            "wear.threshold.pressure",
+            format!(
+                "{pressure:e} Pa is not exceeded where springs slip in the first cycles, so that nothing wears (the mean pressure is {:e} Pa); \
+                 ask for less, or press harder",
+                model.contact().mean_pressure()
+            ),
+        ),
+        _ => (
+            "loading.amplitude",
+            format!(
+                "at an amplitude of {:e} m nothing wears in the first cycles; ask for a larger one",
+                model.contact().amplitude()
+            ),
+        ),
+    };
+    Error::Inconsistent { what, why }
+}
+
+impl Simulation {
+    /// The moment at which a run cannot go on, and what can be done.
+    pub(super) fn stuck(&self, why: &str) -> Error {
+        let (model, cycles) = (&self.model, self.state.cycles);
+        let tau = cycles * model.contact().tau_per_cycle();
+        let [stick, edge] = [model.without_core(self.cycle.stick_radius), model.contact_radius(&self.state)];
+        let healed = self.healed_at.map_or(String::new(), |radius| {
+            format!(", for at the radius {radius:.4e} m wear depth would become less")
+        });
+        let springs = model.springs();
+        let cure = if cycles > 0.0 {
+            format!("or end before (loading.tau = {tau:.3e})")
+        } else {
+            "or for another loading.amplitude".into()
+        };
+        Error::NotConverged {
+            what: STEPPING,
+            why: format!(
+                "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}; \
+                 ask for {} springs (numerics.springs; there were {springs}), {cure}",
+                2 * springs
+            ),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Methods that carry a state over cycles; each in its own file behind one trait.
+
+mod cycle_jump;
+mod every_cycle;
+mod implicit;
+mod mixing;
+mod moving_stick;
+mod multistep;
+mod newton;
+
+pub use cycle_jump::CycleJump;
+pub use every_cycle::EveryCycle;
+pub use implicit::Implicit;
+pub use moving_stick::MovingStickImplicit;
+pub use multistep::Multistep;
+
+use crate::error::{Error, Result};
+use crate::solver::model::{Fields, Model, State};
+
+/// A step that was tried; accepting it is an assignment, so a failed one changes nothing.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    /// The state after the step, `None` if none was found or it is none of a contact.
+    pub state: Option<State>,
+    /// The fields of that state, where the method has them.
+    pub fields: Option<Fields>,
+    /// Estimated error of the step in the wear depth, relative to the largest depth of the limit.
+    pub error: f64,
+    /// Evaluations of pressure, slip and wear that the trial took.
+    pub rate_evaluations: u64,
+    /// The step that the method wants next, cycles, where it does not leave that to the error.
+    pub next_step: Option<f64>,
+}
+
+impl Trial {
+    /// A trial that found no state.
+    pub fn failed(rate_evaluations: u64) -> Self {
+        Self { state: None, fields: None, error: f64::INFINITY, rate_evaluations, next_step: None }
+    }
+}
+
+/// A method of time stepping.
+pub trait Stepper {
+    /// Tries a step of `cycles` cycles from a state.
+    ///
+    /// # Errors
+    /// Only what no smaller step can cure.
+    fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial>;
+
+    /// Order of the error estimate in the step, for the choice of the next one.
+    fn estimate_order(&self) -> f64;
+
+    /// Whether it follows an edge of stick that moves, and nothing else.
+    fn follows_stick(&self) -> bool {
+        false
+    }
+
+    /// Whether states within a step are known as well as that at its end, see [`Stepper::between`]; else steps have to land where they are wanted.
+    fn interpolates(&self) -> bool {
+        false
+    }
+
+    /// The state at a time within the last step.
+    fn between(&self, model: &Model, state: &State, cycles: f64) -> Option<State> {
+        let _ = (model, state, cycles);
+        None
+    }
+
+    /// The step that is prescribed, if the method does not choose it by its error.
+    fn prescribed_step(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// Refuses a method that does not follow the edge of stick of a model as it moves or stays.
+pub(crate) fn check_stick(stepper: &dyn Stepper, moves: bool) -> Result<()> {
+    if stepper.follows_stick() == moves {
+        return Ok(());
+    }
+    let why = if moves {
+        "does not follow the edge of stick of this contact, which moves; step it by MovingStickImplicit"
+    } else {
+        "follows an edge of stick that moves, and that of this contact stays; step it by Implicit"
+    };
+    Err(Error::Inconsistent { what: "numerics.stepper", why: why.into() })
+}
+
+/// Largest of some errors of the wear depth, m, over the largest depth of the limit.
+fn relative_depth_error(model: &Model, depths: impl Iterator<Item = f64>) -> f64 {
+    depths.fold(0.0, |largest: f64, depth| largest.max(depth.abs())) / model.depth_scale()
+}

@@ -1,0 +1,284 @@
+//! Implicit steps that remember several before: backward differentiation in the logarithm of time.
+
+use std::sync::Arc;
+
+use super::newton::{Kept, Newton, Target};
+use super::{Stepper, Trial, relative_depth_error};
+use crate::error::Result;
+use crate::numerics::abel::Backend;
+use crate::solver::model::{Linearised, Model, Past, PastPoint, State};
+
+/// Backward differentiation formulas of order 1 to 5, with variable steps and order, for wear that is smooth in time.
+///
+/// ```text
+/// dλ/ds (s_n) = Σ_j ℓ'_j(s_n) λ_j,    s = ln(1 + t/t0),    ℓ_j on s_n, s_{n-1}, ..., s_{n-p}
+/// ```
+///
+/// The weights are those of the interpolating polynomial whatever the steps (Hairer & Wanner, Solving Ordinary Differential Equations II,
+/// ch. V.1), which keeps its order under a constraint of index 2 (there, ch. VII.3) as that of the contact edge is. Rates of wear fall like
+/// powers of time, for which steps may stay even in `s`. A step is one stage, for which Newton's matrix is factorised once
+/// while it converges; on many springs its factors serve the steps after it too. What lies within a step is on the same polynomial, so that
+/// outputs cost no steps.
+#[derive(Debug)]
+pub struct Multistep {
+    /// Largest error of one step.
+    tolerance: f64,
+    newton: Newton,
+    factors: Kept,
+    /// Cycles of the state that the last step was tried from.
+    tried_from: Option<f64>,
+}
+
+/// Times remembered, the present one included: the error at the next order takes two more than that order.
+const REMEMBERED: usize = Multistep::HIGHEST_ORDER + 2;
+
+/// Error at the end of a run over that of its steps, measured (docs/numerics.md), so that a tolerance is about the error that comes of it.
+const ACCUMULATED: f64 = 8.0;
+
+/// Logarithm of the change of the step, and contraction of the corrections, up to which hierarchical factors serve another step: these take as
+/// long as eight corrections, dense ones of as many springs as those are for much less.
+const SAME_STEP: f64 = 0.3;
+const SAME_MATRIX: f64 = 0.4;
+
+/// Parts of the step that the error allows, at the present order and where the order changes.
+const SAFETY: f64 = 0.8;
+const SAFETY_OF_CHANGE: f64 = 0.7;
+
+/// Bounds of the change of a step.
+const SMALLEST_FACTOR: f64 = 0.2;
+const LARGEST_FACTOR: f64 = 2.0;
+
+impl Stepper for Multistep {
+    fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
+        let past = self.past(model, state);
+        let now = state.cycles + cycles;
+        let times = TimesBefore::new(model, now, &past);
+        let first = (past.points.len() == 1).then(|| self.first_log_slip(model, state, cycles));
+        let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
+        let target = Target {
+            log_slip: gathered.log_slip,
+            edge: gathered.edge,
+            step: times.per_slope / times.leading(past.order),
+            drive: model.schedule().drive(state.cycles, now),
+        };
+        self.take_up_factors(model, state, &target);
+        let mut evaluations = 1;
+        // Where the past leads first, once more with factors of its own; on fine meshes with gradings near -1 that may be beyond what Newton's
+        // method comes back from.
+        let led = (past.points.len() > 1).then(|| state_of(state, times.guess(&past), now));
+        let again = led.clone().filter(|_| self.factors.at().is_some());
+        let still = State { cycles: now, past: Past::default(), ..state.clone() };
+        let guesses = led.into_iter().chain(again).chain([still]).enumerate();
+        let mut guesses = guesses.map(|(attempt, mut at)| {
+            if attempt > 0 {
+                self.factors.outdate();
+            }
+            let (newton, factors) = (&mut self.newton, &mut self.factors);
+            newton.solve(model, &target, &mut at, factors, &mut evaluations).then_some(at)
+        });
+        let Some(mut at) = guesses.find_map(|found| found) else {
+            drop(guesses);
+            self.factors.outdate();
+            return Ok(Trial::failed(evaluations));
+        };
+        drop(guesses);
+        if self.newton.contraction > SAME_MATRIX {
+            self.factors.outdate();
+        }
+        let cycle = &self.newton.cycle;
+        at.dissipated_energy = gathered.dissipated_energy + target.step * cycle.dissipation;
+        at.volume_by_rate = gathered.volume_by_rate + target.step * cycle.volume;
+        at.least_stick_radius = state.least_stick_radius.min(cycle.stick_radius);
+
+        let mut past = past;
+        past.points.insert(0, PastPoint::new(&at, &self.newton.fields.log_slip));
+        let error = match first {
+            // The guess and the step are off by as much to either side.
+            Some(guess) => 0.5 * self.depth_error(model, &[1.0, -1.0], &[&past.points[0].log_slip, &guess]),
+            None => self.error_at(model, past.order, &times, &past),
+        };
+        let (order, factor) = self.choose(model, error, &times, &past);
+        past.order = order;
+        past.points.truncate(REMEMBERED);
+        let serves_more = model.operators().backend() == Backend::Hierarchical;
+        past.linearised = self.factors.at().filter(|_| serves_more).cloned();
+        at.past = past;
+        Ok(Trial {
+            state: Some(at),
+            fields: Some(std::mem::take(&mut self.newton.fields)),
+            error: ACCUMULATED * error,
+            rate_evaluations: evaluations,
+            next_step: Some(cycles * factor.clamp(SMALLEST_FACTOR, LARGEST_FACTOR)),
+        })
+    }
+
+    fn estimate_order(&self) -> f64 {
+        2.0
+    }
+
+    fn interpolates(&self) -> bool {
+        true
+    }
+
+    fn between(&self, model: &Model, state: &State, cycles: f64) -> Option<State> {
+        let past = &state.past;
+        let times = TimesBefore::new(model, cycles, past);
+        let count = (past.order + 1).min(past.points.len());
+        let weights = lagrange(&times.before[..count]);
+        Some(state_of(state, PastPoint::sum(&weights, &past.points), cycles))
+    }
+}
+
+impl Multistep {
+    /// Highest order; from 6 on the formulas are not stable enough for stiff equations.
+    pub const HIGHEST_ORDER: usize = 5;
+
+    /// A stepper whose tolerance is about the error at the end of a run.
+    pub fn new(tolerance: f64) -> Self {
+        Self {
+            tolerance: tolerance / ACCUMULATED,
+            newton: Newton::new(tolerance),
+            factors: Kept::default(),
+            tried_from: None,
+        }
+    }
+
+    /// Takes up the factors that a state was left with, made again if this method did not make them itself, as long as they suit the step.
+    ///
+    /// A step that was rejected leaves its own to the next that is tried from the same state: so does it in a run that is resumed there.
+    fn take_up_factors(&mut self, model: &Model, state: &State, target: &Target) {
+        if self.tried_from != Some(state.cycles) {
+            self.tried_from = Some(state.cycles);
+            let known = self.factors.at().map(Arc::as_ptr);
+            match &state.past.linearised {
+                Some(left) if known == Some(Arc::as_ptr(left)) => {}
+                Some(left) => self.newton.recall(model, &target.drive, left, &mut self.factors),
+                None => self.factors.outdate(),
+            }
+        }
+        let suits = |at: &Arc<Linearised>| (target.step / at.step).ln().abs() <= SAME_STEP;
+        if model.operators().backend() == Backend::Dense || !self.factors.at().is_some_and(suits) {
+            self.factors.outdate();
+        }
+    }
+
+    /// The past of a state, which at the start is that state alone.
+    fn past(&mut self, model: &Model, state: &State) -> Past {
+        if !state.past.points.is_empty() {
+            return state.past.clone();
+        }
+        model.evaluate(state.edge, &state.compression, &mut self.newton.fields);
+        Past { order: 1, points: vec![PastPoint::new(state, &self.newton.fields.log_slip)], linearised: None }
+    }
+
+    /// `λ` where the rates at the start lead, from zero.
+    fn first_log_slip(&mut self, model: &Model, state: &State, cycles: f64) -> Vec<f64> {
+        let fields = &self.newton.fields;
+        let drive = model.schedule().drive(state.cycles, state.cycles);
+        let cycle = model.cycle(&drive, &state.compression, fields);
+        fields
+            .log_slip
+            .iter()
+            .zip(&cycle.growth)
+            .map(|(log_slip, growth)| log_slip + cycles * growth)
+            .collect()
+    }
+
+    /// Largest error in depth of a step at some order, over the limit's largest depth, from the divided difference of the next order:
+    /// by as much do the step and the polynomial through the times before it miss each other, less the part of the latter. Infinite where the
+    /// past does not reach so far.
+    fn error_at(&self, model: &Model, order: usize, times: &TimesBefore, past: &Past) -> f64 {
+        let Some(before) = times.before.get(..order + 1) else { return f64::INFINITY };
+        let farthest = before[order];
+        let part = 1.0 / (1.0 + times.leading(order) * farthest);
+        let mut weights: Vec<f64> = lagrange(before).iter().map(|weight| -part * weight).collect();
+        weights.insert(0, part);
+        let log_slips: Vec<&[f64]> = past.points.iter().map(|point| &point.log_slip[..]).collect();
+        self.depth_error(model, &weights, &log_slips)
+    }
+
+    /// Depth, over the limit's largest, of a weighted sum of logarithms of slip on the inner springs, the largest of all.
+    fn depth_error(&self, model: &Model, weights: &[f64], log_slips: &[&[f64]]) -> f64 {
+        let slip = &self.newton.fields.slip_depth;
+        let sum = |i: usize| {
+            weights.iter().zip(log_slips).map(|(weight, log_slip)| weight * log_slip[i]).sum::<f64>()
+        };
+        relative_depth_error(model, (0..model.springs() - 1).map(|i| slip[i] * sum(i)))
+    }
+
+    /// Order and factor of the next step: those of the largest step among the present order and its neighbours.
+    fn choose(&self, model: &Model, error: f64, times: &TimesBefore, past: &Past) -> (usize, f64) {
+        let factor = |error: f64, order: usize, safety: f64| {
+            safety * (error / self.tolerance).max(1e-12).powf(-1.0 / (order as f64 + 1.0))
+        };
+        let order = past.order;
+        let mut best = (order, factor(error, order, SAFETY));
+        for other in [order - 1, order + 1].into_iter().filter(|it| (1..=Self::HIGHEST_ORDER).contains(it)) {
+            let found = factor(self.error_at(model, other, times, past), other, SAFETY_OF_CHANGE);
+            if found > best.1 {
+                best = (other, found);
+            }
+        }
+        best
+    }
+}
+
+/// Times before another, in `s`.
+struct TimesBefore {
+    /// `s_n - s_j`, the latest first.
+    before: Vec<f64>,
+    /// `dt/ds`, cycles.
+    per_slope: f64,
+}
+
+impl TimesBefore {
+    /// Those of a past before some number of cycles; negative where they are later.
+    fn new(model: &Model, cycles: f64, past: &Past) -> Self {
+        let zero = model.cycles_of_wear();
+        let elapsed = |before: f64| ((cycles - before) / (before + zero)).ln_1p();
+        Self {
+            before: past.points.iter().map(|point| elapsed(point.cycles)).collect(),
+            per_slope: cycles + zero,
+        }
+    }
+
+    /// `ℓ'_0(s_n)` at some order.
+    fn leading(&self, order: usize) -> f64 {
+        self.before[..order].iter().map(|elapsed| elapsed.recip()).sum()
+    }
+
+    /// `-ℓ'_j/ℓ'_0` at some order: what the past makes of the present.
+    fn gathering(&self, order: usize) -> Vec<f64> {
+        let leading = self.leading(order);
+        let before = &self.before[..order];
+        lagrange(before).iter().zip(before).map(|(weight, elapsed)| weight / (elapsed * leading)).collect()
+    }
+
+    /// What the polynomial of one order more than the step gives.
+    fn guess(&self, past: &Past) -> PastPoint {
+        let count = (past.order + 1).min(self.before.len());
+        PastPoint::sum(&lagrange(&self.before[..count]), &past.points)
+    }
+}
+
+/// Weights of the values at some times with which the polynomial through them passes zero.
+fn lagrange(times: &[f64]) -> Vec<f64> {
+    let weight = |j: usize| -> f64 {
+        let others = times.iter().enumerate().filter(|(m, _)| *m != j);
+        others.map(|(_, other)| other / (other - times[j])).product()
+    };
+    (0..times.len()).map(weight).collect()
+}
+
+/// A state at some cycles as a polynomial tells it.
+fn state_of(state: &State, point: PastPoint, cycles: f64) -> State {
+    State {
+        cycles,
+        edge: point.edge,
+        compression: point.compression,
+        dissipated_energy: point.dissipated_energy,
+        volume_by_rate: point.volume_by_rate,
+        past: Past::default(),
+        ..state.clone()
+    }
+}

@@ -1,0 +1,7 @@
+//! Many scenes: sweeps and their jobs on clusters, the universality claim, the trade-off of time and error, wear maps.
+
+pub mod submit;
+pub mod sweep;
+pub mod tradeoff;
+pub mod universality;
+pub mod wear_map;

@@ -1,0 +1,405 @@
+//! Many scenes in parallel: one shard of a study, whose results are rows that are never lost and never there twice.
+//!
+//! Each scene runs on one core; the scenes of a shard are spread over the threads. Rows collect in memory and are written, at the latest
+//! after each checkpoint interval, as a *part*: a file that is never changed afterwards and whose name no other process uses. When the
+//! shard is done its parts become one file. Whoever is killed loses the rows since its last part and, of the scenes that were running,
+//! what came after their own checkpoints; another call does only what is missing. Two processes that work on one shard at the same time
+//! find the same results, and the second to finish replaces the file of the first by an equal one.
+//!
+//! ```text
+//! DIR/shard-3-of-10.h5                      a shard that is done
+//! DIR/parts/3-of-10.ATTEMPT.SEQUENCE.h5     rows of a shard that is not
+//! DIR/parts/scene-417.ATTEMPT.h5            a scene that takes longer than the checkpoint interval
+//! ```
+//!
+//! Every file carries the hash of what it was computed from. Rows of another study are refused; the checkpoint of another scene, which had the same
+//! number before the study was edited, is not used, and gives way when the scene is done.
+
+mod folder;
+mod gathering;
+mod merge;
+mod report;
+mod rows;
+
+pub use folder::shards_in;
+pub use merge::{Merged, array_syntax, merge};
+pub use report::{MergeReport, SweepReport};
+
+use std::collections::HashSet;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+use crate::data::{RunFile, StopReason, SweepHeader};
+use crate::error::{Error, Result};
+use crate::report::{LimitReport, RunReport};
+use crate::run::progress::SceneProgress;
+use crate::run::{Resumed, Run, Shared, thread_pool};
+use crate::scene::{Study, Task};
+use folder::Folder;
+use rows::{Row, Schema};
+
+/// Kept runs in memory after which a part is written.
+const MOST_RUNS: usize = 100;
+
+/// Rows in memory after which a part is written.
+const MOST_ROWS: usize = 20_000;
+
+/// Which part of a study is done, and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SweepOptions {
+    /// Number of the shard, from 0.
+    pub shard: u64,
+    /// Number of shards that the study is cut into.
+    pub shards: u64,
+    /// Threads, at most [`most_threads`](crate::run::most_threads); all cores if none.
+    pub threads: Option<usize>,
+    /// Wall time between checkpoints, s.
+    pub checkpoint_interval: f64,
+}
+
+impl Default for SweepOptions {
+    /// The whole study on all cores, with a checkpoint each half minute.
+    fn default() -> Self {
+        Self { shard: 0, shards: 1, threads: None, checkpoint_interval: 30.0 }
+    }
+}
+
+/// What a sweep came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepOutcome {
+    /// The file of the shard; none if a signal came first.
+    pub file: Option<PathBuf>,
+    /// Scenes of the shard.
+    pub scenes: u64,
+    /// Scenes that were done before.
+    pub done_before: u64,
+    /// Scenes done now.
+    pub done: u64,
+    /// Failed scenes of the shard so far.
+    pub failed: u64,
+    /// Wall time of this call, s.
+    pub wall_seconds: f64,
+}
+
+/// Numbers of the scenes of a shard.
+///
+/// ```
+/// use fretwear::study::sweep::shard_range;
+/// assert_eq!([0, 1, 2].map(|shard| shard_range(shard, 3, 10)), [0..3, 3..6, 6..10]);
+/// ```
+///
+/// # Panics
+/// If the shard is not below the number of shards.
+pub fn shard_range(shard: u64, shards: u64, scenes: u64) -> Range<u64> {
+    assert!(shard < shards, "shard {shard} of {shards}");
+    let cut = |shard: u64| (u128::from(scenes) * u128::from(shard) / u128::from(shards)) as u64;
+    cut(shard)..cut(shard + 1)
+}
+
+/// Does what is missing of a shard: [`Sweep::new`] and [`Sweep::execute`] in one.
+///
+/// # Errors
+/// Those of both.
+pub fn sweep(
+    study: &Study,
+    folder: &Path,
+    options: &SweepOptions,
+    progress: Option<&SceneProgress>,
+) -> Result<SweepOutcome> {
+    Sweep::new(study, folder, options)?.execute(progress)
+}
+
+/// A shard that is ready to be done.
+pub struct Sweep<'a> {
+    study: &'a Study,
+    schema: Schema,
+    folder: Folder,
+    shared: Shared,
+    pool: ThreadPool,
+    range: Range<u64>,
+    before: Done,
+    /// Scenes without a row.
+    missing: Vec<u64>,
+    started: Instant,
+}
+
+impl<'a> Sweep<'a> {
+    /// Looks at what is there of a shard, and makes sure that what is missing can be done. From here on signals are answered.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] lists scenes of the study that are not valid; [`Error::Inconsistent`] for a shard that is none;
+    /// [`Error::File`] if the directory cannot be used, or holds results of another study, version or number of shards.
+    pub fn new(study: &'a Study, folder: &Path, options: &SweepOptions) -> Result<Self> {
+        let started = Instant::now();
+        let shared =
+            Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
+        let (shard, shards) = (options.shard, options.shards);
+        if !(1..=study.count()).contains(&shards) || shard >= shards {
+            return Err(Error::Inconsistent {
+                what: "--shard",
+                why: format!(
+                    "{shard}/{shards} is none of a study of {} scenes; shards count from 0, and each has a scene",
+                    study.count()
+                ),
+            });
+        }
+        let pool = thread_pool(options.threads)?;
+        let header = SweepHeader {
+            title: study.title().unwrap_or_default().into(),
+            task: study.task().name().into(),
+            study: study.text().into(),
+            base_scene: study.base_text().into(),
+            study_hash: study.hash(),
+            scenes: study.count(),
+            shards,
+            shard,
+        };
+        let folder = Folder::new(folder, header)?;
+        let range = shard_range(shard, shards, study.count());
+        let before = folder.done()?;
+        let missing = before.missing(&range);
+        let all = missing.len() as u64;
+        pool.install(|| validate(study, missing.par_iter().copied(), all, &shared.stop))?;
+        folder.create()?;
+        Ok(Self { study, schema: Schema::new(study), folder, shared, pool, range, before, missing, started })
+    }
+
+    /// Runs what is missing; see the [module](self) for what is written where. Scenes that fail are rows, not errors.
+    ///
+    /// # Errors
+    /// [`Error::File`] if files cannot be read or written.
+    pub fn execute(self, progress: Option<&SceneProgress>) -> Result<SweepOutcome> {
+        let Self { study, schema, folder, shared, pool, missing, .. } = &self;
+        if let (Some(file), true) = (folder.finished(), missing.is_empty()) {
+            return Ok(self.outcome(Some(file), 0, 0));
+        }
+        if let Some(progress) = progress {
+            progress.begin(missing.len() as u64);
+        }
+        let worker = Worker { study, schema, folder, shared, progress };
+        let interval = shared.checkpoint_interval.unwrap_or_default();
+        let collector = Collector::new(study, folder, schema, interval);
+        let finished = pool.install(|| {
+            missing.par_iter().try_for_each(|&scene| match worker.row(scene) {
+                Ok(Some(row)) => collector.add(row).map_err(Some),
+                Ok(None) => Err(None),
+                Err(error) => Err(Some(error)),
+            })
+        });
+        let (done, failed) = collector.finish()?;
+        let file = match finished {
+            Err(Some(error)) => return Err(error),
+            Err(None) => None,
+            Ok(()) => Some(folder.compact()?),
+        };
+        Ok(self.outcome(file, done, failed))
+    }
+
+    fn outcome(&self, file: Option<PathBuf>, done: u64, failed: u64) -> SweepOutcome {
+        SweepOutcome {
+            file,
+            scenes: self.range.end - self.range.start,
+            done_before: self.before.scenes.len() as u64,
+            done,
+            failed: self.before.failed + failed,
+            wall_seconds: self.started.elapsed().as_secs_f64(),
+        }
+    }
+}
+
+/// Refuses a study of which some scenes are not valid; runs nothing.
+///
+/// # Errors
+/// [`Error::Scene`] counts them and shows the first.
+pub fn validate_all(study: &Study) -> Result<()> {
+    validate(study, (0..study.count()).into_par_iter(), study.count(), &AtomicBool::new(false))
+}
+
+/// Refuses a study of which some of these scenes are not valid; a signal ends the search, and with it the sweep.
+fn validate(
+    study: &Study,
+    scenes: impl ParallelIterator<Item = u64>,
+    total: u64,
+    stop: &AtomicBool,
+) -> Result<()> {
+    const SHOWN: usize = 3;
+    let fault = |scene: u64| match stop.load(Ordering::Relaxed) {
+        true => None,
+        false => study.scene(scene).err().map(|it| it.to_string()),
+    };
+    let wrong: Vec<String> = scenes.filter_map(fault).collect();
+    match wrong.len() {
+        0 => Ok(()),
+        count => Err(Error::Scene(format!(
+            "{count} of {total} scenes are not valid, nothing was run:\n{}",
+            wrong[..count.min(SHOWN)].join("\n")
+        ))),
+    }
+}
+
+/// Texts and numbers of a row.
+type Results = (Vec<String>, Vec<f64>);
+
+/// Does scenes.
+struct Worker<'a> {
+    study: &'a Study,
+    schema: &'a Schema,
+    folder: &'a Folder,
+    shared: &'a Shared,
+    progress: Option<&'a SceneProgress>,
+}
+
+impl Worker<'_> {
+    /// The row of a scene; none if a signal came first.
+    fn row(&self, scene: u64) -> Result<Option<Row>> {
+        if self.shared.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        // A fault of the program in one scene must not cost the others.
+        let done = catch_unwind(AssertUnwindSafe(|| match self.study.task() {
+            Task::Limit => self.limit(scene).map(Some),
+            Task::Run => self.run(scene),
+        }));
+        let row = |(texts, numbers): Results, run: Option<RunFile>, error: Option<String>| Row {
+            scene,
+            inputs: self.study.inputs(scene),
+            numbers,
+            texts,
+            run,
+            error,
+        };
+        let nothing = || self.schema.results(None::<&RunReport>);
+        let row = match done {
+            Ok(Ok(None)) => return Ok(None),
+            Ok(Ok(Some((results, run)))) => row(results, run, None),
+            // Concerns all scenes: the disk is full, a directory has vanished.
+            Ok(Err(error @ Error::File { .. })) => return Err(error),
+            Ok(Err(error)) => row(nothing(), None, Some(error.to_string())),
+            Err(_) => row(nothing(), None, Some("the program panicked; please report this scene".into())),
+        };
+        if let Some(progress) = self.progress {
+            progress.done(row.error.is_some());
+        }
+        Ok(Some(row))
+    }
+
+    fn limit(&self, scene: u64) -> Result<(Results, Option<RunFile>)> {
+        let report = LimitReport::new(&self.study.scene(scene)?, Some(&[]))?;
+        Ok((self.schema.results(Some(&report)), None))
+    }
+
+    /// None if a signal came first.
+    fn run(&self, scene: u64) -> Result<Option<(Results, Option<RunFile>)>> {
+        let (number, scene) = (scene, self.study.scene(scene)?);
+        let own = self.folder.checkpoint(number);
+        let run = self.folder.checkpoints(number).iter().find_map(|from| {
+            // One that cannot be used, or is of another scene under the same number, is of no use: the scene is begun anew.
+            match Run::resume_one_of_many(&scene, from, &own, self.shared) {
+                Ok(Resumed::Run(run)) => Some(*run),
+                _ => None,
+            }
+        });
+        let run = match run {
+            Some(run) => run,
+            None => Run::one_of_many(&scene, &own, self.shared)?,
+        };
+        let (result, file) = run.execute_keeping(None)?;
+        if result.stop_reason == StopReason::Interrupted {
+            return Ok(None);
+        }
+        let kept = self.study.snapshots().contain(number).then_some(file);
+        Ok(Some((self.schema.results(Some(&RunReport::new(&result))), kept)))
+    }
+}
+
+/// Takes rows from all threads and writes parts.
+struct Collector<'a> {
+    study: &'a Study,
+    folder: &'a Folder,
+    schema: &'a Schema,
+    interval: Duration,
+    waiting: Mutex<Waiting>,
+}
+
+struct Waiting {
+    rows: Vec<Row>,
+    /// How many of them have a run.
+    runs: usize,
+    saved: Instant,
+    done: u64,
+    failed: u64,
+}
+
+impl<'a> Collector<'a> {
+    fn new(study: &'a Study, folder: &'a Folder, schema: &'a Schema, interval: f64) -> Self {
+        let waiting = Waiting { rows: vec![], runs: 0, saved: Instant::now(), done: 0, failed: 0 };
+        let (interval, waiting) = (Duration::from_secs_f64(interval), Mutex::new(waiting));
+        Self { study, folder, schema, interval, waiting }
+    }
+
+    fn add(&self, row: Row) -> Result<()> {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.done += 1;
+        waiting.failed += u64::from(row.error.is_some());
+        waiting.runs += usize::from(row.run.is_some());
+        waiting.rows.push(row);
+        let few = waiting.runs < MOST_RUNS && waiting.rows.len() < MOST_ROWS;
+        if few && waiting.saved.elapsed() < self.interval {
+            return Ok(());
+        }
+        (waiting.saved, waiting.runs) = (Instant::now(), 0);
+        let rows = std::mem::take(&mut waiting.rows);
+        // The others go on while this thread writes.
+        drop(waiting);
+        self.write(rows)
+    }
+
+    fn write(&self, rows: Vec<Row>) -> Result<()> {
+        if rows.is_empty() {
+            return Ok(());
+        }
+        // Scenes read these files when they begin, and each is to have read the same.
+        if !self.folder.is_of(self.study) {
+            return Err(Error::Inconsistent {
+                what: "sweep",
+                why: "the file of a measured profile or of a recorded path was changed meanwhile; rows since the last checkpoint are dropped: \
+                      give the file its old content, or use another directory"
+                    .into(),
+            });
+        }
+        let scenes: Vec<u64> = rows.iter().map(|row| row.scene).collect();
+        self.folder.write_part(self.schema, rows)?;
+        scenes.into_iter().for_each(|scene| self.folder.remove_checkpoints(scene));
+        Ok(())
+    }
+
+    /// Writes what is left; numbers of rows done and failed.
+    fn finish(self) -> Result<(u64, u64)> {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        let rows = std::mem::take(&mut waiting.rows);
+        let counts = (waiting.done, waiting.failed);
+        drop(waiting);
+        self.write(rows)?;
+        Ok(counts)
+    }
+}
+
+/// Scenes that have a row.
+#[derive(Debug, Clone, Default)]
+struct Done {
+    scenes: HashSet<u64>,
+    failed: u64,
+}
+
+impl Done {
+    fn missing(&self, range: &Range<u64>) -> Vec<u64> {
+        range.clone().filter(|scene| !self.scenes.contains(scene)).collect()
+    }
+}
