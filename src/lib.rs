@@ -97,6 +97,7 @@
 //! | [`solver`] | the discretised contact, implicit steps, the loop over cycles |
 //! | [`contact`] | indenters, the half-space, the stick zone, closed forms |
 //! | [`laws`] | friction, wear, motion, histories |
+//! | [`units`] | quantities with units; what a key of a scene is |
 //! | [`numerics`] | quadrature, roots, linear algebra, Abel transforms on a mesh |
 //!
 //! SI units everywhere, nothing is scaled behind the scenes; the library neither prints nor exits.
@@ -112,5 +113,6 @@ pub mod run;
 pub mod scene;
 pub mod solver;
 pub mod study;
+pub mod units;
 
 pub use error::{Error, Result};

@@ -49,13 +49,11 @@ mod motion;
 mod patch;
 mod path_file;
 mod profile_file;
-pub mod quantity;
 pub mod sampling;
 pub mod schema;
 mod sections;
 mod spacing;
 mod study;
-mod unit;
 mod universality;
 
 use input::{Pipes, Unread};

@@ -7,8 +7,8 @@ use fretwear::contact::indenter::Indenter;
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::loading::{Amplitude, Duration, Load};
 use fretwear::report::CheckReport;
-use fretwear::scene::quantity::{Dimension, parse};
 use fretwear::scene::{Cycle, Numerics, Output, Scene, Stepper, WearFrom};
+use fretwear::units::{Dimension, parse};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 

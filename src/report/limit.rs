@@ -11,7 +11,7 @@ use crate::contact::closed_form::LimitingShape;
 use crate::contact::indenter::Indenter;
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::scene::quantity::{Dimension, parse};
+use crate::units::{Dimension, parse};
 
 /// The limiting shape of a scene, in SI; the serialised fields are the keys of the JSON.
 ///

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::document::printable;
 use super::input::{self, Pipes, Unread};
-use super::quantity::{Dimension, parse};
 use crate::error::{Error, Result};
+use crate::units::{Dimension, parse};
 
 /// Size of the largest file read, bytes: a million rows of a hundred characters.
 pub(super) const LARGEST: u64 = 100_000_000;

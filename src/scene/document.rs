@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use serde_spanned::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::quantity::{self, Dimension};
 use crate::error::{Error, Result, most_alike};
+use crate::units::{self, Dimension};
 
 /// The text of a document and its name in messages.
 #[derive(Debug, Clone, Copy)]
@@ -249,7 +249,7 @@ impl<'a> Section<'a> {
     pub(super) fn length_unit(&self, key: &str) -> Result<&'a str> {
         let Some(entry) = self.optional(key) else { return Ok("m") };
         let unit = entry.string()?;
-        quantity::parse(&format!("1 {unit}"), Dimension::LENGTH)
+        units::parse(&format!("1 {unit}"), Dimension::LENGTH)
             .map_err(|why| entry.explained(why + "; give a unit of length alone, such as \"um\""))?;
         Ok(unit)
     }
@@ -423,14 +423,14 @@ impl<'a> Entry<'a> {
     pub(super) fn quantity(&self, dimension: Dimension) -> Result<f64> {
         let number: f64 = match self.value {
             DeValue::String(text) => {
-                return quantity::parse(text, dimension).map_err(|why| self.explained(why));
+                return units::parse(text, dimension).map_err(|why| self.explained(why));
             }
             DeValue::Integer(integer) if integer.radix() == 10 => {
                 integer.as_str().parse().unwrap_or(f64::NAN)
             }
             DeValue::Integer(_) => return Err(self.error("is not written in decimal digits")),
             DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
-            _ => return Err(self.wrong_type(quantity::wanted(dimension))),
+            _ => return Err(self.wrong_type(units::wanted(dimension))),
         };
         match number.is_finite() {
             true => Ok(number),

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::document::{Entry, Section, Source};
-use super::quantity::Dimension;
 use super::sections;
 use super::spacing::Spacing;
 use super::{LARGEST, read_text};
 use crate::contact::half_space::{HalfSpace, Poisson};
 use crate::error::Result;
+use crate::units::Dimension;
 
 /// Most gradings or amplitudes along one axis.
 pub const MOST_ALONG_AXIS: usize = 20_000;

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::document::{Entry, Section};
 use super::laws::{MOST_TIMES, OneClock, clock_of};
-use super::quantity::Dimension;
 use super::{Rows, path_file};
 use crate::contact::InitialContact;
 use crate::error::Result;
@@ -12,6 +11,7 @@ use crate::laws::friction::FrictionLaw;
 use crate::laws::loading::{
     Amplitude, Block, Duration, Load, Loading, Mode, RecordedPath, TangentialControl,
 };
+use crate::units::Dimension;
 
 const LOADS: [&str; 3] = ["indentation", "initial_force", "normal_force"];
 const AMPLITUDES: [&str; 3] = ["amplitude", "amplitude_ratio", "stick_ratio"];

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use super::document::{Entry, Section};
 use super::laws::{self, OneClock};
-use super::quantity::Dimension;
 use super::{
     Cycle, FINEST_ACCURACY, MOST_SNAPSHOTS, MOST_SUBSTEPS, Numerics, Output, Rows, Scene, Stepper, WearFrom,
 };
@@ -19,6 +18,7 @@ use crate::laws::conditions::Conditions;
 use crate::laws::loading::{Duration, Loading, Mode};
 use crate::laws::wear::{Archard, WearLaw};
 use crate::solver::model::FEWEST_SPRINGS;
+use crate::units::Dimension;
 
 /// Reads the whole document; the text is kept as it is.
 pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {

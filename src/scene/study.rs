@@ -8,13 +8,13 @@ use toml::{Table, Value};
 
 use super::document::{Section, Source};
 use super::input::{self, Pipes};
-use super::quantity::split_number;
 use super::sampling::{Distribution, UnitCube};
-use super::unit::Unit;
 use super::{LARGEST, Rows, Scene, columns, read_text};
 use crate::data::layout::FORMAT_VERSION;
 use crate::data::{Fingerprint, SweepFile};
 use crate::error::{Error, Result};
+use crate::units::Unit;
+use crate::units::split_number;
 
 /// Most scenes of a study.
 pub const MOST_SCENES: u64 = 10_000_000;

@@ -8,12 +8,12 @@ use toml::{Table, Value};
 use super::{Axis, KeptSnapshots, MOST_SCENES, Sampling, Study, Task, Variable, with_unit};
 use crate::error::Result;
 use crate::scene::document::{Entry, Section, nearest};
-use crate::scene::quantity::{Dimension, split_number};
 use crate::scene::sampling::{Distribution, Method, UnitCube};
 use crate::scene::schema;
 use crate::scene::sections;
 use crate::scene::spacing::Spacing;
-use crate::scene::unit::Unit;
+use crate::units::Unit;
+use crate::units::{Dimension, split_number};
 
 /// Reads the document of a study; the base scene is added by whoever calls.
 pub(super) fn read(root: &Section) -> Result<Study> {

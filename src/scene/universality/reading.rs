@@ -11,8 +11,8 @@ use super::{Case, FACTORS, MOST_COMBINATIONS, Prediction, Tolerances};
 use crate::error::{Error, Result};
 use crate::scene::document::{Entry, Section, Source};
 use crate::scene::patch::{self, Patch};
-use crate::scene::quantity::Dimension;
 use crate::scene::sections;
+use crate::units::Dimension;
 
 /// Tables of the levels of each factor, in the order of [`FACTORS`].
 const TABLES: [&str; 4] = ["media", "wear", "friction", "modes"];

@@ -2,19 +2,19 @@
 
 use std::f64::consts::PI;
 
-use super::quantity::Dimension;
+use super::dimension::Dimension;
 
 /// A unit: its dimension and its size in SI, `10^decimal · numerator/denominator`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Unit {
-    pub(super) dimension: Dimension,
+pub(crate) struct Unit {
+    pub(crate) dimension: Dimension,
     decimal: f64,
     numerator: f64,
     denominator: f64,
 }
 
 impl Unit {
-    pub(super) const ONE: Self =
+    pub(crate) const ONE: Self =
         Self { dimension: Dimension::NUMBER, decimal: 0.0, numerator: 1.0, denominator: 1.0 };
 
     const fn decimal(dimension: Dimension, decimal: f64) -> Self {
@@ -26,7 +26,7 @@ impl Unit {
     }
 
     /// Reads a unit expression; the error is a sentence with the cure.
-    pub(super) fn read(text: &str) -> Result<Self, String> {
+    pub(crate) fn read(text: &str) -> Result<Self, String> {
         Parser { text, rest: text }.whole()
     }
 
@@ -46,7 +46,7 @@ impl Unit {
     }
 
     /// The number `digits · 10^exponent` of this unit, in SI; None if it overflows.
-    pub(super) fn scale(self, digits: &str, exponent: i64) -> Option<f64> {
+    pub(crate) fn scale(self, digits: &str, exponent: i64) -> Option<f64> {
         let whole = self.decimal.round();
         // Fractional powers of prefixed units leave a fractional power of ten.
         let rest = if (self.decimal - whole).abs() < 1e-9 { 0.0 } else { self.decimal - whole };
