@@ -207,3 +207,22 @@ fn table_of_scenes_as_delivered_and_on_more_springs() {
         println!("{line} {} |", miss.map_or("".into(), |it| format!("{it:.1e}")));
     }
 }
+
+/// Nothing happens in a block without amplitude: the same wear comes that much later.
+#[test]
+fn a_rest_before_the_first_slip_only_delays_wear() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = |name: &str, end: f64, blocks: &str| {
+        let base = include_str!("support/base.toml").replace("springs = 16\ntolerance = 1e-2\n", "");
+        let content = base.replace("tau = 3\n", &format!("tau = {end}\n")) + blocks;
+        std::fs::write(folder.path().join(name), content).unwrap();
+        let output = run(folder.path(), &["run", name, "--json"]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        found["wear_volume"].as_f64().unwrap()
+    };
+    let rest = "[[loading.blocks]]\ntau = 0.5\namplitude_factor = 0\n[[loading.blocks]]\ntau = 1\namplitude_factor = 1\n";
+    let [late, plain] = [scene("late.toml", 2.0, rest), scene("plain.toml", 1.5, "")];
+    // Measured: 2e-5, by meshes and steps of their own.
+    assert!((late / plain - 1.0).abs() < 1e-4, "{late:e} instead of {plain:e}");
+}

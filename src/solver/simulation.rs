@@ -435,8 +435,13 @@ impl Simulation {
         if let Some(step) = self.stepper.prescribed_step() {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
+        let growth = largest(&self.cycle.growth);
+        if let (0.0, Some(target)) = (growth, target) {
+            // At rest until something changes.
+            return Ok(landing(target - now, Some(target)));
+        }
         let step = self.progress.next_step;
-        let growth = step * largest(&self.cycle.growth);
+        let growth = step * growth;
         if !(growth > SMALLEST_GROWTH || (now > 0.0 && step > 1e-6 * now)) {
             return Err(self.stuck("no step is small enough for wear to go on from there"));
         }
