@@ -5,6 +5,9 @@ mod support;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use fretwear::Error;
@@ -12,7 +15,6 @@ use fretwear::data::Snapshot;
 use fretwear::report::CheckReport;
 use fretwear::run::{Run, Shared};
 use fretwear::scene::schema::is_key;
-use fretwear::solver::simulation::{Flow, Observer, Simulation};
 use support::command;
 use support::scenes::{Length, RandomScene};
 
@@ -35,16 +37,19 @@ enum End {
     Failed,
 }
 
-/// Stops a run that takes long.
-struct Patience {
-    since: Instant,
-    most: Duration,
-}
-
-impl Observer for Patience {
-    fn step(&mut self, _: &Simulation) -> fretwear::Result<Flow> {
-        Ok(if self.since.elapsed() > self.most { Flow::Stop } else { Flow::Continue })
-    }
+/// Does something, and asks to stop, as a signal would, where it takes longer than `most`.
+fn stopped_after<T>(most: Duration, stop: &AtomicBool, action: impl FnOnce() -> T) -> T {
+    let (done, waiting) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            if let Err(mpsc::RecvTimeoutError::Timeout) = waiting.recv_timeout(most) {
+                stop.store(true, Ordering::Relaxed);
+            }
+        });
+        let result = action();
+        drop(done);
+        result
+    })
 }
 
 /// Whether a refusal names a key of scenes.
@@ -90,7 +95,8 @@ fn judge(random: &RandomScene, patience: Duration) -> Result<(End, String), Stri
         (Ok(_), Err(error)) => return Err(format!("check says yes, run says {error}")),
         (Err(error), Ok(_)) => return Err(format!("run says yes, check says {error}")),
     };
-    match run.execute_keeping(Some(&mut Patience { since: Instant::now(), most: patience })) {
+    // Coarser runs for the estimate of the error are stopped as well.
+    match stopped_after(patience, &shared.stop, || run.execute_keeping(None)) {
         Ok((result, file)) => {
             if let Some(off) = file.snapshots.iter().find(|snapshot| !numbers_are_numbers(snapshot)) {
                 return Err(format!("not a number at τ = {}", off.tau));
