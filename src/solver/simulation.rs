@@ -436,8 +436,8 @@ impl Simulation {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
         let growth = largest(&self.cycle.growth);
-        if let (0.0, Some(target)) = (growth, target) {
-            // At rest until something changes.
+        let at_rest = || self.model.schedule().drive(now, now).asked() == 0.0;
+        if let Some(target) = target.filter(|_| growth == 0.0 && at_rest()) {
             return Ok(landing(target - now, Some(target)));
         }
         let step = self.progress.next_step;
