@@ -17,7 +17,7 @@ use fretwear::laws::wear::Archard;
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::Model;
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
-use fretwear::solver::stepper::{Implicit, Multistep, Stepper};
+use fretwear::solver::stepper::{Bdf, Sdirk, Stepper};
 
 /// Exponent of the indenter, grading, stick ratio.
 const SCENES: [(f64, f64, f64); 12] = [
@@ -54,8 +54,8 @@ struct Shown {
 type Method = fn(f64) -> Box<dyn Stepper + Send>;
 
 const METHODS: [(&str, Method); 2] = [
-    ("Runge-Kutta", |tolerance| Box::new(Implicit::new(tolerance))),
-    ("backward differentiation", |tolerance| Box::new(Multistep::new(tolerance))),
+    ("Runge-Kutta", |tolerance| Box::new(Sdirk::new(tolerance))),
+    ("backward differentiation", |tolerance| Box::new(Bdf::new(tolerance))),
 ];
 
 impl Observer for Shown {

@@ -16,7 +16,7 @@ use fretwear::run::{Run, Shared};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
-use fretwear::solver::stepper::Multistep;
+use fretwear::solver::stepper::Bdf;
 
 /// What is asked for, springs and tolerance of the reference, and those with which the reference is itself judged.
 const COARSE: Plans = Plans { accuracies: &[1e-2, 1e-3, 1e-4], reference: (160, 2e-8), second: (112, 6e-8) };
@@ -104,7 +104,7 @@ impl Reference {
         )?;
         let plan = Plan { outputs: cycles.to_vec(), end: End::Cycles(cycles[cycles.len() - 1]) };
         let mut seen = Seen::default();
-        let mut simulation = Simulation::new(model, Box::new(Multistep::new(tolerance)), tolerance, plan)?;
+        let mut simulation = Simulation::new(model, Box::new(Bdf::new(tolerance)), tolerance, plan)?;
         simulation.run(&mut [&mut seen])?;
         Ok(Self { model: simulation.into_model(), states: seen.0 })
     }

@@ -16,7 +16,7 @@
 //! use fretwear::solver::model::Model;
 //! use fretwear::scene::Scene;
 //! use fretwear::solver::simulation::{End, Plan, Simulation};
-//! use fretwear::solver::stepper::Implicit;
+//! use fretwear::solver::stepper::Sdirk;
 //!
 //! // Units in which a0 = 1 and d = 2.
 //! let scene = Scene::from_toml(
@@ -44,7 +44,7 @@
 //! let cycles = 1.0 / contact.tau_per_cycle();
 //! let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
 //! let tolerance = 1e-5;
-//! let mut simulation = Simulation::new(model, Box::new(Implicit::new(tolerance)), tolerance, plan)?;
+//! let mut simulation = Simulation::new(model, Box::new(Sdirk::new(tolerance)), tolerance, plan)?;
 //! simulation.run(&mut [])?;
 //! let volume = simulation.model().wear_volume(simulation.fields());
 //! assert!((volume / 2.0 / 0.026873 - 1.0).abs() < 3e-3);

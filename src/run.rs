@@ -19,19 +19,19 @@ use crate::laws::loading::{self, Mode, cycles_at, has_come};
 use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice, WearFrom};
 use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::solver::simulation::{End, Observer, Outcome, Plan, Simulation};
-use crate::solver::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
+use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, Sdirk, Stepper};
 
-mod effort;
-mod knob;
-mod ladder;
+mod accuracy;
+mod cost;
 mod mesh;
 pub mod progress;
 mod ready;
 mod recorder;
 mod threads;
 
+use accuracy::budget;
+pub use cost::Expected;
 pub(crate) use mesh::operator_bytes;
-pub use ready::Expected;
 use ready::Ready;
 use recorder::{Recorder, snapshot};
 pub use threads::most_threads;
@@ -144,7 +144,9 @@ impl Run {
     /// scene nothing slips, or it needs more memory than there is.
     pub fn new(scene: &Scene, output: &Path, overwrite: bool) -> Result<Self> {
         let shared = Shared::with_signals()?;
-        Self::begin(scene, &shared, |header| RunWriter::create(output, header, overwrite))
+        let mut run = Self::begin(scene, &shared, |header| RunWriter::create(output, header, overwrite))?;
+        run.warning = cost::expected(scene.numerics().stepper, &mut run.simulation).warning;
+        Ok(run)
     }
 
     /// Prepares the run of one scene of many, which writes a file only when it takes longer than its checkpoint interval or is stopped.
@@ -162,14 +164,14 @@ impl Run {
         shared: &Shared,
         writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
     ) -> Result<Self> {
-        let Ready { simulation, limit, expected } = Ready::new(scene, &shared.operators)?;
+        let Ready { simulation, limit } = Ready::new(scene, &shared.operators)?;
         if scene.numerics().stepper == StepperChoice::Implicit {
             simulation.model().release_factors();
         }
         let header = header(scene, simulation.model(), limit.as_ref());
         let recorder = Recorder::new(scene, writer(header)?, 0.0, shared);
         let store = shared.operators.clone();
-        Ok(Self { simulation, recorder, limit, warning: expected.warning, scene: scene.clone(), store })
+        Ok(Self { simulation, recorder, limit, warning: None, scene: scene.clone(), store })
     }
 
     /// Prepares a run that goes on from the last checkpoint in its file.
@@ -242,7 +244,7 @@ impl Run {
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
             || checkpoint.state.stick.is_some() != parts.model.moving().is_some()
-            || !checkpoint.state.past.fits(&checkpoint.state, Multistep::HIGHEST_ORDER)
+            || !checkpoint.state.past.fits(&checkpoint.state, Bdf::HIGHEST_ORDER)
             || !checkpoint
                 .state
                 .compression
@@ -284,7 +286,8 @@ impl Run {
     /// # Errors
     /// As [`Run::new`], those of files apart. Each names a key of the scene.
     pub fn check(scene: &Scene) -> Result<Expected> {
-        Ready::new(scene, &OperatorStore::default()).map(|ready| ready.expected)
+        let mut ready = Ready::new(scene, &OperatorStore::default())?;
+        Ok(cost::expected(scene.numerics().stepper, &mut ready.simulation))
     }
 
     /// A word about a run that will take long, where that is known beforehand.
@@ -315,7 +318,7 @@ impl Run {
         // Springs on which the run came to an end, if less accurately than was asked for.
         let mut ended = None;
         let (outcome, checkpoint) = loop {
-            recorder.follow_judge(&scene, &store, &simulation, limit.is_some());
+            recorder.run_companions(&scene, &store, &simulation, limit.is_some());
             let outcome = match progress.as_mut() {
                 Some(progress) => simulation.run(&mut [&mut recorder, &mut **progress]),
                 None => simulation.run(&mut [&mut recorder]),
@@ -324,11 +327,11 @@ impl Run {
             let springs = match (&outcome, ended) {
                 // Finer ones do not.
                 (Err(Error::NotConverged { .. }), Some(springs)) => {
-                    refinements = knob::REFINEMENTS;
+                    refinements = budget::REFINEMENTS;
                     Some(springs)
                 }
-                _ if refinements < knob::REFINEMENTS => {
-                    recorder.wanting(&scene, &simulation, &outcome, &checkpoint)
+                _ if refinements < budget::REFINEMENTS => {
+                    recorder.more_springs(&scene, &simulation, &outcome, &checkpoint)
                 }
                 _ => None,
             };
@@ -429,15 +432,12 @@ impl Parts {
         let unlimited = model.slides() || scene.conditions().holds_normal_force;
         let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
         check_stepper(numerics.stepper, &model)?;
-        let tolerance = numerics.tolerance.unwrap_or_else(|| knob::tolerance_for(numerics.accuracy));
+        let tolerance = numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
-            StepperChoice::Implicit if model.moving().is_some() => {
-                Box::new(MovingStickImplicit::new(tolerance))
-            }
-            StepperChoice::Implicit if model.wears_smoothly() => Box::new(Multistep::new(tolerance)),
-            StepperChoice::Implicit => Box::new(Implicit::new(tolerance)),
+            StepperChoice::Implicit if model.wears_smoothly() => Box::new(Bdf::new(tolerance)),
+            StepperChoice::Implicit => Box::new(Sdirk::new(tolerance)),
         };
         let whole = numerics.stepper == StepperChoice::EveryCycle;
         let plan = plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
@@ -498,7 +498,7 @@ fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
 /// How periods are passed through.
 fn resolution(scene: &Scene, numerics: &Numerics) -> Resolution {
     let sampled = scene.conditions().mode != Mode::Tangential && numerics.springs.is_none();
-    let chosen = sampled.then(|| knob::substeps_for(numerics.accuracy));
+    let chosen = sampled.then(|| budget::substeps_for(numerics.accuracy));
     let resolved = numerics.cycle == Some(Cycle::Resolved);
     Resolution { resolved, substeps: numerics.substeps.or(chosen) }
 }

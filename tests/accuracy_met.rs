@@ -11,7 +11,7 @@ use fretwear::run::{Run, RunResult, Shared};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Plan, Simulation};
-use fretwear::solver::stepper::{Implicit, MovingStickImplicit};
+use fretwear::solver::stepper::{Bdf, Sdirk};
 use serde_json::Value;
 use support::command::{names, run, text};
 use support::reference::Table;
@@ -264,8 +264,7 @@ fn a_model_takes_all_conditions_of_its_scene_and_a_stepper_that_follows_them() {
         let model = Model::new(&contact, conditions, 40, Clustering::Cubic).expect("a model");
         let cycles = 1.0 / contact.tau_per_cycle();
         let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
-        let mut simulation =
-            Simulation::new(model, Box::new(Implicit::new(1e-4)), 1e-4, plan).expect("a start");
+        let mut simulation = Simulation::new(model, Box::new(Sdirk::new(1e-4)), 1e-4, plan).expect("a start");
         simulation.run(&mut []).expect("an end");
         simulation.model().wear_volume(simulation.fields())
     };
@@ -276,6 +275,6 @@ fn a_model_takes_all_conditions_of_its_scene_and_a_stepper_that_follows_them() {
     let contact = held.contact().expect("a contact");
     let plan = || Plan { outputs: vec![], end: End::Cycles(1.0) };
     let model = || Model::new(&contact, held.conditions(), 40, Clustering::Cubic).expect("a model");
-    assert!(Simulation::new(model(), Box::new(Implicit::new(1e-4)), 1e-4, plan()).is_err());
-    assert!(Simulation::new(model(), Box::new(MovingStickImplicit::new(1e-4)), 1e-4, plan()).is_ok());
+    assert!(Simulation::new(model(), Box::new(Bdf::new(1e-4)), 1e-4, plan()).is_err());
+    assert!(Simulation::new(model(), Box::new(Sdirk::new(1e-4)), 1e-4, plan()).is_ok());
 }

@@ -10,7 +10,7 @@ use fretwear::data::{RunFile, StopReason};
 use fretwear::run::{Run, RunResult, Shared};
 use fretwear::scene::Scene;
 use fretwear::solver::simulation::{End, Flow, Observer, Plan, Simulation};
-use fretwear::solver::stepper::Implicit;
+use fretwear::solver::stepper::Sdirk;
 use support::{Case, command};
 
 /// The plain scene of a paraboloid, with an amplitude, an end, what more there is of loading and other tables.
@@ -80,7 +80,7 @@ fn a_run_that_cannot_go_on_names_cycle_time_radius_and_what_to_do() {
     // No step is as exact as that.
     let tolerance = 1e-40;
     let plan = Plan { outputs: vec![3.0], end: End::Cycles(3.0) };
-    let error = case.simulation(Box::new(Implicit::new(1e-3)), tolerance, plan).run(&mut []).unwrap_err();
+    let error = case.simulation(Box::new(Sdirk::new(1e-3)), tolerance, plan).run(&mut []).unwrap_err();
     let words = error.to_string();
     assert!(matches!(error, Error::NotConverged { .. }), "{words}");
     let parts = [

@@ -8,7 +8,7 @@ use fretwear::numerics::grid::{Clustering, Mesh};
 use fretwear::numerics::linear::multiply;
 use fretwear::numerics::roots::bracketed;
 use fretwear::solver::simulation::{End, Outcome, Plan};
-use fretwear::solver::stepper::Implicit;
+use fretwear::solver::stepper::Sdirk;
 use support::{Case, orders};
 
 #[test]
@@ -22,7 +22,7 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
                 let name = format!("n = {exponent}, k = {grading}, c/a0 = {stick_ratio}");
                 let shape = LimitingShape::from_contact(&case.contact()).unwrap().unwrap();
                 let plan = Plan { outputs: vec![], end: End::Rate(1e-12) };
-                let mut simulation = case.simulation(Box::new(Implicit::new(1e-3)), 1e-3, plan);
+                let mut simulation = case.simulation(Box::new(Sdirk::new(1e-3)), 1e-3, plan);
                 let outcome = simulation.run(&mut []).unwrap();
                 assert_eq!(outcome, Outcome::Rate, "{name}");
                 let model = simulation.model();

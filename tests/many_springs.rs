@@ -15,7 +15,7 @@ use fretwear::numerics::linear::{Factors, Halves, HodlrFactors, LowRank, OffDiag
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, Past, State};
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
-use fretwear::solver::stepper::Multistep;
+use fretwear::solver::stepper::Bdf;
 
 /// A compression with waves that vanishes at the contact edge.
 fn compression(mesh: &Mesh) -> Vec<f64> {
@@ -206,8 +206,7 @@ fn run(grading: f64, springs: usize, tolerance: f64) -> (f64, f64) {
     assert_eq!(model.operators().backend(), expected);
     let cycles = 20.0 / contact.tau_per_cycle();
     let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
-    let mut simulation =
-        Simulation::new(model, Box::new(Multistep::new(tolerance)), tolerance, plan).unwrap();
+    let mut simulation = Simulation::new(model, Box::new(Bdf::new(tolerance)), tolerance, plan).unwrap();
     simulation.run(&mut []).unwrap();
     let volume = simulation.model().wear_volume(simulation.fields());
     let limit = LimitingShape::from_contact(&contact).unwrap().unwrap().wear_volume();
@@ -325,7 +324,7 @@ fn runs_that_are_resumed_with_factors_of_steps_before_repeat_every_bit() {
     let cycles = 20.0 / contact.tau_per_cycle();
     let end = |every: u64| {
         let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
-        let stepper = || Box::new(Multistep::new(1e-4));
+        let stepper = || Box::new(Bdf::new(1e-4));
         let model = Model::new(
             &contact,
             &Conditions::plain(*contact.friction(), *contact.wear()),

@@ -19,7 +19,7 @@ use fretwear::run::Run;
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule, State};
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
-use fretwear::solver::stepper::MovingStickImplicit;
+use fretwear::solver::stepper::Sdirk;
 use support::resume::whole_and_in_parts;
 use support::{Case, distance, laws};
 
@@ -72,7 +72,7 @@ fn finish_at(
     let model = Model::under(contact, schedule, springs, Clustering::Cubic, &store).unwrap();
     assert!(model.moving().is_some());
     let plan = Plan { outputs: vec![0.3, 1.0, 3.0, 10.0, 30.0], end: End::Rate(rate) };
-    let stepper = Box::new(MovingStickImplicit::new(tolerance));
+    let stepper = Box::new(Sdirk::new(tolerance));
     let mut simulation = Simulation::new(model, stepper, tolerance, plan).unwrap();
     let outcome = simulation.run(observers).unwrap();
     assert!([Outcome::Rate, Outcome::WornOut].contains(&outcome), "{outcome:?}");

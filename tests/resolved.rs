@@ -9,7 +9,7 @@ use fretwear::laws::path::SampledPath;
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Plan, Simulation};
-use fretwear::solver::stepper::{CycleJump, EveryCycle, Implicit, Stepper};
+use fretwear::solver::stepper::{CycleJump, EveryCycle, Sdirk, Stepper};
 use support::{Case, distance, laws, orders};
 
 const MEDIA: [(f64, f64); 3] = [(2.0, 0.0), (1.0, -0.3), (2.0, 0.5)];
@@ -19,8 +19,7 @@ fn states(model: &Model, times: &[f64]) -> Vec<State> {
     let mut found = vec![model.initial_state().unwrap()];
     for time in times {
         let plan = Plan { outputs: vec![*time], end: End::Cycles(*time) };
-        let mut simulation =
-            Simulation::new(model.clone(), Box::new(Implicit::new(1e-3)), 1e-3, plan).unwrap();
+        let mut simulation = Simulation::new(model.clone(), Box::new(Sdirk::new(1e-3)), 1e-3, plan).unwrap();
         simulation.run(&mut []).unwrap();
         found.push(simulation.state().clone());
     }
@@ -189,7 +188,7 @@ fn every_cycle_resolved_differs_from_the_continuous_wear_by_the_first_order_in_o
         simulation.run(&mut []).unwrap();
         (simulation.wear_depth(), simulation.model().depth_scale())
     };
-    let (exact, scale) = run(1.0, None, Box::new(Implicit::new(1e-9)), 1e-9);
+    let (exact, scale) = run(1.0, None, Box::new(Sdirk::new(1e-9)), 1e-9);
     let errors = [1000.0, 2000.0, 4000.0]
         .map(|cycles| distance(&run(cycles, Some(5), Box::<EveryCycle>::default(), 1.0).0, &exact) / scale);
     println!("errors {errors:?}, orders {:?}", orders(&errors));
@@ -234,12 +233,12 @@ fn every_stepper_wears_alike_with_closed_and_with_resolved_cycles() {
             let scale = simulation.model().depth_scale();
             (seen.0, limit, scale)
         };
-        let (exact, limit, scale) = run(None, Box::new(Implicit::new(1e-8)), 1e-8);
+        let (exact, limit, scale) = run(None, Box::new(Sdirk::new(1e-8)), 1e-8);
         for substeps in [None, Some(3)] {
             let steppers: [(&str, Box<dyn Stepper + Send>, f64); 3] = [
                 ("every-cycle", Box::<EveryCycle>::default(), 3e-3),
                 ("cycle-jump", Box::<CycleJump>::default(), 1e-4),
-                ("implicit", Box::new(Implicit::new(1e-5)), 1e-4),
+                ("implicit", Box::new(Sdirk::new(1e-5)), 1e-4),
             ];
             for (stepper_name, stepper, allowed) in steppers {
                 // Its first cycle takes more off next to the edge of stick than a slope can carry along.

@@ -1,6 +1,6 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
-use super::knob::{smallness, springs_for};
+use super::accuracy::budget::{MOST_RAISED, smallness, springs_for};
 use super::{SPRINGS_TO_SLIDE, memory_figure};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
@@ -30,7 +30,7 @@ const COARSEST_VOLUME: f64 = 0.1;
 /// numbers.
 const ROUND_OFF: f64 = 1e-2;
 
-/// By how much the number of springs is raised that do not do.
+/// Factor by which the number of springs is raised when they do not carry the scene.
 const RAISE: f64 = 1.3;
 
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
@@ -38,9 +38,6 @@ const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
 /// Bytes held per spring where operators are hierarchical.
 const BYTES_PER_SPRING: f64 = 12e3;
-
-/// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
-pub(super) const MOST_RAISED: usize = 600;
 
 /// How well a mesh carries what is known beforehand.
 struct Quality {

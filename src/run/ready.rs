@@ -1,6 +1,6 @@
 //! What a run comes to before its first step. What it refuses is refused here, for `run` and for `check`.
 
-use super::{Parts, effort};
+use super::{Parts, cost};
 use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
@@ -12,16 +12,6 @@ use crate::solver::simulation::Simulation;
 pub(super) struct Ready {
     pub simulation: Simulation,
     pub limit: Option<LimitingShape>,
-    pub expected: Expected,
-}
-
-/// What a run will take, where that is long.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Expected {
-    /// Wall time, s, in order of size; none where it is short.
-    pub seconds: Option<f64>,
-    /// The same in a sentence, with its cause.
-    pub warning: Option<String>,
 }
 
 impl Ready {
@@ -34,8 +24,8 @@ impl Ready {
     fn unkeyed(scene: &Scene, store: &OperatorStore) -> Result<Self> {
         let parts = Parts::new(scene, scene.numerics(), None, store)?;
         let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
-        let expected = effort::check(scene.numerics().stepper, &mut simulation)?;
-        Ok(Self { simulation, limit: parts.limit, expected })
+        cost::check(scene.numerics().stepper, &mut simulation)?;
+        Ok(Self { simulation, limit: parts.limit })
     }
 }
 

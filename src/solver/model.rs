@@ -21,6 +21,7 @@ mod output;
 mod past;
 mod reach;
 mod schedule;
+mod stage;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -38,7 +39,7 @@ use crate::numerics::roots::{bracketed, next_to};
 pub use cycle::CycleFields;
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
-pub use moving::{MovingStick, StickEdge, StickTarget, StickTrial};
+pub use moving::{MovingStick, StickEdge, StickStage, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;
 pub use output::RadialFields;
@@ -46,6 +47,7 @@ use output::Shown;
 pub use past::{Linearised, Past, PastPoint};
 use reach::Reach;
 pub use schedule::{Demand, Drive, Resolution, Schedule};
+pub use stage::{Target, Unknowns};
 
 /// Part of the annulus, next to the edge of stick, of which the springs of a [`Clustering::Smooth`] mesh are not shown: the front in which wear
 /// proceeds towards the edge is followed well as long as some springs are left before it.
@@ -340,8 +342,7 @@ impl Model {
     /// [`Error::NotConverged`] if no edge is found.
     pub fn initial_state(&self) -> Result<State> {
         let stick = self.moving.as_ref().map(|moving| moving.start(self)).transpose()?;
-        let place =
-            stick.as_ref().map_or(self.place, |stick| self.place_of(stick, &self.schedule.drive(0.0, 0.0)));
+        let place = self.place_of(stick.as_ref(), &self.schedule.drive(0.0, 0.0));
         let guess = self.contact.contact_radius().powi(2) - place.stick_area;
         let guess = if stick.is_some() { guess } else { self.contact.slip_area_offset() };
         let limit = self.unworn.limit_edge() + self.place.stick_area - place.stick_area;
@@ -475,7 +476,7 @@ impl Model {
     pub fn fields(&self, state: &State) -> Fields {
         let mut fields = Fields::default();
         let drive = self.schedule.drive(state.cycles, state.cycles);
-        let place = state.stick.as_ref().map_or(self.place, |stick| self.place_of(stick, &drive));
+        let place = self.place_of(state.stick.as_ref(), &drive);
         self.evaluate_at(&place, state.edge, &state.compression, &mut fields);
         fields
     }

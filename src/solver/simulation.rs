@@ -264,12 +264,14 @@ impl Simulation {
         self.rate
     }
 
-    /// Tries a step of so many cycles and forgets it, for its cost.
+    /// Tries a step of so many cycles and forgets it.
     ///
     /// # Errors
     /// Those of the stepper.
-    pub fn measure_step(&mut self, cycles: f64) -> Result<()> {
-        self.stepper.step(&self.model, &self.state, cycles).map(|_| ())
+    pub fn try_step(&mut self, cycles: f64) -> Result<()> {
+        let tried = self.stepper.step(&self.model, &self.state, cycles).map(|_| ());
+        self.stepper.forget();
+        tried
     }
 
     /// Steps to the end of the plan or until an observer stops it. The start is an output too, unless steps were made before.

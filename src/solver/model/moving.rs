@@ -31,7 +31,7 @@ use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::numerics::grid::Clustering;
 use crate::numerics::roots::bracketed;
-pub use stage::{StickTarget, StickTrial};
+pub use stage::{StickStage, StickTarget, StickTrial};
 
 /// Radii at which what was left behind is known, for interpolation over where the contact edge can be.
 const STATIONS: usize = 24;
@@ -202,11 +202,6 @@ impl MovingStick {
         !self.outwards && !self.rests()
     }
 
-    /// By how much area and depth of the edge of stick have changed in a stage, as far as ground passes it.
-    fn motion(&self, target: &StickTarget, area: f64, depth: f64) -> (f64, f64) {
-        if self.slides() { (0.0, 0.0) } else { (area - target.stick.area, depth - target.stick.depth) }
-    }
-
     /// Whether the edge stays where it is during a step.
     fn rests(&self) -> bool {
         self.jumps || self.slides()
@@ -344,9 +339,9 @@ impl Model {
         self.moving.as_ref()
     }
 
-    /// Where the mesh begins in a state.
-    pub(super) fn place_of(&self, stick: &StickEdge, drive: &Drive) -> Place {
-        let moving = self.moving.as_ref().expect("a stick edge in the state is one that moves");
+    /// Where the mesh begins, with the edge of stick of a state.
+    pub(super) fn place_of(&self, stick: Option<&StickEdge>, drive: &Drive) -> Place {
+        let (Some(moving), Some(stick)) = (&self.moving, stick) else { return self.place };
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
             Cause::NormalForce(_) => drive.slip_compression(self.contact.half_space().stiffness_ratio()),
@@ -386,7 +381,7 @@ impl Model {
         match (&self.moving, &state.stick) {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
                 let drive = self.schedule.drive(state.cycles, state.cycles);
-                stick.depth + self.place_of(stick, &drive).slip_compression
+                stick.depth + self.place_of(Some(stick), &drive).slip_compression
             }
             (Some(MovingStick { cause: Cause::Sliding(_), .. }), Some(stick)) => {
                 self.contact.indentation() - self.place.slip_compression + stick.depth

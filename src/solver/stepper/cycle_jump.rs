@@ -1,10 +1,11 @@
 //! Explicit steps over many cycles with an embedded estimate of their error.
 
+use super::tableau::BOGACKI_SHAMPINE;
 use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::solver::model::{Fields, Model, State};
 
-/// Bogacki and Shampine's explicit Runge-Kutta method of order 3 with an embedded one of order 2 (Appl. Math. Lett. 2:321, 1989).
+/// Bogacki and Shampine's explicit Runge-Kutta method of order 3 with an embedded one of order 2.
 #[derive(Debug, Default)]
 pub struct CycleJump {
     fields: Fields,
@@ -18,15 +19,11 @@ struct Stage {
     volume: f64,
 }
 
-const NODES: [&[f64]; 4] = [&[], &[0.5], &[0.0, 0.75], &WEIGHTS];
-const WEIGHTS: [f64; 3] = [2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0];
-const ERROR: [f64; 4] = [-5.0 / 72.0, 1.0 / 12.0, 1.0 / 9.0, -1.0 / 8.0];
-
 impl Stepper for CycleJump {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let mut stages: Vec<Stage> = vec![];
         let mut at = state.clone();
-        for weights in NODES {
+        for weights in BOGACKI_SHAMPINE.stages {
             at = advance(state, cycles, weights, &stages);
             let drive = model.schedule().drive(state.cycles, at.cycles);
             if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
@@ -44,7 +41,7 @@ impl Stepper for CycleJump {
         let difference = advance(
             &State { compression: vec![0.0; at.compression.len()], ..at.clone() },
             cycles,
-            &ERROR,
+            &BOGACKI_SHAMPINE.error,
             &stages,
         );
         let error = self.depth_error(model, &difference.compression);
