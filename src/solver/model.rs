@@ -12,6 +12,7 @@
 
 mod cycle;
 mod derivatives;
+mod first_force;
 mod jacobian;
 mod loops;
 mod motion;

@@ -426,7 +426,7 @@ impl Model {
         let largest = self.contact.slip_compression();
         let excess = |compression: f64| {
             let amplitude = drive.friction.static_strength(compression) / ratio;
-            let force = super::reach::first_force(&self.contact, &drive.friction, amplitude, depth)
+            let force = super::first_force::first_force(&self.contact, &drive.friction, amplitude, depth)
                 .unwrap_or(f64::NAN);
             drive.excess(force, amplitude)
         };

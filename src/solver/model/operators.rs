@@ -1,6 +1,6 @@
 //! Operators of one grading on one mesh, which models of the same can share.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::derivatives::{Stencil, derivative_stencils};
 use super::jacobian::{Jacobian, ScaledFactors};
@@ -36,8 +36,6 @@ enum Inverse {
 /// What tells operators apart: the bits of the grading and of the stretch of the mesh, number of springs, clustering, backend.
 type Key = (u64, u64, usize, Clustering, Backend);
 
-type Kept = Vec<(Key, Arc<Operators>)>;
-
 /// Operators used last, for all the models of a process; one at most of those so large that they fill the memory.
 ///
 /// Models share them when grading, number of springs and the ratio `a∞/c` agree to the last bit: scenes that differ in load, friction,
@@ -46,7 +44,8 @@ type Kept = Vec<(Key, Arc<Operators>)>;
 /// A clone is the same store.
 #[derive(Debug, Clone, Default)]
 pub struct OperatorStore {
-    kept: Arc<Mutex<Kept>>,
+    /// The ones used last first.
+    recent: Arc<Mutex<Vec<(Key, Arc<Operators>)>>>,
 }
 
 impl OperatorStore {
@@ -66,27 +65,30 @@ impl OperatorStore {
             return Ok(found);
         }
         if springs >= MANY_SPRINGS {
-            // One of that size is enough: on a mesh that did not do, another follows.
-            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-            kept.retain(|((_, _, springs, ..), _)| *springs < MANY_SPRINGS);
+            // One of that size is enough: a mesh that does not carry the contact is followed by another.
+            self.recent().retain(|((_, _, springs, ..), _)| *springs < MANY_SPRINGS);
         }
         // Without the lock, so that others go on meanwhile; two that build the same build it equal.
         let built = Arc::new(Operators::new(backend, grading, stretch, springs, clustering)?);
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.insert(0, (key, Arc::clone(&built)));
-        kept.truncate(Self::MOST);
+        let mut recent = self.recent();
+        recent.insert(0, (key, Arc::clone(&built)));
+        recent.truncate(Self::MOST);
         Ok(built)
     }
 
+    fn recent(&self) -> MutexGuard<'_, Vec<(Key, Arc<Operators>)>> {
+        self.recent.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn touch(&self, key: Key) -> Option<Arc<Operators>> {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let place = kept.iter().position(|(known, _)| *known == key)?;
-        kept[..=place].rotate_right(1);
-        Some(Arc::clone(&kept[0].1))
+        let mut recent = self.recent();
+        let index = recent.iter().position(|(known, _)| *known == key)?;
+        recent[..=index].rotate_right(1);
+        Some(Arc::clone(&recent[0].1))
     }
 }
 
-/// Springs from which on what is not needed any more is not kept: the factors of `F`, a quarter of a run's memory, and operators used before.
+/// Springs from which on memory is given back early: the factors of `F`, a quarter of a run's memory, and operators used before.
 const MANY_SPRINGS: usize = 500;
 
 /// Most corrections of a solution with hierarchical operators.
@@ -165,13 +167,15 @@ impl Operators {
             row_factor[n - 1] = 0.0;
             let column_factor = vec![1.0; n - 1];
             let jacobian = Jacobian {
+                abel: &self.abel,
+                stencils: &self.derivative,
                 row_factor: &row_factor,
                 column_factor: &column_factor,
                 along: 0.0,
                 pressure_factor: 0.0,
                 corner: 1.0,
             };
-            jacobian.factors(self, compressed, None)
+            jacobian.factors(compressed, None)
         })
     }
 

@@ -3,9 +3,7 @@
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::laws::friction::FrictionLaw;
 use crate::laws::loading::TangentialControl;
-use crate::numerics::quadrature::Rule;
 use crate::numerics::roots::bracketed;
 
 /// Radius, over that of the contact, of the core within which nothing is worn under full sliding: the springs need a smallest radius, and
@@ -26,9 +24,6 @@ const LARGEST_CORE_SHARE: f64 = 5e-3;
 pub(super) fn core_share(grading: f64) -> f64 {
     CORE.powf(1.0 + grading)
 }
-
-/// Nodes of the quadrature of the first cycle's force.
-const FORCE_NODES: usize = 100;
 
 /// Steps in the search for the last stick radius.
 const SEARCH: usize = 400;
@@ -125,33 +120,4 @@ impl Schedule {
         }
         Ok(largest)
     }
-}
-
-/// Amplitude of the tangential force, N, on the unworn contact under the law of friction at the start.
-///
-/// ```text
-/// F_x = 2 c_T ∫_0^a x^k min(U, μ_f(q) q/M) dx
-/// ```
-pub(super) fn first_force(
-    contact: &InitialContact,
-    friction: &FrictionLaw,
-    amplitude: f64,
-    depth: f64,
-) -> Result<f64> {
-    let half_space = contact.half_space();
-    let (ratio, exponent) = (half_space.stiffness_ratio(), 1.0 + half_space.grading());
-    let profile = contact.equivalent_profile();
-    let edge = profile.radius_at(depth)?;
-    let sticking = friction.compression_at(ratio * amplitude);
-    let stick = if sticking < depth { profile.radius_at(depth - sticking)? } else { 0.0 };
-    let stuck = ratio * amplitude * stick.powf(exponent) / exponent;
-    // In y = x^(1+k), which leaves no power of x.
-    let (low, high) = (stick.powf(exponent), edge.powf(exponent));
-    let rule = Rule::legendre(FORCE_NODES)?;
-    let strength = |part: f64| {
-        let x = (low + (high - low) * part).powf(exponent.recip());
-        friction.kinetic_strength(depth - profile.value(x))
-    };
-    let slipping = (high - low) / exponent * rule.mean(strength);
-    Ok(2.0 * half_space.normal_stiffness() * (stuck + slipping))
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::reach::first_force;
+use super::first_force::first_force;
 use crate::contact::InitialContact;
 use crate::contact::spring::{Response, stick_compression};
 use crate::error::{Error, Result};
