@@ -64,7 +64,11 @@ impl Observer for Shown {
         self.volume.push(model.wear_volume(simulation.fields()));
         self.volume_by_energy.push(simulation.state().dissipated_energy);
         let depth = |part: f64| {
-            model.wear_depth_at(simulation.state(), simulation.fields(), part * model.unworn().limit_edge())
+            model.wear_depth_at(
+                simulation.state(),
+                simulation.fields(),
+                part * model.unworn().limit_slip_area(),
+            )
         };
         // From 1e-4 of the annulus on, evenly in the logarithm, then evenly.
         let near = (0..40).map(|i| 10f64.powf(-4.0 + 0.1 * f64::from(i)));

@@ -64,7 +64,7 @@ fn parts(criterion: &mut Criterion) {
         let (model, state) = (simulation.model(), simulation.state());
         let mut fields = Fields::default();
         criterion.bench_function(&format!("evaluate/{springs}"), |bench| {
-            bench.iter(|| model.evaluate(state.edge, black_box(&state.compression), &mut fields));
+            bench.iter(|| model.evaluate(state.slip_area, black_box(&state.compression), &mut fields));
         });
         criterion.bench_function(&format!("explicit rates/{springs}"), |bench| {
             bench.iter(|| model.rates(black_box(&fields), simulation.cycle()));
@@ -163,9 +163,9 @@ fn resolved_cycles(criterion: &mut Criterion) {
             let model =
                 Model::under(&contact, schedule, springs, Clustering::Cubic, &store).expect("it slips");
             let state = model.initial_state().expect("an edge is found");
-            let (fields, drive) = (model.fields(&state), model.schedule().drive(0.0, 0.0));
+            let (fields, loading) = (model.fields(&state), model.schedule().loading(0.0, 0.0));
             criterion.bench_function(&format!("cycle: {name}/{springs} springs"), |bench| {
-                bench.iter(|| model.cycle(&drive, black_box(&state.compression), &fields));
+                bench.iter(|| model.cycle(&loading, black_box(&state.compression), &fields));
             });
         };
         measure("closed form", &Mode::Tangential, None);

@@ -121,8 +121,10 @@ impl Reference {
                 let exact = self.model.wear_depth_at(state, &fields, r * r - stick_area);
                 let off = (w - exact).abs() / self.model.depth_scale();
                 if off > depth {
-                    (depth, place) =
-                        (off, [(r * r - stick_area) / self.model.unworn().limit_edge(), state.cycles / end]);
+                    (depth, place) = (
+                        off,
+                        [(r * r - stick_area) / self.model.unworn().limit_slip_area(), state.cycles / end],
+                    );
                 }
             }
         }

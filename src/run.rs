@@ -249,7 +249,7 @@ impl Run {
                 .state
                 .compression
                 .iter()
-                .chain([&checkpoint.state.edge])
+                .chain([&checkpoint.state.slip_area])
                 .all(|value| value.is_finite())
         {
             return Err(unusable(

@@ -173,7 +173,7 @@ fn a_rig_moves_the_contact_so_that_the_first_stick_radius_is_the_one_asked_for()
         // F_x = μ_f [F_N(d) - F_N(d_c)], F_N as the cube of the radius.
         let force = 0.5 * contact.normal_force() * (1.0 - ratio * ratio * ratio);
         let far = contact.amplitude() + force / stiffness;
-        let given = schedule.drive(0.0, 0.0).amplitude;
+        let given = schedule.loading(0.0, 0.0).amplitude;
         assert!((given / far - 1.0).abs() < 1e-6, "{part}, {ratio}: {given:e} instead of {far:e}");
         let run = Run::one_of_many(&scene, Path::new("never-written.h5"), &Shared::default()).expect("a run");
         let first = run.simulation().cycle().stick_radius / contact.contact_radius();
@@ -184,7 +184,7 @@ fn a_rig_moves_the_contact_so_that_the_first_stick_radius_is_the_one_asked_for()
         let contact = scene.contact().expect("a contact");
         let schedule =
             Schedule::new(&contact, scene.conditions(), Resolution::default()).expect("a schedule");
-        assert_eq!(schedule.drive(0.0, 0.0).amplitude.to_bits(), 1e-7_f64.to_bits());
+        assert_eq!(schedule.loading(0.0, 0.0).amplitude.to_bits(), 1e-7_f64.to_bits());
     }
 }
 

@@ -65,14 +65,14 @@ fn the_first_rate_of_gross_slip_is_that_of_the_closed_form() {
                 assert!(model.slides());
                 let state = model.initial_state().unwrap();
                 let fields = model.fields(&state);
-                let cycle = model.cycle(&model.schedule().drive(0.0, 0.0), &state.compression, &fields);
+                let cycle = model.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields);
                 let expected = first_rate(&contact, exponent, grading);
                 let of_surface: f64 = model
                     .operators()
                     .depth_sum()
                     .iter()
                     .zip(cycle.growth.iter().zip(&fields.slip_depth))
-                    .map(|(weight, (growth, depth))| PI * fields.edge * weight * growth * depth)
+                    .map(|(weight, (growth, depth))| PI * fields.slip_area * weight * growth * depth)
                     .sum();
                 let off = [cycle.volume, of_surface].map(|rate| (rate / expected - 1.0).abs());
                 println!("k {grading} n {exponent} U {over}: energy and surface off by {off:?}");

@@ -31,7 +31,7 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
                 let distance = support::distance(&simulation.wear_depth(), &limit) / shape.wear_depth_max();
                 let worn = model.wear_volume(simulation.fields()) / shape.wear_volume() - 1.0;
                 let limit_edge = shape.contact_radius_limit().powi(2) - shape.stick_radius().powi(2);
-                let off = (simulation.state().edge / limit_edge - 1.0).abs();
+                let off = (simulation.state().slip_area / limit_edge - 1.0).abs();
                 // As k → 1 the ground next to the edge of stick wears long after the rest.
                 let depth = if grading == 0.9 { &mut late } else { &mut depth };
                 for (worst, value) in [(depth, distance), (&mut volume, worn.abs()), (&mut edge, off)] {

@@ -271,14 +271,14 @@ fn factors_of_newtons_matrix_invert_it_nearly() {
         .unwrap();
         let state = model.initial_state().unwrap();
         let fields = model.fields(&state);
-        let drive = model.schedule().drive(0.0, 0.0);
-        let cycle = model.cycle(&drive, &state.compression, &fields);
+        let loading = model.schedule().loading(0.0, 0.0);
+        let cycle = model.cycle(&loading, &state.compression, &fields);
         let step = 0.1 / contact.tau_per_cycle();
-        let slopes = model.plain_growth_slopes(&drive, &fields, &cycle, -step).unwrap();
-        let (by_pressure, growth) = (slopes.by_pressure, slopes.by_edge.clone());
-        let by_edge = model.log_slip_by_edge(&fields);
+        let slopes = model.plain_growth_slopes(&loading, &fields, &cycle, -step).unwrap();
+        let (by_pressure, growth) = (slopes.by_pressure, slopes.by_slip_area.clone());
+        let by_slip_area = model.log_slip_by_slip_area(&fields);
         let theta = 1e-3;
-        let factors = model.stage_factors(&fields, theta, slopes, &by_edge, None).unwrap();
+        let factors = model.stage_factors(&fields, theta, slopes, &by_slip_area, None).unwrap();
         // The product of the matrix, by the transforms, with something that is a compression and not smooth.
         let inner = n - 1;
         let change: Vec<f64> = (0..inner).map(|i| (0.77 * i as f64).sin()).collect();
@@ -288,17 +288,17 @@ fn factors_of_newtons_matrix_invert_it_nearly() {
         let [profile, pressure] = model.operators().transforms();
         profile.apply(&density, &mut carried);
         pressure.apply(&change, &mut pressed);
-        let scale = fields.edge.powf(0.5 * (1.0 - grading));
+        let scale = fields.slip_area.powf(0.5 * (1.0 - grading));
         let by_log: Vec<f64> =
             carried.iter().zip(&fields.slip_depth).map(|(depth, slip)| -scale * depth / slip).collect();
         let along = model.along_annulus(&by_log);
-        let edge = fields.edge;
+        let edge = fields.slip_area;
         let mut rhs: Vec<f64> = (0..inner)
             .map(|i| {
-                by_log[i] - theta * along[i] + by_pressure * pressed[i] + (by_edge[i] + growth[i]) * edge
+                by_log[i] - theta * along[i] + by_pressure * pressed[i] + (by_slip_area[i] + growth[i]) * edge
             })
             .collect();
-        rhs.push(by_log[inner] + by_edge[inner] * edge);
+        rhs.push(by_log[inner] + by_slip_area[inner] * edge);
         factors.solve(&mut rhs);
         let errors = rhs.iter().zip(&change).map(|(found, q)| (found - q).abs());
         let error = errors.fold(0.0, f64::max);

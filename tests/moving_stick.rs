@@ -89,7 +89,7 @@ fn volume_by_depth(simulation: &Simulation) -> f64 {
     let model = simulation.model();
     let sum: f64 =
         model.operators().depth_sum().iter().zip(simulation.wear_depth()).map(|(w, depth)| w * depth).sum();
-    PI * model.unworn().limit_edge() * sum / model.contact().indentation()
+    PI * model.unworn().limit_slip_area() * sum / model.contact().indentation()
 }
 
 fn end_of(case: &Case, conditions: &Conditions, tolerance: f64) -> f64 {
@@ -239,7 +239,7 @@ fn the_normal_force_is_held_by_the_profile_that_the_edge_of_stick_left_behind() 
             let mut steps = history.0.clone();
             steps.dedup_by(|next, before| next[1] - before[1] < 1e-9 * last);
             let found = load_at_rest(&simulation, &steps);
-            let expected = simulation.fields().place.stick_load;
+            let expected = simulation.fields().stick_zone.stick_load;
             errors.push((found / expected - 1.0).abs());
             let all = 2.0 * contact.half_space().normal_stiffness() * found / contact.normal_force() - 1.0;
             println!(

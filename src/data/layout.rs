@@ -249,13 +249,13 @@ pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 10] = [
     ),
     field(
         label("edge", "m2", "square of the contact radius less that of the stick radius"),
-        |it| &it.state.edge,
-        |it| &mut it.state.edge,
+        |it| &it.state.slip_area,
+        |it| &mut it.state.slip_area,
     ),
     field(
         label("edge_rate", "m2", "gain of edge per cycle in the last step"),
-        |it| &it.state.edge_rate,
-        |it| &mut it.state.edge_rate,
+        |it| &it.state.slip_area_rate,
+        |it| &mut it.state.slip_area_rate,
     ),
     field(
         label("first_rate", "m3", "worn volume per cycle at the start"),
@@ -290,8 +290,8 @@ pub(super) const PAST_REALS: [Field<PastPoint, f64>; 4] = [
     field(label("cycles", "1", "number of fretting cycles done"), |it| &it.cycles, |it| &mut it.cycles),
     field(
         label("edge", "m2", "square of the contact radius less that of the stick radius"),
-        |it| &it.edge,
-        |it| &mut it.edge,
+        |it| &it.slip_area,
+        |it| &mut it.slip_area,
     ),
     field(
         label("dissipated_energy", "J", "energy dissipated by friction since the start"),
@@ -309,13 +309,13 @@ pub(super) const PAST_REALS: [Field<PastPoint, f64>; 4] = [
 pub(super) const LINEARISED_REALS: [Field<Linearised, f64>; 3] = [
     field(
         label("edge", "m2", "square of the contact radius less that of the stick radius"),
-        |it| &it.edge,
-        |it| &mut it.edge,
+        |it| &it.slip_area,
+        |it| &mut it.slip_area,
     ),
     field(
         label("gathered_edge", "m2", "what the times before made of the edge"),
-        |it| &it.gathered_edge,
-        |it| &mut it.gathered_edge,
+        |it| &it.gathered_slip_area,
+        |it| &mut it.gathered_slip_area,
     ),
     field(label("step", "1", "cycles by which rates are multiplied"), |it| &it.step, |it| &mut it.step),
 ];

@@ -155,16 +155,16 @@ fn fewest_steps(choice: Choice, simulation: &Simulation) -> f64 {
 ///
 /// What is left of the slip depth, `δ = S_∞ - S`, presses the springs by `F⁻¹ δ` and falls by the growth of `S` under that pressure.
 fn stiffness(model: &Model, start: &State) -> f64 {
-    let edge = model.unworn().limit_edge();
-    let drive = model.schedule().drive(0.0, 0.0);
+    let slip_area = model.unworn().limit_slip_area();
+    let loading = model.schedule().loading(0.0, 0.0);
     let small = 1e-3 * model.depth_scale();
     let mut left: Vec<f64> = (0..model.springs()).map(|i| if i % 2 == 0 { small } else { -small }).collect();
     let mut rate = 0.0;
     let mut fields = model.fields(start);
     for _ in 0..ITERATIONS {
-        let compression = model.compression(edge, |i, unworn| unworn.limit_slip - left[i]);
-        model.evaluate(edge, &compression, &mut fields);
-        let cycle = model.cycle(&drive, &compression, &fields);
+        let compression = model.compression(slip_area, |i, unworn| unworn.limit_slip - left[i]);
+        model.evaluate(slip_area, &compression, &mut fields);
+        let cycle = model.cycle(&loading, &compression, &fields);
         let fall: Vec<f64> = cycle
             .growth
             .iter()

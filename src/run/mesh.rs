@@ -120,7 +120,7 @@ impl Quality {
         };
         let most = contact.slip_compression();
         let nodes = &model.operators().nodes()[1..];
-        let exact = |x: f64| most - contact.equivalent_profile().rise(stick_radius, state.edge * x);
+        let exact = |x: f64| most - contact.equivalent_profile().rise(stick_radius, state.slip_area * x);
         let errors = state.compression.iter().zip(nodes).map(|(q, x)| (q - exact(*x)).abs() / most);
         let fields = model.fields(&state);
         let limit = LimitingShape::from_contact(contact)?;

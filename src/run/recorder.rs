@@ -58,9 +58,9 @@ pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
 fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
     let (model, state) = (simulation.model(), simulation.state());
     let schedule = model.schedule();
-    let drive = model.drive_in(state, schedule.drive(state.cycles, state.cycles));
+    let loading = model.loading_in(state, schedule.loading(state.cycles, state.cycles));
     let mut found =
-        model.cycle_loop(&drive, simulation.cycle(), &state.compression, simulation.fields(), LOOP_STEPS);
+        model.cycle_loop(&loading, simulation.cycle(), &state.compression, simulation.fields(), LOOP_STEPS);
     let points = 1 + schedule.loop_steps(LOOP_STEPS);
     for values in found.displacement.iter_mut().chain(&mut found.force) {
         let end = values[0];

@@ -12,6 +12,7 @@
 
 mod cycle;
 mod derivatives;
+mod envelope;
 mod first_force;
 mod jacobian;
 mod loops;
@@ -20,7 +21,6 @@ mod moving;
 mod operators;
 mod output;
 mod past;
-mod reach;
 mod schedule;
 mod stage;
 
@@ -38,16 +38,16 @@ use crate::numerics::grid::Clustering;
 use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
 pub use cycle::CycleFields;
+use envelope::Envelope;
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
 pub use moving::{MovingStick, StickEdge, StickStage, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;
+use output::OutputRadii;
 pub use output::RadialFields;
-use output::Shown;
 pub use past::{Linearised, Past, PastPoint};
-use reach::Reach;
-pub use schedule::{Demand, Drive, Resolution, Schedule};
+pub use schedule::{AmplitudeControl, CycleLoading, Resolution, Schedule};
 pub use stage::{Target, Unknowns};
 
 /// Part of the annulus, next to the edge of stick, of which the springs of a [`Clustering::Smooth`] mesh are not shown: the front in which wear
@@ -66,7 +66,7 @@ pub struct State {
     /// Cycles done.
     pub cycles: f64,
     /// `Z = a² - c²`, m², of the contact edge `a`.
-    pub edge: f64,
+    pub slip_area: f64,
     /// Compression `q`, m, of the springs inside the contact edge, shape `(springs - 1,)`, outwards.
     pub compression: Vec<f64>,
     /// Energy dissipated by friction since the start, J.
@@ -76,7 +76,7 @@ pub struct State {
     /// Smallest stick radius of the cycles so far, m; infinite before the first.
     pub least_stick_radius: f64,
     /// Mean rate of the edge in the last step, m² per cycle; zero at the start. A first guess for the next step.
-    pub edge_rate: f64,
+    pub slip_area_rate: f64,
     /// Mean rates of the compressions in the last step, m per cycle, shape `(springs - 1,)`; zero at the start.
     pub compression_rate: Vec<f64>,
     /// The edge of stick, where that moves.
@@ -88,10 +88,10 @@ pub struct State {
 /// What follows from a state, on the springs `ξ_1 ... ξ_n` of which the last is the contact edge.
 #[derive(Debug, Clone, Default)]
 pub struct Fields {
-    /// Where the mesh begins.
-    pub place: Place,
+    /// The stick zone, at whose edge the mesh begins.
+    pub stick_zone: StickZone,
     /// `Z = a² - c²`, m².
-    pub edge: f64,
+    pub slip_area: f64,
     /// `x^(k-1)`, the factor from compression to density.
     pub density_factor: Vec<f64>,
     /// `F q`, m.
@@ -109,9 +109,9 @@ pub struct Fields {
     density: Vec<f64>,
 }
 
-/// The edge of stick, where the mesh begins.
+/// The stick zone, at whose edge the mesh begins.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Place {
+pub struct StickZone {
     /// `c²`, m².
     pub stick_area: f64,
     /// Compression `q_c` below which springs slip, m: that of the springs there, and more where the contact slides as a whole.
@@ -140,9 +140,9 @@ pub struct Model {
     /// Springs next to the edge of stick that the output does not show.
     hidden: usize,
     /// Where the output shows the fields.
-    shown: Shown,
-    /// The edge of stick, its innermost place where it moves.
-    place: Place,
+    output: OutputRadii,
+    /// The stick zone; the smallest one where its edge moves.
+    stick_zone: StickZone,
     moving: Option<MovingStick>,
     depth_scale: f64,
     slides: bool,
@@ -183,10 +183,10 @@ impl Model {
     ) -> Result<Self> {
         let backend = Self::backend(contact, &schedule, springs);
         let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
-        let Reach { contact, slides, surplus } = if uniform {
-            Reach { contact: contact.clone(), slides: false, surplus: 0.0 }
+        let Envelope { contact, slides, surplus } = if uniform {
+            Envelope { contact: contact.clone(), slides: false, surplus: 0.0 }
         } else {
-            schedule.reach(contact)?
+            schedule.envelope(contact)?
         };
         let contact = &contact;
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
@@ -225,18 +225,18 @@ impl Model {
         )?;
         let stick_radius_squared = stick_radius * stick_radius;
         let first = contact.contact_radius().powi(2);
-        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_edge()));
+        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
         // Next to the core of a contact that slides as a whole nothing is singular that finer cells would resolve.
         let clustering = match clustering {
             Clustering::Cubic if surplus > 0.0 => Clustering::CreepingStick,
             clustering => clustering,
         };
-        let natural = (unworn.limit_edge() / stick_radius_squared).ln_1p();
+        let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
         let stretch = clustering.stretch(natural, grading);
         let operators = store.get(grading, stretch, springs, clustering, backend)?;
         let radial_unworn: Vec<_> =
-            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
+            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_slip_area() * x)).collect();
         let compression = contact.slip_compression();
         let stick_load = 0.5 * profile.load_integral(stick_radius)
             + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
@@ -248,12 +248,12 @@ impl Model {
         Ok(Self {
             contact: contact.clone(),
             schedule,
-            shown: Shown::new(&unworn, operators.abel.mesh(), hidden),
+            output: OutputRadii::new(&unworn, operators.abel.mesh(), hidden),
             unworn,
             operators,
             radial_unworn,
             hidden,
-            place: Place {
+            stick_zone: StickZone {
                 stick_area: stick_radius_squared,
                 slip_compression: compression + surplus,
                 stick_load,
@@ -289,7 +289,7 @@ impl Model {
 
     /// What the core that stays unworn under full sliding makes the worn volume uncertain by, relative; zero where a stick zone is left.
     pub fn core_uncertainty(&self) -> f64 {
-        if self.slides { reach::core_share(self.contact.half_space().grading()) } else { 0.0 }
+        if self.slides { envelope::core_share(self.contact.half_space().grading()) } else { 0.0 }
     }
 
     /// What acts when.
@@ -329,12 +329,12 @@ impl Model {
 
     /// Radii of the output, m, shape `(node,)`, increasing from just outside the stick radius to the limiting contact radius.
     pub fn radii(&self) -> Vec<f64> {
-        self.offsets().iter().map(|offset| (self.place.stick_area + offset).sqrt()).collect()
+        self.offsets().iter().map(|offset| (self.stick_zone.stick_area + offset).sqrt()).collect()
     }
 
     /// `r² - c²`, m², at [`Model::radii`], without the rounding of the radii.
     pub fn offsets(&self) -> Vec<f64> {
-        self.shown.offsets().to_vec()
+        self.output.offsets().to_vec()
     }
 
     /// The unworn state: the edge and the compressions whose wear depth is zero at every spring.
@@ -343,12 +343,12 @@ impl Model {
     /// [`Error::NotConverged`] if no edge is found.
     pub fn initial_state(&self) -> Result<State> {
         let stick = self.moving.as_ref().map(|moving| moving.start(self)).transpose()?;
-        let place = self.place_of(stick.as_ref(), &self.schedule.drive(0.0, 0.0));
-        let guess = self.contact.contact_radius().powi(2) - place.stick_area;
+        let stick_zone = self.stick_zone_in(stick.as_ref(), &self.schedule.loading(0.0, 0.0));
+        let guess = self.contact.contact_radius().powi(2) - stick_zone.stick_area;
         let guess = if stick.is_some() { guess } else { self.contact.slip_area_offset() };
-        let limit = self.unworn.limit_edge() + self.place.stick_area - place.stick_area;
-        let mismatch = |edge: f64| self.mismatch_at(&place, edge, |_, values| values.slip);
-        let edge = match self.operators.abel.backend() {
+        let limit = self.unworn.limit_slip_area() + self.stick_zone.stick_area - stick_zone.stick_area;
+        let mismatch = |slip_area: f64| self.mismatch_at(&stick_zone, slip_area, |_, values| values.slip);
+        let slip_area = match self.operators.abel.backend() {
             Backend::Dense => {
                 let (mut low, mut high) = (0.98 * guess, (1.02 * guess).min(limit));
                 while mismatch(low) < 0.0 && low > 0.5 * guess {
@@ -362,16 +362,16 @@ impl Model {
             // On so many springs the guess is nearly right, and an evaluation takes long.
             Backend::Hierarchical => next_to(mismatch, guess),
         };
-        let compression = self.compression_at(&place, edge, |_, values| values.slip);
+        let compression = self.compression_at(&stick_zone, slip_area, |_, values| values.slip);
         Ok(self.close_force(State {
             cycles: 0.0,
-            edge,
+            slip_area,
             compression_rate: vec![0.0; compression.len()],
             compression,
             dissipated_energy: 0.0,
             volume_by_rate: 0.0,
             least_stick_radius: f64::INFINITY,
-            edge_rate: 0.0,
+            slip_area_rate: 0.0,
             stick,
             past: Past::default(),
         }))
@@ -379,40 +379,40 @@ impl Model {
 
     /// Wear depth at the edge, m, of the compressions that give the inner springs the slip depth `slip(spring, unworn)`; zero at the
     /// true contact edge.
-    pub fn edge_mismatch(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> f64 {
-        self.mismatch_at(&self.place, edge, slip)
+    pub fn contact_edge_mismatch(&self, slip_area: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> f64 {
+        self.mismatch_at(&self.stick_zone, slip_area, slip)
     }
 
     pub(super) fn mismatch_at(
         &self,
-        place: &Place,
-        edge: f64,
+        stick_zone: &StickZone,
+        slip_area: f64,
         slip: impl Fn(usize, &UnwornValues) -> f64,
     ) -> f64 {
         let inner = self.springs() - 1;
-        let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
+        let values: Vec<_> = self.unworn_on_springs(stick_zone, slip_area).collect();
         let elastic = |(i, values): (usize, &UnwornValues)| values.limit_slip - slip(i, values);
         let carried = self.operators.depth_at_edge(values.iter().take(inner).enumerate().map(elastic));
         values[inner].limit_slip - values[inner].slip - carried
     }
 
     /// Compressions, m, that give the inner springs the slip depth `slip(spring, unworn)` with the contact edge at `edge`.
-    pub fn compression(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> Vec<f64> {
-        self.compression_at(&self.place, edge, slip)
+    pub fn compression(&self, slip_area: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> Vec<f64> {
+        self.compression_at(&self.stick_zone, slip_area, slip)
     }
 
     pub(super) fn compression_at(
         &self,
-        place: &Place,
-        edge: f64,
+        stick_zone: &StickZone,
+        slip_area: f64,
         slip: impl Fn(usize, &UnwornValues) -> f64,
     ) -> Vec<f64> {
         let inner = self.springs() - 1;
-        let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
+        let values: Vec<_> = self.unworn_on_springs(stick_zone, slip_area).collect();
         let depth = |(i, v): (usize, &UnwornValues)| v.limit_slip - slip(i, v);
         let mut solution: Vec<f64> = values.iter().take(inner).enumerate().map(depth).collect();
         self.operators.solve_profile(&mut solution);
-        let (scale, at_stick) = (edge.powf(-self.mu()), self.density_factor_at_stick(place));
+        let (scale, at_stick) = (slip_area.powf(-self.mu()), self.density_factor_at_stick(stick_zone));
         for (q, v) in solution.iter_mut().zip(&values) {
             *q *= scale / (at_stick * self.density_ratio(v));
         }
@@ -420,16 +420,22 @@ impl Model {
     }
 
     /// Recomputes everything that follows from an edge, m², and the compressions, m, shape `(springs - 1,)`.
-    pub fn evaluate(&self, edge: f64, compression: &[f64], fields: &mut Fields) {
-        self.evaluate_at(&self.place, edge, compression, fields);
+    pub fn evaluate(&self, slip_area: f64, compression: &[f64], fields: &mut Fields) {
+        self.evaluate_at(&self.stick_zone, slip_area, compression, fields);
     }
 
     /// As [`Model::evaluate`], with the mesh beginning at another edge of stick.
-    pub fn evaluate_at(&self, place: &Place, edge: f64, compression: &[f64], fields: &mut Fields) {
+    pub fn evaluate_at(
+        &self,
+        stick_zone: &StickZone,
+        slip_area: f64,
+        compression: &[f64],
+        fields: &mut Fields,
+    ) {
         let n = self.springs();
-        fields.place = *place;
+        fields.stick_zone = *stick_zone;
         let (mu, stiffness) = (self.mu(), self.contact.half_space().normal_stiffness());
-        fields.edge = edge;
+        fields.slip_area = slip_area;
         for part in [
             &mut fields.density_factor,
             &mut fields.elastic_depth,
@@ -442,8 +448,8 @@ impl Model {
         }
         let nodes = &self.operators.abel.nodes()[1..];
         fields.unworn.resize(n, UnwornValues::default());
-        self.on_springs(&mut fields.unworn, |i| self.unworn_at(place, edge * nodes[i]));
-        let at_stick = self.density_factor_at_stick(place);
+        self.on_springs(&mut fields.unworn, |i| self.unworn_at(stick_zone, slip_area * nodes[i]));
+        let at_stick = self.density_factor_at_stick(stick_zone);
         let unworn = &fields.unworn;
         self.on_springs(&mut fields.density_factor, |i| at_stick * self.density_ratio(&unworn[i]));
         fields.density.clear();
@@ -451,7 +457,7 @@ impl Model {
         let [profile, pressure] = self.operators.abel.transforms();
         profile.apply(&fields.density, &mut fields.elastic_depth);
         pressure.apply(compression, &mut fields.pressure);
-        let (profile_scale, pressure_scale) = (edge.powf(mu), stiffness / PI * edge.powf(-mu));
+        let (profile_scale, pressure_scale) = (slip_area.powf(mu), stiffness / PI * slip_area.powf(-mu));
         for (i, values) in fields.unworn.iter().enumerate() {
             fields.elastic_depth[i] *= profile_scale;
             fields.pressure[i] *= pressure_scale;
@@ -476,34 +482,38 @@ impl Model {
     /// The fields of a state.
     pub fn fields(&self, state: &State) -> Fields {
         let mut fields = Fields::default();
-        let drive = self.schedule.drive(state.cycles, state.cycles);
-        let place = self.place_of(state.stick.as_ref(), &drive);
-        self.evaluate_at(&place, state.edge, &state.compression, &mut fields);
+        let loading = self.schedule.loading(state.cycles, state.cycles);
+        let stick_zone = self.stick_zone_in(state.stick.as_ref(), &loading);
+        self.evaluate_at(&stick_zone, state.slip_area, &state.compression, &mut fields);
         fields
     }
 
     /// Contact radius `a`, m.
     pub fn contact_radius(&self, state: &State) -> f64 {
-        let stick_area = state.stick.as_ref().map_or(self.place.stick_area, |stick| stick.area);
-        (stick_area + state.edge).sqrt()
+        let stick_area = state.stick.as_ref().map_or(self.stick_zone.stick_area, |stick| stick.area);
+        (stick_area + state.slip_area).sqrt()
     }
 
     /// Depth that the limit takes away at [`Model::radii`] by the program's own quadrature, m.
     pub fn limit_depth(&self) -> Vec<f64> {
-        self.shown.limit_depth()
+        self.output.limit_depth()
     }
 
     /// The unworn slip on every spring, with the contact edge at `edge`.
-    fn unworn_on_springs(&self, place: &Place, edge: f64) -> impl Iterator<Item = UnwornValues> {
-        let place = *place;
-        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn_at(&place, edge * x))
+    fn unworn_on_springs(
+        &self,
+        stick_zone: &StickZone,
+        slip_area: f64,
+    ) -> impl Iterator<Item = UnwornValues> {
+        let stick_zone = *stick_zone;
+        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn_at(&stick_zone, slip_area * x))
     }
 
-    /// The unworn slip at `z = r² - c²`, m², of the edge of stick at `place`.
-    fn unworn_at(&self, place: &Place, z: f64) -> UnwornValues {
+    /// The unworn slip at `z = r² - c²`, m², of the edge of a stick zone.
+    fn unworn_at(&self, stick_zone: &StickZone, z: f64) -> UnwornValues {
         match &self.moving {
             None => self.unworn.at(z),
-            Some(_) => self.unworn.at_stick(place.stick_area, place.slip_compression, z),
+            Some(_) => self.unworn.at_stick(stick_zone.stick_area, stick_zone.slip_compression, z),
         }
     }
 
@@ -513,8 +523,8 @@ impl Model {
     }
 
     /// `c^(k-1)`.
-    fn density_factor_at_stick(&self, place: &Place) -> f64 {
-        place.stick_area.powf(-self.mu())
+    fn density_factor_at_stick(&self, stick_zone: &StickZone) -> f64 {
+        stick_zone.stick_area.powf(-self.mu())
     }
 
     /// `(x/c)^(k-1)`.

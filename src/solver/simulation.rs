@@ -179,8 +179,8 @@ impl Simulation {
         let mut first_rate = 0.0_f64;
         let mut growth = 0.0_f64;
         let mut finite = true;
-        for drive in model.schedule().first_cycles() {
-            let cycle = model.cycle(&model.drive_in(&state, drive), &state.compression, &fields);
+        for loading in model.schedule().first_cycles() {
+            let cycle = model.cycle(&model.loading_in(&state, loading), &state.compression, &fields);
             first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
             growth = growth.max(largest(&cycle.growth));
             finite &= cycle.volume.is_finite() && cycle.growth.iter().all(|it| it.is_finite());
@@ -494,8 +494,9 @@ impl Simulation {
                 depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed).map(|at| {
                     let stick = self.model.contact().stick_radius().unwrap_or_default();
                     let nodes = self.model.operators().nodes();
-                    (stick * stick + self.model.unworn().limit_edge() * nodes[(at + 1).min(nodes.len() - 1)])
-                        .sqrt()
+                    (stick * stick
+                        + self.model.unworn().limit_slip_area() * nodes[(at + 1).min(nodes.len() - 1)])
+                    .sqrt()
                 });
             return Ok(false);
         }
@@ -553,7 +554,7 @@ fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
     // No wear at the edge of stick.
     let first = 0.5 * wear(0) * nodes[1];
     let cells = (1..last).map(|i| 0.5 * (wear(i - 1) + wear(i)) * (nodes[i + 1] - nodes[i]));
-    let trapezoids = PI * fields.edge * (first + cells.sum::<f64>());
+    let trapezoids = PI * fields.slip_area * (first + cells.sum::<f64>());
     cycle.volume.max(CERTAIN_WEAR * trapezoids)
 }
 
@@ -564,6 +565,6 @@ fn largest(values: &[f64]) -> f64 {
 
 /// What the cycle does that follows a state, in the block that is under way at `start`.
 fn cycle_of(model: &Model, state: &State, fields: &Fields, start: f64) -> CycleFields {
-    let drive = model.drive_in(state, model.schedule().drive(start, state.cycles));
-    model.cycle(&drive, &state.compression, fields)
+    let loading = model.loading_in(state, model.schedule().loading(start, state.cycles));
+    model.cycle(&loading, &state.compression, fields)
 }

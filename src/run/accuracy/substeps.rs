@@ -39,7 +39,7 @@ impl Unsampled {
         let limit = if model.slides() {
             0.0
         } else {
-            let reach = finer.reach(&contact).ok()?.contact;
+            let reach = finer.envelope(&contact).ok()?.contact;
             volume(&reach)
                 .zip(volume(model.contact()))
                 .map_or(0.0, |(fine, coarse)| (fine / coarse - 1.0).abs())
@@ -50,8 +50,8 @@ impl Unsampled {
     /// Takes the state of a simulation into account.
     pub(super) fn see(&mut self, simulation: &Simulation) {
         let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
-        let drive = model.drive_in(state, self.finer.drive(state.cycles, state.cycles));
-        let (fine, coarse) = (model.cycle(&drive, &state.compression, fields), simulation.cycle());
+        let loading = model.loading_in(state, self.finer.loading(state.cycles, state.cycles));
+        let (fine, coarse) = (model.cycle(&loading, &state.compression, fields), simulation.cycle());
         let depths = fine.growth.iter().zip(&coarse.growth).zip(&fields.slip_depth);
         let depths = depths.map(|((fine, coarse), slip)| (fine - coarse) * slip);
         let rates: Vec<f64> = std::iter::once(fine.volume - coarse.volume).chain(depths).collect();

@@ -19,7 +19,7 @@ use super::derivatives::Stencil;
 use super::{Fields, Model};
 use crate::numerics::abel::{AbelOperators, Block, Compressed};
 use crate::numerics::grid::MOST_POINTS;
-use crate::numerics::linear::{HodlrFactors, LowRank, OffDiagonal, Sides, Split};
+use crate::numerics::linear::{HodlrFactors, LeafColumns, LowRank, OffDiagonal, Split};
 
 /// Columns of a second half that stencils of the first reach through what `F` has above its diagonal.
 const CORNER: usize = Block::AHEAD + 2;
@@ -133,11 +133,11 @@ impl Model {
         fields: &Fields,
         theta: f64,
         growth: PlainSlopes,
-        by_edge: &[f64],
+        by_slip_area: &[f64],
         memory: Option<StageFactors>,
     ) -> Option<StageFactors> {
         let compressed = self.operators.compressed()?;
-        let scale = fields.edge.powf(self.mu());
+        let scale = fields.slip_area.powf(self.mu());
         let row_factor: Vec<f64> = fields.slip_depth.iter().map(|slip| -scale / slip).collect();
         let inner = self.springs() - 1;
         let jacobian = Jacobian {
@@ -147,10 +147,10 @@ impl Model {
             column_factor: &fields.density_factor[..inner],
             along: theta,
             pressure_factor: growth.by_pressure,
-            corner: by_edge[inner],
+            corner: by_slip_area[inner],
         };
         let factors = jacobian.factors(compressed, memory.map(|it| it.factors));
-        let mut edge: Vec<f64> = by_edge.iter().zip(&growth.by_edge).map(|(a, b)| a + b).collect();
+        let mut edge: Vec<f64> = by_slip_area.iter().zip(&growth.by_slip_area).map(|(a, b)| a + b).collect();
         edge[inner] = 0.0;
         factors.solve(&mut edge);
         Some(StageFactors { factors, edge })
@@ -331,7 +331,7 @@ impl Rows<'_> {
         &self,
         leaf: Range<usize>,
         near: &NearDiagonal<'_>,
-        mut sides: Sides<'_, T>,
+        mut sides: LeafColumns<'_, T>,
     ) {
         let (Split { start, middle, .. }, block) = (*near.split, near.block);
         let scale = &self.scale[leaf.clone()];
@@ -363,7 +363,7 @@ impl Rows<'_> {
         &self,
         leaf: Range<usize>,
         near: &NearDiagonal<'_>,
-        mut sides: Sides<'_, T>,
+        mut sides: LeafColumns<'_, T>,
     ) {
         let (Split { middle, end, .. }, block) = (*near.split, near.block);
         let scale = &self.scale[leaf.clone()];

@@ -22,8 +22,8 @@ mod stage;
 
 use std::f64::consts::PI;
 
-use super::schedule::{Demand, Drive, Schedule};
-use super::{Fields, Model, Place, State};
+use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
+use super::{Fields, Model, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::indenter::EquivalentProfile;
 use crate::error::{Error, Result};
@@ -248,19 +248,19 @@ impl MovingStick {
     /// The edge of stick of the unworn contact.
     pub(super) fn start(&self, model: &Model) -> Result<StickEdge> {
         let profile = model.contact.equivalent_profile();
-        let drive = model.schedule.drive(0.0, 0.0);
+        let loading = model.schedule.loading(0.0, 0.0);
         let compression = match self.cause {
             Cause::Sliding(_) => {
-                let radius = model.place.stick_area.sqrt();
+                let radius = model.stick_zone.stick_area.sqrt();
                 return Ok(StickEdge {
-                    area: model.place.stick_area,
-                    depth: model.place.slip_compression,
+                    area: model.stick_zone.stick_area,
+                    depth: model.stick_zone.slip_compression,
                     load: unworn_load(profile, radius, model.contact.slip_compression()),
                     ..StickEdge::default()
                 });
             }
-            Cause::Tangential => model.first_slip_compression(&drive)?,
-            _ => drive.slip_compression(model.contact.half_space().stiffness_ratio()),
+            Cause::Tangential => model.first_slip_compression(&loading)?,
+            _ => loading.slip_compression(model.contact.half_space().stiffness_ratio()),
         };
         let depth = model.contact.indentation() - compression;
         if depth <= 0.0 {
@@ -268,14 +268,14 @@ impl MovingStick {
                 what: "loading.amplitude",
                 why: format!(
                     "at an amplitude of {:e} m the whole contact slides in the first cycle under a force that is held; reduce it",
-                    drive.amplitude
+                    loading.amplitude
                 ),
             });
         }
         let radius = profile.radius_at(depth)?;
         let load = unworn_load(profile, radius, compression);
         let behind = if self.outwards { STATIONS } else { 0 };
-        let nodes = if self.outwards { model.shown.offsets().len() } else { 0 };
+        let nodes = if self.outwards { model.output.offsets().len() } else { 0 };
         Ok(StickEdge {
             area: radius * radius,
             depth,
@@ -293,8 +293,8 @@ impl MovingStick {
 /// as slip does, and moves it inwards. Worn volumes were 0.4 to 8 % off with any number of springs.
 fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     let ratio = contact.half_space().stiffness_ratio();
-    let largest = |drives: &mut dyn Iterator<Item = Drive>| {
-        drives.map(|drive| drive.slip_compression(ratio)).fold(0.0, f64::max)
+    let largest = |loadings: &mut dyn Iterator<Item = CycleLoading>| {
+        loadings.map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
     };
     let [last, most] = [largest(&mut schedule.lasting()), largest(&mut schedule.extremes())];
     if last >= most * (1.0 - SAME_COMPRESSION) {
@@ -340,14 +340,14 @@ impl Model {
     }
 
     /// Where the mesh begins, with the edge of stick of a state.
-    pub(super) fn place_of(&self, stick: Option<&StickEdge>, drive: &Drive) -> Place {
-        let (Some(moving), Some(stick)) = (&self.moving, stick) else { return self.place };
+    pub(super) fn stick_zone_in(&self, stick: Option<&StickEdge>, loading: &CycleLoading) -> StickZone {
+        let (Some(moving), Some(stick)) = (&self.moving, stick) else { return self.stick_zone };
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
-            Cause::NormalForce(_) => drive.slip_compression(self.contact.half_space().stiffness_ratio()),
+            Cause::NormalForce(_) => loading.slip_compression(self.contact.half_space().stiffness_ratio()),
             Cause::Sliding(_) => stick.depth,
         };
-        Place { stick_area: stick.area, slip_compression, stick_load: stick.load }
+        StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
     }
 
     /// Puts what the quadrature over the springs leaves of a held force in the first cycle on the stick zone.
@@ -362,29 +362,29 @@ impl Model {
     }
 
     /// What acts in a state: the amplitude is that at which springs at the edge of stick begin to slip.
-    pub fn drive_in(&self, state: &State, drive: Drive) -> Drive {
+    pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
         let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
         match &state.stick {
-            Some(stick) if tangential => self.displaced(drive, self.contact.indentation() - stick.depth),
-            _ => drive,
+            Some(stick) if tangential => self.displaced(loading, self.contact.indentation() - stick.depth),
+            _ => loading,
         }
     }
 
-    pub(super) fn displaced(&self, drive: Drive, slip_compression: f64) -> Drive {
+    pub(super) fn displaced(&self, loading: CycleLoading, slip_compression: f64) -> CycleLoading {
         let amplitude =
-            drive.friction.static_strength(slip_compression) / self.contact.half_space().stiffness_ratio();
-        Drive { amplitude, demand: Demand::Displacement, ..drive }
+            loading.friction.static_strength(slip_compression) / self.contact.half_space().stiffness_ratio();
+        CycleLoading { amplitude, control: AmplitudeControl::Displacement, ..loading }
     }
 
     /// Indentation in a state, m.
     pub fn indentation(&self, state: &State) -> f64 {
         match (&self.moving, &state.stick) {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
-                let drive = self.schedule.drive(state.cycles, state.cycles);
-                stick.depth + self.place_of(Some(stick), &drive).slip_compression
+                let loading = self.schedule.loading(state.cycles, state.cycles);
+                stick.depth + self.stick_zone_in(Some(stick), &loading).slip_compression
             }
             (Some(MovingStick { cause: Cause::Sliding(_), .. }), Some(stick)) => {
-                self.contact.indentation() - self.place.slip_compression + stick.depth
+                self.contact.indentation() - self.stick_zone.slip_compression + stick.depth
             }
             _ => self.contact.indentation(),
         }
@@ -396,15 +396,15 @@ impl Model {
     pub fn settle_depth(&self, state: &mut State, fields: &Fields) {
         let (Some(moving), Some(stick)) = (&self.moving, &mut state.stick) else { return };
         let first = moving.span[0].exp();
-        for (offset, depth) in self.shown.offsets().iter().zip(&mut stick.wear_depth) {
-            let squared = self.place.stick_area + offset;
+        for (offset, depth) in self.output.offsets().iter().zip(&mut stick.wear_depth) {
+            let squared = self.stick_zone.stick_area + offset;
             let z = squared - stick.area;
             if squared < first || z <= 0.0 {
                 continue;
             }
-            let x = z / fields.edge;
+            let x = z / fields.slip_area;
             *depth = if x < 1.0 {
-                let unworn = self.unworn.at_stick(stick.area, fields.place.slip_compression, z).slip;
+                let unworn = self.unworn.at_stick(stick.area, fields.stick_zone.slip_compression, z).slip;
                 let grown = unworn * self.between_springs(&fields.log_slip, x).exp_m1();
                 (grown - moving.left_behind(&stick.left_behind, squared)).max(0.0)
             } else {
@@ -420,15 +420,15 @@ impl Model {
     }
 
     /// Compression at the edge of stick of the unworn contact in the balance of forces, m.
-    fn first_slip_compression(&self, drive: &Drive) -> Result<f64> {
+    fn first_slip_compression(&self, loading: &CycleLoading) -> Result<f64> {
         let ratio = self.contact.half_space().stiffness_ratio();
         let depth = self.contact.indentation();
         let largest = self.contact.slip_compression();
         let excess = |compression: f64| {
-            let amplitude = drive.friction.static_strength(compression) / ratio;
-            let force = super::first_force::first_force(&self.contact, &drive.friction, amplitude, depth)
+            let amplitude = loading.friction.static_strength(compression) / ratio;
+            let force = super::first_force::first_force(&self.contact, &loading.friction, amplitude, depth)
                 .unwrap_or(f64::NAN);
-            drive.excess(force, amplitude)
+            loading.excess(force, amplitude)
         };
         bracketed(excess, 1e-12 * largest, largest, 0.0)
     }

@@ -39,14 +39,14 @@ pub struct RadialFields {
 impl Model {
     /// The same contact on the same springs, with the radii of the output at `r² - c²`, m², increasing, instead of its own.
     pub(crate) fn shown_at(mut self, offsets: Vec<f64>) -> Self {
-        self.shown =
-            Shown { unworn: offsets.iter().map(|offset| self.unworn.at(*offset)).collect(), offsets };
+        self.output =
+            OutputRadii { unworn: offsets.iter().map(|offset| self.unworn.at(*offset)).collect(), offsets };
         self
     }
 
     /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
     pub fn wear_volume(&self, fields: &Fields) -> f64 {
-        self.volume(fields.edge, &fields.wear_depth)
+        self.volume(fields.slip_area, &fields.wear_depth)
     }
 
     /// Worn volume in a state, m³: where the edge of stick has left worn ground behind, by the rates of the cycles.
@@ -60,7 +60,7 @@ impl Model {
     /// Worn volume of the limit by the program's own quadrature, m³.
     pub fn limit_volume(&self) -> f64 {
         let depth: Vec<f64> = self.radial_unworn.iter().map(UnwornValues::limit_depth).collect();
-        self.volume(self.unworn.limit_edge(), &depth)
+        self.volume(self.unworn.limit_slip_area(), &depth)
     }
 
     /// Depth between the springs of the limit that these do not see in the unworn slip, over the limit's largest: waves of a table that are too
@@ -74,22 +74,22 @@ impl Model {
         let smooth = |unworn: &UnwornValues| unworn.slip.ln() - (1.0 + self.mu()) * unworn.logarithm.ln();
         let springs: Vec<f64> = self.radial_unworn.iter().map(smooth).collect();
         let missed = |y: f64| {
-            let unworn = self.unworn.at(self.unworn.limit_edge() * mesh.at(y).value);
+            let unworn = self.unworn.at(self.unworn.limit_slip_area() * mesh.at(y).value);
             unworn.slip * (mesh.local(y, count).sum(&springs) - smooth(&unworn)).abs()
         };
         let between = (1..count).flat_map(|i| [0.25, 0.5, 0.75].map(|part| i as f64 + part));
         Some(between.map(missed).fold(0.0, f64::max) / self.depth_scale)
     }
 
-    pub(super) fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
-        PI * edge * dot(self.operators.abel.depth_sum(), wear_depth)
+    pub(super) fn volume(&self, slip_area: f64, wear_depth: &[f64]) -> f64 {
+        PI * slip_area * dot(self.operators.abel.depth_sum(), wear_depth)
     }
 
     /// Normal force, N [S, Eq. (22)].
     pub fn normal_force(&self, fields: &Fields) -> f64 {
-        let slipping =
-            fields.edge * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density);
-        self.contact.half_space().normal_stiffness() * (2.0 * fields.place.stick_load + slipping)
+        let slipping = fields.slip_area
+            * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density);
+        self.contact.half_space().normal_stiffness() * (2.0 * fields.stick_zone.stick_load + slipping)
     }
 
     /// Energy that friction dissipates in one cycle, J.
@@ -100,7 +100,7 @@ impl Model {
     pub fn dissipation(&self, fields: &Fields, compression: &[f64]) -> f64 {
         let friction = self.contact.friction().coefficient;
         let half_space = self.contact.half_space();
-        let slipping = fields.place.slip_compression;
+        let slipping = fields.stick_zone.slip_compression;
         let sum: f64 = compression
             .iter()
             .zip(&fields.density)
@@ -109,7 +109,7 @@ impl Model {
             .sum();
         4.0 * friction * friction / half_space.stiffness_ratio()
             * half_space.normal_stiffness()
-            * fields.edge
+            * fields.slip_area
             * sum
     }
 
@@ -122,11 +122,11 @@ impl Model {
         let half_space = self.contact.half_space();
         let q = 1.0 + half_space.grading();
         let limit = self.contact.friction().coefficient / half_space.stiffness_ratio();
-        let stuck = 2.0 * displacement * fields.place.stick_area.powf(0.5 * q) / q;
+        let stuck = 2.0 * displacement * fields.stick_zone.stick_area.powf(0.5 * q) / q;
         let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
         let moved: f64 =
             springs.map(|((q, factor), weight)| weight * factor * displacement.min(limit * q)).sum();
-        half_space.stiffness_ratio() * half_space.normal_stiffness() * (stuck + fields.edge * moved)
+        half_space.stiffness_ratio() * half_space.normal_stiffness() * (stuck + fields.slip_area * moved)
     }
 
     /// Tangential force, N, along one steady fretting loop, at displacements, m, that go from `U` to `-U` and back.
@@ -165,17 +165,18 @@ impl Model {
     }
 
     fn reaches_the_middle(&self, stick_radius: f64) -> bool {
-        self.slides && stick_radius < MIDDLE * self.place.stick_area.sqrt()
+        self.slides && stick_radius < MIDDLE * self.stick_zone.stick_area.sqrt()
     }
 
     /// Wear depth, m, at `offset = r² - c²`, m², any place of the annulus, where the edge of stick left no worn ground behind.
     pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
-        let z = state.stick.as_ref().map_or(offset, |stick| offset - (stick.area - self.place.stick_area));
-        let x = z / fields.edge;
+        let z =
+            state.stick.as_ref().map_or(offset, |stick| offset - (stick.area - self.stick_zone.stick_area));
+        let x = z / fields.slip_area;
         if x <= 0.0 || x >= 1.0 - AT_EDGE {
             return 0.0;
         }
-        let unworn = self.unworn_at(&fields.place, z);
+        let unworn = self.unworn_at(&fields.stick_zone, z);
         let of_limit = |spring: usize| fields.unworn[spring].limit_log_slip();
         unworn.slip * self.log_slip_at(fields, x, &unworn, of_limit).1.exp_m1()
     }
@@ -207,10 +208,10 @@ impl Model {
     pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
         if let Some(stick) = state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
             let of_limit = self.limit_log_slip(fields);
-            let shown = self.shown.offsets.iter().zip(&self.shown.unworn).zip(&stick.wear_depth);
+            let shown = self.output.offsets.iter().zip(&self.output.unworn).zip(&stick.wear_depth);
             let depth = |((offset, unworn), worn): ((&f64, &UnwornValues), &f64)| {
-                let spot = self.spot(state, fields, &of_limit, *offset, unworn);
-                self.depth_beyond(stick, *offset, spot.as_ref(), *worn)
+                let point = self.point(state, fields, &of_limit, *offset, unworn);
+                self.depth_beyond(stick, *offset, point.as_ref(), *worn)
             };
             return shown.map(depth).collect();
         }
@@ -219,8 +220,8 @@ impl Model {
         let places = places.step_by(every);
         let of_limit = self.limit_log_slip(fields);
         let depth = |(x, unworn): (&f64, &UnwornValues)| {
-            let spot = self.spot(state, fields, &of_limit, self.unworn.limit_edge() * x, unworn);
-            spot.map_or(0.0, |spot| spot.wear_depth())
+            let point = self.point(state, fields, &of_limit, self.unworn.limit_slip_area() * x, unworn);
+            point.map_or(0.0, |point| point.wear_depth())
         };
         places.map(depth).collect()
     }
@@ -231,11 +232,11 @@ impl Model {
     /// ```text
     /// w = S - S_0 - K
     /// ```
-    fn depth_beyond(&self, stick: &StickEdge, offset: f64, spot: Option<&Spot>, worn: f64) -> f64 {
+    fn depth_beyond(&self, stick: &StickEdge, offset: f64, point: Option<&AnnulusPoint>, worn: f64) -> f64 {
         let moving = self.moving.as_ref();
-        let squared = self.place.stick_area + offset;
+        let squared = self.stick_zone.stick_area + offset;
         match moving.and_then(|moving| moving.left_behind_outside(stick, squared)) {
-            Some(behind) => spot.map_or(0.0, |spot| (spot.grown() - behind).max(0.0)),
+            Some(behind) => point.map_or(0.0, |point| (point.grown() - behind).max(0.0)),
             None => worn,
         }
     }
@@ -250,22 +251,22 @@ impl Model {
         let eased: Vec<f64> = (0..self.springs() - 1)
             .map(|i| fields.pressure[i] * mesh.node(i + 1).complement.powf(-nu))
             .collect();
-        let shown = self.shown.offsets.len();
+        let shown = self.output.offsets.len();
         let mut radial =
             RadialFields { wear_depth: vec![0.0; shown], pressure: vec![0.0; shown], slip: vec![0.0; shown] };
         let of_limit = self.limit_log_slip(fields);
         let stick = state.stick.as_ref();
-        for (i, (offset, unworn)) in self.shown.offsets.iter().zip(&self.shown.unworn).enumerate() {
-            let spot = self.spot(state, fields, &of_limit, *offset, unworn);
+        for (i, (offset, unworn)) in self.output.offsets.iter().zip(&self.output.unworn).enumerate() {
+            let point = self.point(state, fields, &of_limit, *offset, unworn);
             let passed = stick.and_then(|stick| Some((stick, stick.wear_depth.get(i)?)));
             radial.wear_depth[i] = match passed {
-                Some((stick, worn)) => self.depth_beyond(stick, *offset, spot.as_ref(), *worn),
-                None => spot.as_ref().map_or(0.0, Spot::wear_depth),
+                Some((stick, worn)) => self.depth_beyond(stick, *offset, point.as_ref(), *worn),
+                None => point.as_ref().map_or(0.0, AnnulusPoint::wear_depth),
             };
             if self.sticks_at(state, *offset) {
                 radial.pressure[i] = f64::NAN;
             }
-            let Some(Spot { x, y, unworn, log_slip }) = spot else { continue };
+            let Some(AnnulusPoint { x, y, unworn, log_slip }) = point else { continue };
             radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
             radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
             if mesh.clustering() == Clustering::Smooth {
@@ -275,9 +276,9 @@ impl Model {
         radial
     }
 
-    /// Whether an edge of stick that moves outwards has passed the place `offset = r² - c²`, m², with the edge at rest.
+    /// Whether an edge of stick that moves outwards has passed `offset = r² - c²`, m², with the edge at rest.
     fn sticks_at(&self, state: &State, offset: f64) -> bool {
-        state.stick.as_ref().is_some_and(|stick| self.place.stick_area + offset <= stick.area)
+        state.stick.as_ref().is_some_and(|stick| self.stick_zone.stick_area + offset <= stick.area)
     }
 
     /// `λ_∞` on the springs.
@@ -285,33 +286,33 @@ impl Model {
         fields.unworn.iter().map(UnwornValues::limit_log_slip).collect()
     }
 
-    /// A place of the annulus at `offset = r² - c²`, m², with the edge of stick at rest, where the unworn slip of that is known; none outside.
-    fn spot(
+    /// The point of the annulus at `offset = r² - c²`, m², of the edge at rest, where the unworn slip is known; none outside the annulus.
+    fn point(
         &self,
         state: &State,
         fields: &Fields,
         of_limit: &[f64],
         offset: f64,
         at_rest: &UnwornValues,
-    ) -> Option<Spot> {
+    ) -> Option<AnnulusPoint> {
         let (z, unworn) = match &state.stick {
             None => (offset, *at_rest),
             Some(stick) => {
-                let z = self.place.stick_area + offset - stick.area;
-                (z, if z > 0.0 { self.unworn_at(&fields.place, z) } else { *at_rest })
+                let z = self.stick_zone.stick_area + offset - stick.area;
+                (z, if z > 0.0 { self.unworn_at(&fields.stick_zone, z) } else { *at_rest })
             }
         };
-        let x = z / fields.edge;
+        let x = z / fields.slip_area;
         if x <= 0.0 || x >= 1.0 - AT_EDGE {
             return None;
         }
         let (y, log_slip) = self.log_slip_at(fields, x, &unworn, |spring| of_limit[spring]);
-        Some(Spot { x, y, unworn: unworn.slip, log_slip })
+        Some(AnnulusPoint { x, y, unworn: unworn.slip, log_slip })
     }
 }
 
-/// A place between the springs.
-struct Spot {
+/// A point between the springs.
+struct AnnulusPoint {
     /// `ξ`.
     x: f64,
     /// Its coordinate on the mesh.
@@ -322,7 +323,7 @@ struct Spot {
     log_slip: f64,
 }
 
-impl Spot {
+impl AnnulusPoint {
     /// At least zero: before the contact edge the polynomial may pass below nothing, by less than the run is off.
     fn wear_depth(&self) -> f64 {
         self.grown().max(0.0)
@@ -336,14 +337,14 @@ impl Spot {
 
 /// Where fields are shown.
 #[derive(Debug, Clone)]
-pub(super) struct Shown {
+pub(super) struct OutputRadii {
     /// `r² - c²`, m², increasing.
     offsets: Vec<f64>,
     /// The unworn slip there.
     unworn: Vec<UnwornValues>,
 }
 
-impl Shown {
+impl OutputRadii {
     /// The places of the limit's springs, but for the first ones, or of one in several where they are more than [`MOST_SHOWN`]; on a smooth mesh of few springs, whose polynomials serve between them, at
     /// least [`SHOWN`] places, graded as the mesh is, from [`HIDDEN`] to the contact edge.
     pub(super) fn new(unworn: &UnwornSlip, mesh: &Mesh, hidden: usize) -> Self {
@@ -358,7 +359,7 @@ impl Shown {
             let skipped = (springs.len() - 1) % every;
             springs.iter().skip(skipped).step_by(every).copied().collect()
         };
-        let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_edge() * x).collect();
+        let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_slip_area() * x).collect();
         Self { unworn: offsets.iter().map(|offset| unworn.at(*offset)).collect(), offsets }
     }
 

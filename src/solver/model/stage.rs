@@ -1,7 +1,7 @@
 //! What a stage of an implicit step solves for, and what it starts from.
 
 use super::State;
-use super::schedule::Drive;
+use super::schedule::CycleLoading;
 
 /// Unknowns of a stage.
 #[derive(Debug, Clone)]
@@ -20,13 +20,13 @@ impl Unknowns {
     /// Those of a state.
     pub fn of(state: &State) -> Self {
         let [stick_area, stick_depth] = state.stick.as_ref().map_or([0.0; 2], |it| [it.area, it.depth]);
-        Self { compression: state.compression.clone(), slip_area: state.edge, stick_area, stick_depth }
+        Self { compression: state.compression.clone(), slip_area: state.slip_area, stick_area, stick_depth }
     }
 
     /// Some cycles after a state, at the rates of the last step.
     pub fn ahead(state: &State, cycles: f64) -> Self {
         let mut at = Self::of(state);
-        at.slip_area += cycles * state.edge_rate;
+        at.slip_area += cycles * state.slip_area_rate;
         for (q, rate) in at.compression.iter_mut().zip(&state.compression_rate) {
             *q += cycles * rate;
         }
@@ -60,5 +60,5 @@ pub struct Target {
     /// `h`, cycles: the step times the diagonal coefficient of the method.
     pub step: f64,
     /// What acts.
-    pub drive: Drive,
+    pub loading: CycleLoading,
 }

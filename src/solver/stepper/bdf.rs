@@ -60,9 +60,9 @@ impl Stepper for Bdf {
         let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
         let target = Target {
             log_slip: gathered.log_slip,
-            slip_area: gathered.edge,
+            slip_area: gathered.slip_area,
             step: times.per_slope / times.leading(past.order),
-            drive: model.schedule().drive(state.cycles, now),
+            loading: model.schedule().loading(state.cycles, now),
         };
         self.take_up_factors(model, state, &target);
         let step = target.step;
@@ -81,7 +81,7 @@ impl Stepper for Bdf {
             }
             let mut at = Unknowns::of(&guess);
             newton.solve(&mut stage, &mut at, &mut evaluations).then_some(State {
-                edge: at.slip_area,
+                slip_area: at.slip_area,
                 compression: at.compression,
                 ..guess
             })
@@ -169,9 +169,9 @@ impl Bdf {
                 Some(left) => {
                     let target = Target {
                         log_slip: vec![],
-                        slip_area: left.gathered_edge,
+                        slip_area: left.gathered_slip_area,
                         step: left.step,
-                        drive: target.drive.clone(),
+                        loading: target.loading.clone(),
                     };
                     let (tolerance, tried) = (self.newton_tolerance, &mut self.tried);
                     self.newton.recall(&mut RestingStage { model, target, tolerance, tried }, left);
@@ -190,15 +190,15 @@ impl Bdf {
         if !state.past.points.is_empty() {
             return state.past.clone();
         }
-        model.evaluate(state.edge, &state.compression, &mut self.tried.fields);
+        model.evaluate(state.slip_area, &state.compression, &mut self.tried.fields);
         Past { order: 1, points: vec![PastPoint::new(state, &self.tried.fields.log_slip)], linearised: None }
     }
 
     /// `λ` where the rates at the start lead, from zero.
     fn first_log_slip(&mut self, model: &Model, state: &State, cycles: f64) -> Vec<f64> {
         let fields = &self.tried.fields;
-        let drive = model.schedule().drive(state.cycles, state.cycles);
-        let cycle = model.cycle(&drive, &state.compression, fields);
+        let loading = model.schedule().loading(state.cycles, state.cycles);
+        let cycle = model.cycle(&loading, &state.compression, fields);
         fields
             .log_slip
             .iter()
@@ -297,7 +297,7 @@ fn lagrange(times: &[f64]) -> Vec<f64> {
 fn state_of(state: &State, point: PastPoint, cycles: f64) -> State {
     State {
         cycles,
-        edge: point.edge,
+        slip_area: point.slip_area,
         compression: point.compression,
         dissipated_energy: point.dissipated_energy,
         volume_by_rate: point.volume_by_rate,

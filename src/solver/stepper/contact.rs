@@ -51,7 +51,7 @@ fn target(model: &Model, state: &State, gathered: &[f64], index: usize, cycles: 
         log_slip: gathered[..springs].to_vec(),
         slip_area: gathered[springs],
         step: ALEXANDER.diagonal * cycles,
-        drive: model.schedule().drive(state.cycles, state.cycles + ALEXANDER.times[index] * cycles),
+        loading: model.schedule().loading(state.cycles, state.cycles + ALEXANDER.times[index] * cycles),
     }
 }
 
@@ -62,11 +62,11 @@ fn state_after(state: &State, at: Unknowns, quantities: &[f64], stick_radius: f6
     };
     State {
         cycles: state.cycles + cycles,
-        edge: at.slip_area,
+        slip_area: at.slip_area,
         dissipated_energy,
         volume_by_rate,
         least_stick_radius: state.least_stick_radius.min(stick_radius),
-        edge_rate: (at.slip_area - state.edge) / cycles,
+        slip_area_rate: (at.slip_area - state.slip_area) / cycles,
         compression_rate: slopes(&at.compression, &state.compression, cycles).collect(),
         compression: at.compression,
         stick: state.stick.clone(),
@@ -102,14 +102,14 @@ impl<'a> RestingContact<'a> {
         let (model, state) = (self.model, self.state);
         if index > 0 {
             let factor = ALEXANDER.times[index] / ALEXANDER.times[index - 1];
-            self.at.slip_area = state.edge + (self.at.slip_area - state.edge) * factor;
+            self.at.slip_area = state.slip_area + (self.at.slip_area - state.slip_area) * factor;
             for (q, start) in self.at.compression.iter_mut().zip(&state.compression) {
                 *q = start + (*q - start) * factor;
             }
             return;
         }
         let ahead = Unknowns::ahead(state, ALEXANDER.times[0] * cycles);
-        if ahead.slip_area > 0.0 && ahead.slip_area < model.unworn().largest_edge() {
+        if ahead.slip_area > 0.0 && ahead.slip_area < model.unworn().largest_slip_area() {
             model.evaluate(ahead.slip_area, &ahead.compression, &mut self.tried.fields);
             if self.tried.fields.are_physical() {
                 self.at = ahead;
@@ -121,8 +121,8 @@ impl<'a> RestingContact<'a> {
 impl Stages for RestingContact<'_> {
     fn start(&mut self) -> Vec<f64> {
         let state = self.state;
-        self.model.evaluate(state.edge, &state.compression, &mut self.tried.fields);
-        let others = [state.edge, state.dissipated_energy, state.volume_by_rate];
+        self.model.evaluate(state.slip_area, &state.compression, &mut self.tried.fields);
+        let others = [state.slip_area, state.dissipated_energy, state.volume_by_rate];
         self.tried.fields.log_slip.iter().copied().chain(others).collect()
     }
 
@@ -227,7 +227,8 @@ impl Stages for MovingContact<'_> {
     fn start(&mut self) -> Vec<f64> {
         let (state, stick) = (self.state, self.stick);
         let fields = self.model.fields(state);
-        let of_edges = [state.edge, fields.place.slip_compression, stick.area, stick.depth, stick.load];
+        let of_edges =
+            [state.slip_area, fields.stick_zone.slip_compression, stick.area, stick.depth, stick.load];
         let carried = stick.left_behind.iter().chain(&stick.wear_depth);
         let sums = [state.dissipated_energy, state.volume_by_rate];
         fields.log_slip.iter().chain(&of_edges).chain(carried).chain(&sums).copied().collect()
@@ -260,7 +261,7 @@ impl Stages for MovingContact<'_> {
         }
         let stick = stage.rates(&at);
         let (trial, step) = (&*self.trial, ALEXANDER.diagonal * cycles);
-        let now = trial.fields.log_slip.iter().chain([&at.slip_area, &trial.place.slip_compression]);
+        let now = trial.fields.log_slip.iter().chain([&at.slip_area, &trial.stick_zone.slip_compression]);
         let found = slopes(now, &gathered, step)
             .chain([stick.area, stick.depth, stick.load])
             .chain(stick.left_behind)
@@ -281,7 +282,7 @@ impl Stages for MovingContact<'_> {
         let stick = StickEdge {
             area: at.stick_area,
             depth: at.stick_depth,
-            load: self.trial.place.stick_load,
+            load: self.trial.stick_zone.stick_load,
             left_behind,
             wear_depth,
             rates: [(at.stick_area - self.stick.area) / cycles, (at.stick_depth - self.stick.depth) / cycles],

@@ -63,7 +63,7 @@ impl Equations for MovingStage<'_> {
     }
 
     fn scale(&self) -> f64 {
-        self.trial.place.slip_compression
+        self.trial.stick_zone.slip_compression
     }
 
     fn factorise(&self, at: &Unknowns, _: Option<Factorised>) -> Option<Factorised> {

@@ -180,7 +180,7 @@ impl Newton {
     pub fn recall(&mut self, equations: &mut dyn Equations, at: &Arc<Linearised>) {
         let unknowns = Unknowns {
             compression: at.compression.clone(),
-            slip_area: at.edge,
+            slip_area: at.slip_area,
             stick_area: 0.0,
             stick_depth: 0.0,
         };
@@ -196,8 +196,8 @@ impl Newton {
         self.factors = equations.factorise(at, memory);
         let target = equations.target();
         self.linearised = Some(Arc::new(Linearised {
-            edge: at.slip_area,
-            gathered_edge: target.slip_area,
+            slip_area: at.slip_area,
+            gathered_slip_area: target.slip_area,
             step: target.step,
             compression: at.compression.clone(),
         }));

@@ -48,14 +48,14 @@ impl Equations for RestingStage<'_> {
 
     fn evaluate(&mut self, at: &Unknowns) -> bool {
         let Self { model, target, tried, .. } = self;
-        if !(at.slip_area > 0.0 && at.slip_area < model.unworn().largest_edge()) {
+        if !(at.slip_area > 0.0 && at.slip_area < model.unworn().largest_slip_area()) {
             return false;
         }
         model.evaluate(at.slip_area, &at.compression, &mut tried.fields);
         if !tried.fields.are_physical() {
             return false;
         }
-        tried.cycle = model.cycle(&target.drive, &at.compression, &tried.fields);
+        tried.cycle = model.cycle(&target.loading, &at.compression, &tried.fields);
         true
     }
 
@@ -78,22 +78,23 @@ impl Equations for RestingStage<'_> {
 
     fn factorise(&self, at: &Unknowns, memory: Option<Factorised>) -> Option<Factorised> {
         let (model, target, Tried { fields, cycle }) = (self.model, &self.target, &*self.tried);
-        let by_edge = self.by_slip_area();
-        let slopes = model.plain_growth_slopes(&target.drive, fields, cycle, -target.step);
+        let by_slip_area = self.by_slip_area();
+        let slopes = model.plain_growth_slopes(&target.loading, fields, cycle, -target.step);
         let (dense, hierarchical) = match memory {
             Some(Factorised::Dense(factors)) => (Some(factors.into_matrix()), None),
             Some(Factorised::Hierarchical(factors)) => (None, Some(factors)),
             None => (None, None),
         };
-        let factors = slopes
-            .and_then(|slopes| model.stage_factors(fields, self.theta(), slopes, &by_edge, hierarchical));
+        let factors = slopes.and_then(|slopes| {
+            model.stage_factors(fields, self.theta(), slopes, &by_slip_area, hierarchical)
+        });
         Some(match factors {
             Some(factors) => Factorised::Hierarchical(factors),
             None => {
                 let n = model.springs();
                 let mut matrix = dense.filter(|it| it.nrows() == n).unwrap_or_else(|| Mat::zeros(n, n));
                 matrix.fill(0.0);
-                self.fill(&mut matrix, &at.compression, &by_edge);
+                self.fill(&mut matrix, &at.compression, &by_slip_area);
                 Factorised::Dense(Factors::new(matrix))
             }
         })
@@ -121,36 +122,37 @@ impl Equations for RestingStage<'_> {
 impl RestingStage<'_> {
     /// `1 - Ẑ/Z`.
     fn theta(&self) -> f64 {
-        1.0 - self.target.slip_area / self.tried.fields.edge
+        1.0 - self.target.slip_area / self.tried.fields.slip_area
     }
 
     /// Derivatives of the equations, but for the growth, by the slip area, shape `(springs,)`.
     fn by_slip_area(&self) -> Vec<f64> {
         let (model, fields) = (self.model, &self.tried.fields);
         let inner = model.springs() - 1;
-        let mut by_edge = model.log_slip_by_edge(fields);
-        let carried = model.along_annulus(&by_edge);
+        let mut by_slip_area = model.log_slip_by_slip_area(fields);
+        let carried = model.along_annulus(&by_slip_area);
         let along = model.along_annulus(&fields.log_slip);
         let theta = self.theta();
         for i in 0..inner {
-            by_edge[i] -= theta * carried[i] + along[i] * self.target.slip_area / (fields.edge * fields.edge);
+            by_slip_area[i] -=
+                theta * carried[i] + along[i] * self.target.slip_area / (fields.slip_area * fields.slip_area);
         }
-        by_edge
+        by_slip_area
     }
 
     /// Adds Newton's matrix at the current fields, columns the compressions and then the slip area.
-    fn fill(&self, matrix: &mut Mat<f64>, compression: &[f64], by_edge: &[f64]) {
+    fn fill(&self, matrix: &mut Mat<f64>, compression: &[f64], by_slip_area: &[f64]) {
         let (model, target, Tried { fields, cycle }) = (self.model, &self.target, &*self.tried);
         let inner = model.springs() - 1;
-        model.add_growth_slopes(&target.drive, compression, fields, cycle, -target.step, matrix);
+        model.add_growth_slopes(&target.loading, compression, fields, cycle, -target.step, matrix);
         model.add_log_slip_by_compression(fields, self.theta(), matrix);
         for i in 0..inner {
-            matrix[(i, inner)] += by_edge[i];
+            matrix[(i, inner)] += by_slip_area[i];
         }
-        let scale = fields.edge.powf(model.mu()) / fields.slip_depth[inner];
+        let scale = fields.slip_area.powf(model.mu()) / fields.slip_depth[inner];
         for j in 0..inner {
             matrix[(inner, j)] = -scale * model.elastic_depth_by_compression(fields, inner, j);
         }
-        matrix[(inner, inner)] = by_edge[inner];
+        matrix[(inner, inner)] = by_slip_area[inner];
     }
 }

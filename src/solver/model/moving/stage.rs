@@ -4,8 +4,8 @@ use faer::Mat;
 
 use super::{Cause, MovingStick, StickEdge};
 use crate::numerics::grid::lagrange;
-use crate::solver::model::schedule::Drive;
-use crate::solver::model::{CycleFields, Fields, Model, Place, Target, Unknowns};
+use crate::solver::model::schedule::CycleLoading;
+use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
 
 /// Change of slip area, stick area or depth, relative, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
@@ -24,8 +24,8 @@ pub struct StickTarget {
 /// What follows from the unknowns tried in a stage.
 #[derive(Debug, Clone, Default)]
 pub struct StickTrial {
-    /// Where the mesh begins.
-    pub place: Place,
+    /// The stick zone, at whose edge the mesh begins.
+    pub stick_zone: StickZone,
     /// The fields.
     pub fields: Fields,
     /// What a cycle does.
@@ -77,13 +77,13 @@ impl StickStage<'_> {
         if !self.is_on_mesh(at) || slip_compression.is_nan() || slip_compression <= 0.0 {
             return false;
         }
-        let drive = self.drive(at);
-        trial.place = self.place(at, slip_compression);
-        model.evaluate_at(&trial.place, at.slip_area, &at.compression, &mut trial.fields);
+        let loading = self.loading(at);
+        trial.stick_zone = self.stick_zone(at, slip_compression);
+        model.evaluate_at(&trial.stick_zone, at.slip_area, &at.compression, &mut trial.fields);
         if !trial.fields.are_physical() {
             return false;
         }
-        trial.cycle = model.cycle(&drive, &at.compression, &trial.fields);
+        trial.cycle = model.cycle(&loading, &at.compression, &trial.fields);
         let passed = self.passed(at);
         let contact_edge = self.at_contact_edge(at, &passed, trial);
         if contact_edge.is_nan() {
@@ -92,7 +92,7 @@ impl StickStage<'_> {
         trial.residual.clear();
         self.push_on_springs(at, &passed, trial);
         let stick_edge = self.at_stick_edge(at, &passed, trial);
-        let depth = self.balance(at, &passed, &drive, trial);
+        let depth = self.balance(at, &passed, &loading, trial);
         trial.residual.extend([contact_edge, stick_edge, depth]);
         trial.residual.iter().all(|value| value.is_finite())
     }
@@ -114,9 +114,9 @@ impl StickStage<'_> {
         }
         match self.moving.cause {
             Cause::Sliding(force) => self.fill_by_sliding_depth(force, at, trial, &mut matrix),
-            _ if self.moving.jumps => matrix[(n + 1, n + 1)] = trial.place.slip_compression.recip(),
+            _ if self.moving.jumps => matrix[(n + 1, n + 1)] = trial.stick_zone.slip_compression.recip(),
             _ => {
-                let step = DIFFERENCE * trial.place.slip_compression;
+                let step = DIFFERENCE * trial.stick_zone.slip_compression;
                 let moved = Unknowns { stick_depth: at.stick_depth + step, ..at.clone() };
                 self.fill_by_difference(n + 1, step, &moved, trial, &mut matrix)?;
             }
@@ -129,7 +129,7 @@ impl StickStage<'_> {
         let (model, target) = (self.model, &self.target);
         let passed = self.passed(at);
         let per_step = target.springs.step.recip();
-        let (area, q) = (at.stick_area, trial.place.slip_compression);
+        let (area, q) = (at.stick_area, trial.stick_zone.slip_compression);
         let (mut left_behind, mut wear_depth) = (vec![], vec![]);
         if self.moving.outwards {
             let uniform = |squared: f64| model.unworn.at_stick(area, q, squared - area).limit_slip / q;
@@ -138,19 +138,19 @@ impl StickStage<'_> {
             let growth = trial.cycle.growth.iter().zip(&trial.fields.log_slip);
             let worn: Vec<f64> = growth.map(|(growth, log_slip)| growth * log_slip.exp()).collect();
             let depth = |offset: &f64| {
-                let z = model.place.stick_area + offset - area;
-                let x = z / trial.fields.edge;
+                let z = model.stick_zone.stick_area + offset - area;
+                let x = z / trial.fields.slip_area;
                 if x <= 0.0 || x >= 1.0 {
                     return 0.0;
                 }
                 model.between_springs(&worn, x) * model.unworn.at_stick(area, q, z).slip
             };
-            wear_depth = model.shown.offsets().iter().map(depth).collect();
+            wear_depth = model.output.offsets().iter().map(depth).collect();
         }
         StickEdge {
             area: per_step * passed.area,
             depth: per_step * (at.stick_depth - target.stick.depth),
-            load: per_step * (trial.place.stick_load - target.stick.load),
+            load: per_step * (trial.stick_zone.stick_load - target.stick.load),
             left_behind,
             wear_depth,
             ..StickEdge::default()
@@ -158,10 +158,10 @@ impl StickStage<'_> {
     }
 
     fn is_on_mesh(&self, at: &Unknowns) -> bool {
-        let least = self.model.place.stick_area;
+        let least = self.model.stick_zone.stick_area;
         at.slip_area > 0.0
             && at.stick_area > 0.99 * least
-            && at.stick_area + at.slip_area < least + self.model.unworn.largest_edge()
+            && at.stick_area + at.slip_area < least + self.model.unworn.largest_slip_area()
     }
 
     /// `q_c`, m.
@@ -175,15 +175,15 @@ impl StickStage<'_> {
 
     /// `q_c` at the amplitude that acts, m.
     fn driven_slip_compression(&self) -> f64 {
-        self.target.springs.drive.slip_compression(self.model.contact.half_space().stiffness_ratio())
+        self.target.springs.loading.slip_compression(self.model.contact.half_space().stiffness_ratio())
     }
 
     /// What acts, with the amplitude of the contact.
-    fn drive(&self, at: &Unknowns) -> Drive {
-        let drive = self.target.springs.drive.clone();
+    fn loading(&self, at: &Unknowns) -> CycleLoading {
+        let loading = self.target.springs.loading.clone();
         match self.moving.cause {
-            Cause::Tangential => self.model.displaced(drive, self.slip_compression(at)),
-            _ => drive,
+            Cause::Tangential => self.model.displaced(loading, self.slip_compression(at)),
+            _ => loading,
         }
     }
 
@@ -200,7 +200,7 @@ impl StickStage<'_> {
     }
 
     /// Where the mesh begins: the load grows by that of the ground passed, and with `q_c` on all of the stick zone where a normal force is held.
-    fn place(&self, at: &Unknowns, slip_compression: f64) -> Place {
+    fn stick_zone(&self, at: &Unknowns, slip_compression: f64) -> StickZone {
         let target = &self.target;
         let exponent = 1.0 + self.model.contact.half_space().grading();
         let radius = at.stick_area.sqrt();
@@ -217,7 +217,7 @@ impl StickStage<'_> {
                 + deeper * radius.powf(exponent) / exponent
                 + 0.5 * slip_compression * radius.powf(exponent - 2.0) * passed.area
         };
-        Place { stick_area: at.stick_area, slip_compression, stick_load }
+        StickZone { stick_area: at.stick_area, slip_compression, stick_load }
     }
 
     /// Equations of the inner springs.
@@ -247,16 +247,16 @@ impl StickStage<'_> {
     /// `ln((S - K)/S_0)` at the contact edge; not a number where less slipped than was left behind.
     fn at_contact_edge(&self, at: &Unknowns, passed: &Passed, trial: &StickTrial) -> f64 {
         let (last, fields) = (at.compression.len(), &trial.fields);
-        let free = fields.slip_depth[last] - self.left_behind(at, passed, &trial.place);
+        let free = fields.slip_depth[last] - self.left_behind(at, passed, &trial.stick_zone);
         if free > 0.0 { (free / fields.unworn[last].slip).ln() } else { f64::NAN }
     }
 
     /// `K` at the contact edge, m, at the end of the stage.
-    fn left_behind(&self, at: &Unknowns, passed: &Passed, place: &Place) -> f64 {
+    fn left_behind(&self, at: &Unknowns, passed: &Passed, stick_zone: &StickZone) -> f64 {
         if !self.moving.outwards {
             return 0.0;
         }
-        let q = place.slip_compression;
+        let q = stick_zone.slip_compression;
         let uniform = self.model.unworn.at_stick(at.stick_area, q, at.slip_area).limit_slip / q;
         self.moving.left_behind(&self.target.stick.left_behind, at.stick_area + at.slip_area)
             - (passed.risen - passed.unworn_rise) * uniform
@@ -264,7 +264,7 @@ impl StickStage<'_> {
 
     /// What decides where the edge of stick is: the unworn profile inwards, what is left behind outwards.
     fn at_stick_edge(&self, at: &Unknowns, passed: &Passed, trial: &StickTrial) -> f64 {
-        let q = trial.place.slip_compression;
+        let q = trial.stick_zone.slip_compression;
         if self.moving.rests() {
             return at.stick_area / self.target.stick.area - 1.0;
         }
@@ -277,8 +277,8 @@ impl StickStage<'_> {
     }
 
     /// What decides the height of the profile there: friction, or a balance of forces.
-    fn balance(&self, at: &Unknowns, passed: &Passed, drive: &Drive, trial: &StickTrial) -> f64 {
-        let (model, q) = (self.model, trial.place.slip_compression);
+    fn balance(&self, at: &Unknowns, passed: &Passed, loading: &CycleLoading, trial: &StickTrial) -> f64 {
+        let (model, q) = (self.model, trial.stick_zone.slip_compression);
         match self.moving.cause {
             _ if self.moving.jumps => passed.risen / q,
             Cause::Friction => (at.stick_depth - (model.contact.indentation() - q)) / q,
@@ -286,9 +286,9 @@ impl StickStage<'_> {
                 model.normal_force(&trial.fields) / force - 1.0
             }
             Cause::Tangential => {
-                let force = model.force(drive, &at.compression, &trial.fields, drive.amplitude);
-                let asked = &self.target.springs.drive;
-                asked.excess(force, drive.amplitude) / asked.asked()
+                let force = model.force(loading, &at.compression, &trial.fields, loading.amplitude);
+                let asked = &self.target.springs.loading;
+                asked.excess(force, loading.amplitude) / asked.asked()
             }
         }
     }
@@ -318,11 +318,11 @@ impl StickStage<'_> {
     fn fill_by_compressions(&self, at: &Unknowns, trial: &StickTrial, matrix: &mut Mat<f64>) {
         let (model, fields) = (self.model, &trial.fields);
         let (n, inner) = (model.springs(), model.springs() - 1);
-        let (passed, drive) = (self.passed(at), self.drive(at));
+        let (passed, loading) = (self.passed(at), self.loading(at));
         let mut growth = Mat::zeros(n, n);
         let step = self.target.springs.step;
-        model.add_growth_slopes(&drive, &at.compression, fields, &trial.cycle, -step, &mut growth);
-        let scale = fields.edge.powf(model.mu());
+        model.add_growth_slopes(&loading, &at.compression, fields, &trial.cycle, -step, &mut growth);
+        let scale = fields.slip_area.powf(model.mu());
         let behind = fields.slip_depth[inner] - fields.unworn[inner].slip * trial.residual[inner].exp();
         let mut slopes = vec![0.0; n];
         for j in 0..inner {
@@ -339,30 +339,36 @@ impl StickStage<'_> {
                 slopes[inner] * fields.slip_depth[inner] / (fields.slip_depth[inner] - behind);
             if self.moving.outwards && !self.moving.jumps {
                 let slope = self.extrapolated(|i| (-fields.log_slip[i]).exp() * slopes[i]);
-                matrix[(n, j)] = passed.risen * slope / trial.place.slip_compression;
+                matrix[(n, j)] = passed.risen * slope / trial.stick_zone.slip_compression;
             }
-            matrix[(n + 1, j)] = self.balance_by_compression(j, at.compression[j], &drive, trial);
+            matrix[(n + 1, j)] = self.balance_by_compression(j, at.compression[j], &loading, trial);
         }
     }
 
-    fn balance_by_compression(&self, spring: usize, q: f64, drive: &Drive, trial: &StickTrial) -> f64 {
+    fn balance_by_compression(
+        &self,
+        spring: usize,
+        q: f64,
+        loading: &CycleLoading,
+        trial: &StickTrial,
+    ) -> f64 {
         let half_space = self.model.contact.half_space();
         let weight = half_space.normal_stiffness()
-            * trial.fields.edge
+            * trial.fields.slip_area
             * self.model.operators.abel.spring_sum()[spring]
             * trial.fields.density_factor[spring];
         match self.moving.cause {
             Cause::Friction => 0.0,
             Cause::NormalForce(force) | Cause::Sliding(force) => weight / force,
             Cause::Tangential => {
-                let strength = |q: f64| drive.friction.kinetic_strength(q);
-                if strength(q) >= half_space.stiffness_ratio() * drive.amplitude {
+                let strength = |q: f64| loading.friction.kinetic_strength(q);
+                if strength(q) >= half_space.stiffness_ratio() * loading.amplitude {
                     return 0.0;
                 }
-                let step = DIFFERENCE * trial.place.slip_compression;
+                let step = DIFFERENCE * trial.stick_zone.slip_compression;
                 let slope = (strength(q + step) - strength(q)) / step;
-                let asked = &self.target.springs.drive;
-                let [by_force, _] = asked.demand.factors();
+                let asked = &self.target.springs.loading;
+                let [by_force, _] = asked.control.factors();
                 by_force * weight * slope / asked.asked()
             }
         }
@@ -408,5 +414,5 @@ impl StickStage<'_> {
 /// `Φ/S_0` at a spring, 1/m.
 fn per_slip(fields: &Fields, spring: usize) -> f64 {
     let values = &fields.unworn[spring];
-    values.limit_slip / fields.place.slip_compression / values.slip
+    values.limit_slip / fields.stick_zone.slip_compression / values.slip
 }

@@ -30,7 +30,7 @@ const SEARCH: usize = 400;
 
 /// Where springs slip and wear in some cycle of a run.
 #[derive(Debug, Clone)]
-pub struct Reach {
+pub struct Envelope {
     /// The contact at the largest indentation, with the smallest stick radius.
     pub contact: InitialContact,
     /// Whether no stick radius is left in some cycle.
@@ -46,12 +46,12 @@ impl Schedule {
     ///
     /// # Errors
     /// [`Error::Inconsistent`](crate::Error::Inconsistent) if nothing slips; those of [`InitialContact::at`].
-    pub fn reach(&self, contact: &InitialContact) -> Result<Reach> {
+    pub fn envelope(&self, contact: &InitialContact) -> Result<Envelope> {
         let ratio = contact.half_space().stiffness_ratio();
         let depth = self.largest_indentation();
         let compression = match self.conditions().tangential_control {
             TangentialControl::Displacement => {
-                self.extremes().map(|drive| drive.slip_compression(ratio)).fold(0.0, f64::max)
+                self.extremes().map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
             }
             _ => self.last_slip_compression(contact)?,
         };
@@ -76,14 +76,14 @@ impl Schedule {
             });
         }
         if !slides {
-            return Ok(Reach { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
+            return Ok(Envelope { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
         }
         let held = self.conditions().tangential_control != TangentialControl::Displacement;
         let contact = contact.with_core(depth, CORE * radius)?;
         let at_core = contact.slip_compression();
         let surplus = (compression - at_core).clamp(LEAST_SURPLUS * at_core, LARGEST_SURPLUS * at_core);
         // Under a held tangential force the core gives way only in the end, and all slip is counted from there.
-        Ok(Reach { contact, slides, surplus: if held { 0.0 } else { surplus } })
+        Ok(Envelope { contact, slides, surplus: if held { 0.0 } else { surplus } })
     }
 
     /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the
@@ -98,12 +98,12 @@ impl Schedule {
         let exponent = 1.0 + half_space.grading();
         let profile = contact.equivalent_profile();
         let mut largest = 0.0_f64;
-        for drive in self.extremes() {
-            let depth = self.largest_indentation() - drive.lift;
+        for loading in self.extremes() {
+            let depth = self.largest_indentation() - loading.lift;
             let excess = |radius: f64| {
-                let strength = drive.friction.static_strength(depth - profile.value(radius));
+                let strength = loading.friction.static_strength(depth - profile.value(radius));
                 let force = 2.0 * half_space.normal_stiffness() * strength * radius.powf(exponent) / exponent;
-                drive.excess(force, strength / ratio)
+                loading.excess(force, strength / ratio)
             };
             // From the contact edge inwards: stick is lost from there.
             let radius = profile.radius_at(depth)?;
@@ -116,7 +116,7 @@ impl Schedule {
                 }
                 None => depth,
             };
-            largest = largest.max(compression + drive.lift);
+            largest = largest.max(compression + loading.lift);
         }
         Ok(largest)
     }
