@@ -7,7 +7,7 @@ use crate::scene::Stepper as Choice;
 use crate::solver::model::{Model, State};
 use crate::solver::simulation::{End, Simulation};
 
-/// Most steps of a method that needs one for every cycle or for every relaxation of the stiffest springs, and of any for blocks: a day or so.
+/// Most steps of an explicit method, and most ends of blocks in a run: about a day.
 const MOST_STEPS: f64 = 1e9;
 
 /// Wall time of a run, s, above which a user is warned.

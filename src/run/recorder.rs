@@ -1,4 +1,4 @@
-//! What a run leaves behind: snapshots, checkpoints, and how far off it is.
+//! What a run records: snapshots, checkpoints, and the estimate of its error.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -77,7 +77,7 @@ pub(super) struct Recorder {
     saved: Instant,
     wall_seconds_before: f64,
     stop: Arc<AtomicBool>,
-    /// Whether a file is to hold the result; else only checkpoints are written.
+    /// Whether the result is written to a file; else only checkpoints are.
     pub(super) saves_result: bool,
     /// Coarser runs, where the program chose the springs.
     companions: Option<Companions>,

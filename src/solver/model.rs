@@ -50,11 +50,11 @@ pub use past::{Linearised, Past, PastPoint};
 pub use schedule::{AmplitudeControl, CycleLoading, Resolution, Schedule};
 pub use stage::{Target, Unknowns};
 
-/// Part of the annulus, next to the edge of stick, of which the springs of a [`Clustering::Smooth`] mesh are not shown: the front in which wear
-/// proceeds towards the edge is followed well as long as some springs are left before it.
+/// Part of the annulus, next to the edge of stick, whose springs the output of a [`Clustering::Smooth`] mesh leaves out. Wear proceeds towards the
+/// edge in a front, which is followed well as long as some springs are left before it.
 const HIDDEN: f64 = 3e-5;
 
-/// Springs from which on hierarchical operators serve wear without kinks.
+/// Fewest springs for which operators are hierarchical where wear has no kinks.
 const HIERARCHICAL: usize = 1000;
 
 /// Fewest springs on which the local polynomials fit.
@@ -81,7 +81,7 @@ pub struct State {
     pub compression_rate: Vec<f64>,
     /// The edge of stick, where that moves.
     pub stick: Option<StickEdge>,
-    /// What a method of several steps remembers.
+    /// The times before, for a multistep method.
     pub past: Past,
 }
 
@@ -121,7 +121,7 @@ pub struct StickZone {
 }
 
 impl Fields {
-    /// Whether slip is positive at every spring and every number finite: a state may exist that is none of a contact.
+    /// Whether slip is positive at every spring and every number is finite. Compressions can be such that no contact has them.
     pub fn are_physical(&self) -> bool {
         self.slip_depth.iter().all(|s| *s > 0.0 && s.is_finite())
             && self.pressure.iter().all(|p| p.is_finite())
@@ -153,7 +153,7 @@ impl Model {
     ///
     /// # Arguments
     /// * `contact` -- the contact of the first cycle
-    /// * `conditions` -- those of its scene: the laws in the contact are but stand-ins of theirs
+    /// * `conditions` -- those of its scene, whose laws replace the ones in the contact
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if nothing slips or the conditions do not go together; [`Error::OutOfRange`] for too few springs; those of the transforms.
@@ -206,14 +206,13 @@ impl Model {
         }
         let profile = contact.equivalent_profile();
         let grading = profile.grading();
-        // Where no stick is left in the end, the mesh reaches to the core from the start.
         let moving = MovingStick::new(&schedule, contact, slides)?;
         let farthest = match &moving {
             Some(moving) => moving.farthest(contact)?,
             None => contact.clone(),
         };
         if moving.is_some() && profile.end_of_table().is_some() {
-            // Where there is a closed form, that looks for rings.
+            // The closed form refuses profiles that lose contact in rings.
             LimitingShape::from_contact(&farthest)?;
         }
         let unworn = UnwornSlip::new(
@@ -227,7 +226,7 @@ impl Model {
         let first = contact.contact_radius().powi(2);
         let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
-        // Next to the core of a contact that slides as a whole nothing is singular that finer cells would resolve.
+        // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
         let clustering = match clustering {
             Clustering::Cubic if surplus > 0.0 => Clustering::CreepingStick,
             clustering => clustering,
@@ -264,8 +263,7 @@ impl Model {
         })
     }
 
-    /// The operators that serve a contact on a number of springs: hierarchical ones where those are many, wear has no kinks and the edge of
-    /// stick stays where it is.
+    /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
     pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
         let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
         let serve = springs >= HIERARCHICAL && schedule.wears_smoothly() && stays;
@@ -277,7 +275,7 @@ impl Model {
         &self.contact
     }
 
-    /// Whether the contact slides as a whole in some cycle, so that only the core of the mesh is not worn.
+    /// Whether there is gross slip in some cycle, so that only the core of the mesh is not worn.
     pub fn slides(&self) -> bool {
         self.slides
     }
@@ -287,7 +285,7 @@ impl Model {
         self.schedule.wears_smoothly() && self.moving.is_none() && !self.slides
     }
 
-    /// What the core that stays unworn under full sliding makes the worn volume uncertain by, relative; zero where a stick zone is left.
+    /// Relative uncertainty of the worn volume by the core that stays unworn in gross slip; zero where a stick zone is left.
     pub fn core_uncertainty(&self) -> f64 {
         if self.slides { envelope::core_share(self.contact.half_space().grading()) } else { 0.0 }
     }
@@ -297,7 +295,7 @@ impl Model {
         &self.schedule
     }
 
-    /// Cycles in which wear at the first pressures comes to the compression at the edge of stick.
+    /// Cycles in which wear at the first pressures would be as deep as the compression at the edge of stick.
     pub fn cycles_of_wear(&self) -> f64 {
         self.contact.indentation() / (self.contact.slip_compression() * self.contact.tau_per_cycle())
     }
@@ -312,7 +310,7 @@ impl Model {
         &self.unworn
     }
 
-    /// Gives back memory that only explicit steps and the search for a state need, where it is much.
+    /// Frees memory that only explicit steps and the search for a state need, where it is much.
     pub fn release_factors(&self) {
         self.operators.release_factors();
     }

@@ -51,7 +51,7 @@ pub(in crate::run) struct Companions {
     smooth: bool,
     /// The largest order believed, where it is not known.
     order: f64,
-    /// Every which of the radii of the run is looked at: about as many as springs, between which the error varies no faster.
+    /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
     every: usize,
     /// Those radii over the contact radius, where the edge of stick moves.
     radii: Option<Vec<f64>>,

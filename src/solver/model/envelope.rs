@@ -1,4 +1,4 @@
-//! How far wear can reach: the contact at the largest indentation of a run and the smallest stick radius.
+//! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
@@ -6,21 +6,21 @@ use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::bracketed;
 
-/// Radius, over that of the contact, of the core within which nothing is worn under full sliding: the springs need a smallest radius, and
-/// 60 of them serve for 1e-3, 120 for 1e-4.
+/// Radius, over that of the contact, of the core that stays unworn in gross slip, since the mesh needs a smallest radius: 1e-3 takes 60 springs,
+/// 1e-4 would take 120.
 const CORE: f64 = 1e-3;
 
 /// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact slides as a whole: the
 /// slip depth, of which wear is the growth, keeps its digits next to the core, however flat the profile is there.
 const LEAST_SURPLUS: f64 = 1e-2;
 
-/// Largest one: more says nothing more about the slip of springs, and would cost digits of the depth.
+/// Largest surplus: a larger one changes nothing in the slip of springs and would cost digits of the depth.
 const LARGEST_SURPLUS: f64 = 1e3;
 
 /// Largest share of the load on the core for which full sliding is followed.
 const LARGEST_CORE_SHARE: f64 = 5e-3;
 
-/// Share of the load, in order of size, on the core that stays unworn under full sliding.
+/// Share of the load, in order of magnitude, on the core that stays unworn in gross slip.
 pub(super) fn core_share(grading: f64) -> f64 {
     CORE.powf(1.0 + grading)
 }
@@ -28,7 +28,7 @@ pub(super) fn core_share(grading: f64) -> f64 {
 /// Steps in the search for the last stick radius.
 const SEARCH: usize = 400;
 
-/// Where springs slip and wear in some cycle of a run.
+/// Bounds of where springs slip and wear in some cycle of a run.
 #[derive(Debug, Clone)]
 pub struct Envelope {
     /// The contact at the largest indentation, with the smallest stick radius.
@@ -42,7 +42,7 @@ pub struct Envelope {
 impl Schedule {
     /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
     ///
-    /// Under full sliding a core stays of a thousandth of the contact radius.
+    /// In gross slip a core of a thousandth of the contact radius is left.
     ///
     /// # Errors
     /// [`Error::Inconsistent`](crate::Error::Inconsistent) if nothing slips; those of [`InitialContact::at`].

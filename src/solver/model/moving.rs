@@ -39,7 +39,7 @@ const STATIONS: usize = 24;
 /// Indentation over the first one up to which a contact that slides under a held force is followed.
 const FARTHEST: f64 = 5.0;
 
-/// Compressions that differ by less than this part are the same by two ways.
+/// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
 
 /// What moves the edge of stick.
@@ -183,7 +183,7 @@ impl MovingStick {
         contact.at(profile.value(stick) + compression, compression)
     }
 
-    /// The mesh that serves, where `asked` is the one for an edge of stick that stays.
+    /// The mesh to use, where `asked` is the one for an edge of stick that rests.
     pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
         match self.cause {
             _ if self.rests() => asked,
@@ -212,7 +212,7 @@ impl MovingStick {
         self
     }
 
-    /// What was left behind at a squared radius, m², of ground that the contact has come to; none where it was from the start.
+    /// What was left behind at a squared radius, m², outside the first contact; none within it.
     pub(super) fn left_behind_outside(&self, stick: &StickEdge, squared: f64) -> Option<f64> {
         (self.outwards && squared >= self.span[0].exp())
             .then(|| self.left_behind(&stick.left_behind, squared))
@@ -289,8 +289,8 @@ impl MovingStick {
     }
 }
 
-/// Refuses an edge of stick that comes to rest on worn ground amidst a mesh that begins farther inside: what the springs next to it are off by grows
-/// as slip does, and moves it inwards. Worn volumes were 0.4 to 8 % off with any number of springs.
+/// Refuses an edge of stick that comes to rest on worn ground within the mesh: errors of the springs next to it grow with slip and move it inwards.
+/// Worn volumes were 0.4 to 8 % off with any number of springs.
 fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     let ratio = contact.half_space().stiffness_ratio();
     let largest = |loadings: &mut dyn Iterator<Item = CycleLoading>| {
@@ -302,7 +302,8 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     }
     let part = last / most;
     let in_the_end = format!(
-        "in the end springs slip below {part:.4} of the largest compression at which they slipped before, so that the edge of stick comes to rest          within worn ground, which is not followed to any accuracy"
+        "in the end springs slip below {part:.4} of the largest compression at which they slipped before, so that the edge of stick comes to rest \
+         within worn ground, which is not followed to any accuracy"
     );
     let (what, cure) = if schedule.conditions().blocks.is_empty() {
         ("friction.history", "let the factors only fall, only rise, or end at their smallest")
@@ -350,7 +351,7 @@ impl Model {
         StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
     }
 
-    /// Puts what the quadrature over the springs leaves of a held force in the first cycle on the stick zone.
+    /// Adds the part of a held force that the quadrature over the springs misses in the first cycle to the load of the stick zone.
     pub(super) fn close_force(&self, mut state: State) -> State {
         let cause = self.moving.as_ref().map(|moving| moving.cause);
         let Some(Cause::NormalForce(force) | Cause::Sliding(force)) = cause else { return state };
@@ -361,7 +362,7 @@ impl Model {
         state
     }
 
-    /// What acts in a state: the amplitude is that at which springs at the edge of stick begin to slip.
+    /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
         let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
         match &state.stick {

@@ -1,4 +1,4 @@
-//! Operators of one grading on one mesh, which models of the same can share.
+//! Operators of one grading on one mesh, which models share.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -33,10 +33,10 @@ enum Inverse {
     },
 }
 
-/// What tells operators apart: the bits of the grading and of the stretch of the mesh, number of springs, clustering, backend.
+/// Key of operators: the bits of the grading and of the stretch of the mesh, number of springs, clustering, backend.
 type Key = (u64, u64, usize, Clustering, Backend);
 
-/// Operators used last, for all the models of a process; one at most of those so large that they fill the memory.
+/// Operators used last, for all models of a process; at most one that is so large that it fills the memory.
 ///
 /// Models share them when grading, number of springs and the ratio `a∞/c` agree to the last bit: scenes that differ in load, friction,
 /// wear or stiffness at one stick ratio. A model is the same bit for bit whether its operators were shared or not.
@@ -68,7 +68,7 @@ impl OperatorStore {
             // One of that size is enough: a mesh that does not carry the contact is followed by another.
             self.recent().retain(|((_, _, springs, ..), _)| *springs < MANY_SPRINGS);
         }
-        // Without the lock, so that others go on meanwhile; two that build the same build it equal.
+        // Without the lock, so that other threads go on meanwhile; two that build the same get equal operators.
         let built = Arc::new(Operators::new(backend, grading, stretch, springs, clustering)?);
         let mut recent = self.recent();
         recent.insert(0, (key, Arc::clone(&built)));
@@ -179,7 +179,7 @@ impl Operators {
         })
     }
 
-    /// Gives the factors back where they are large; whoever asks for them again waits for them to be made anew.
+    /// Frees the factors where they are large; they are made again when they are needed.
     pub fn release_factors(&self) {
         if self.abel.len() < MANY_SPRINGS {
             return;

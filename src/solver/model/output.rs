@@ -11,18 +11,18 @@ use crate::numerics::linear::dot;
 /// Distance from the contact edge, over the annulus, that is round-off.
 const AT_EDGE: f64 = 1e-13;
 
-/// Places at which the fields on a smooth mesh are shown where its springs are fewer.
+/// Radii of the output on a smooth mesh of fewer springs.
 const SHOWN: usize = 128;
 
-/// Most places shown: of more springs every second one, or every third, and so on, inwards from the contact edge. A file of a hundred snapshots
-/// takes 40 MB then.
+/// Most radii of the output: of more springs every second one is shown, or every third, and so on, inwards from the contact edge. A file of a
+/// hundred snapshots then takes 40 MB.
 const MOST_SHOWN: usize = 16_384;
 
 /// Most springs at which the depth is compared from step to step.
 const MOST_JUDGED: usize = 4096;
 
-/// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
-/// innermost of them may be as strong as the core.
+/// Stick radius, over that of the core, below which nothing sticks in gross slip: springs lie densely next to the core, and the innermost may be
+/// as strong as the core.
 const MIDDLE: f64 = 2.0;
 
 /// The fields on the fixed radii of the output, shape `(node,)` each.
@@ -30,7 +30,7 @@ const MIDDLE: f64 = 2.0;
 pub struct RadialFields {
     /// Wear depth, m.
     pub wear_depth: Vec<f64>,
-    /// Pressure, Pa, zero outside the contact; not a number where the ground has come to stick: springs tell it in the annulus alone.
+    /// Pressure, Pa, zero outside the contact; not a number in the stick zone, which has no springs.
     pub pressure: Vec<f64>,
     /// Slip amplitude, m, zero outside the contact.
     pub slip: Vec<f64>,
@@ -63,8 +63,8 @@ impl Model {
         self.volume(self.unworn.limit_slip_area(), &depth)
     }
 
-    /// Depth between the springs of the limit that these do not see in the unworn slip, over the limit's largest: waves of a table that are too
-    /// short for them. None where the indenter is no table, or the edge of stick moves.
+    /// Depth that the mesh does not resolve in the unworn slip, over the limit's largest: waves of a table that are too short for it. None where the
+    /// indenter is not a table, or the edge of stick moves.
     pub fn unseen_depth(&self) -> Option<f64> {
         self.contact.equivalent_profile().end_of_table()?;
         if self.moving.is_some() {
@@ -159,7 +159,7 @@ impl Model {
         }
     }
 
-    /// A stick radius of [`CycleFields`] or [`State`], m, without the core that stands for the middle of a contact that slides.
+    /// A stick radius of [`CycleFields`] or [`State`], m: zero where that is the core of a contact in gross slip.
     pub fn without_core(&self, stick_radius: f64) -> f64 {
         if self.reaches_the_middle(stick_radius) { 0.0 } else { stick_radius }
     }
@@ -324,7 +324,7 @@ struct AnnulusPoint {
 }
 
 impl AnnulusPoint {
-    /// At least zero: before the contact edge the polynomial may pass below nothing, by less than the run is off.
+    /// At least zero: next to the contact edge the polynomial may be negative, by less than the error of the run.
     fn wear_depth(&self) -> f64 {
         self.grown().max(0.0)
     }
@@ -345,8 +345,8 @@ pub(super) struct OutputRadii {
 }
 
 impl OutputRadii {
-    /// The places of the limit's springs, but for the first ones, or of one in several where they are more than [`MOST_SHOWN`]; on a smooth mesh of few springs, whose polynomials serve between them, at
-    /// least [`SHOWN`] places, graded as the mesh is, from [`HIDDEN`] to the contact edge.
+    /// The springs of the limit without the first ones, or one in several where they are more than [`MOST_SHOWN`]. On a smooth mesh of few springs
+    /// [`SHOWN`] radii, graded as the mesh is, from [`HIDDEN`] to the contact edge.
     pub(super) fn new(unworn: &UnwornSlip, mesh: &Mesh, hidden: usize) -> Self {
         let springs = &mesh.nodes()[1 + hidden..];
         let fractions: Vec<f64> = if mesh.clustering() == Clustering::Smooth && springs.len() < SHOWN {

@@ -1,4 +1,4 @@
-//! What a method of several steps remembers.
+//! The times before a state, which a multistep method needs.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ pub struct Past {
     pub order: usize,
     /// The state itself and those before it, the newest first.
     pub points: Vec<Arc<PastPoint>>,
-    /// Where the factors were made that the next step begins with, if it does not make its own.
+    /// Where the factors were made with which the next step begins; none if it makes its own.
     pub linearised: Option<Arc<Linearised>>,
 }
 
@@ -29,7 +29,7 @@ pub struct Linearised {
 }
 
 impl Past {
-    /// Whether this is the past of a state that a method of orders up to `highest` can go on from.
+    /// Whether a method of orders up to `highest` can go on from a state with this past.
     pub fn fits(&self, state: &State, highest: usize) -> bool {
         let Some(newest) = self.points.first() else { return true };
         let springs = state.compression.len();

@@ -38,8 +38,8 @@ const REMEMBERED: usize = Bdf::HIGHEST_ORDER + 2;
 /// Error at the end of a run over that of its steps, measured (docs/numerics.md), so that a tolerance is about the error that comes of it.
 const ACCUMULATED: f64 = 8.0;
 
-/// Logarithm of the change of the step, and contraction of the corrections, up to which hierarchical factors serve another step: these take as
-/// long as eight corrections, dense ones of as many springs as those are for much less.
+/// Largest change of the step, as a logarithm, and contraction of the corrections with which hierarchical factors serve another step. Making them
+/// takes as long as eight corrections. Dense factors are made anew in every step: on so few springs that is cheap.
 const SAME_STEP: f64 = 0.3;
 const SAME_MATRIX: f64 = 0.4;
 
@@ -67,8 +67,8 @@ impl Stepper for Bdf {
         self.take_up_factors(model, state, &target);
         let step = target.step;
         let mut evaluations = 1;
-        // Where the past leads first, once more with factors of its own; on fine meshes with gradings near -1 that may be beyond what Newton's
-        // method comes back from.
+        // First guess: the polynomial through the past, then the same with new factors, then the state itself. On fine meshes with gradings near
+        // -1 the polynomial may lead too far for Newton's method.
         let led = (past.points.len() > 1).then(|| state_of(state, times.guess(&past), now));
         let again = led.clone().filter(|_| self.newton.linearised().is_some());
         let still = State { cycles: now, past: Past::default(), ..state.clone() };
@@ -101,7 +101,7 @@ impl Stepper for Bdf {
         let mut past = past;
         past.points.insert(0, PastPoint::new(&at, &self.tried.fields.log_slip));
         let error = match first {
-            // The guess and the step are off by as much to either side.
+            // Explicit and implicit Euler steps err by the same amount in opposite directions.
             Some(guess) => 0.5 * self.depth_error(model, &[1.0, -1.0], &[&past.points[0].log_slip, &guess]),
             None => self.error_at(model, past.order, &times, &past),
         };
@@ -157,9 +157,9 @@ impl Bdf {
         }
     }
 
-    /// Takes up the factors that a state was left with, made again if this method did not make them itself, as long as they suit the step.
+    /// Takes up the factors of the step before, made again in a run that is resumed, as long as they suit the step.
     ///
-    /// A step that was rejected leaves its own to the next that is tried from the same state: so does it in a run that is resumed there.
+    /// A rejected step leaves its factors to the next one from the same state.
     fn take_up_factors(&mut self, model: &Model, state: &State, target: &Target) {
         if self.tried_from != Some(state.cycles) {
             self.tried_from = Some(state.cycles);
@@ -207,9 +207,8 @@ impl Bdf {
             .collect()
     }
 
-    /// Largest error in depth of a step at some order, over the limit's largest depth, from the divided difference of the next order:
-    /// by as much do the step and the polynomial through the times before it miss each other, less the part of the latter. Infinite where the
-    /// past does not reach so far.
+    /// Largest error in depth of a step at some order, over the limit's largest depth, from the divided difference of the next order: the distance
+    /// of the step from the polynomial through the times before it, less that polynomial's own error. Infinite where the past is too short.
     fn error_at(&self, model: &Model, order: usize, times: &TimesBefore, past: &Past) -> f64 {
         let Some(before) = times.before.get(..order + 1) else { return f64::INFINITY };
         let farthest = before[order];
