@@ -168,77 +168,30 @@ impl Model {
         self.slides && stick_radius < MIDDLE * self.stick_zone.stick_area.sqrt()
     }
 
-    /// Wear depth, m, at `offset = r² - c²`, m², any place of the annulus, where the edge of stick left no worn ground behind.
+    /// Wear depth, m, at any `offset = r² - c²`, m², where the edge of stick left no worn ground behind.
     pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
-        let z =
-            state.stick.as_ref().map_or(offset, |stick| offset - (stick.area - self.stick_zone.stick_area));
-        let x = z / fields.slip_area;
-        if x <= 0.0 || x >= 1.0 - AT_EDGE {
-            return 0.0;
-        }
-        let unworn = self.unworn_at(&fields.stick_zone, z);
-        let of_limit = |spring: usize| fields.unworn[spring].limit_log_slip();
-        unworn.slip * self.log_slip_at(fields, x, &unworn, of_limit).1.exp_m1()
+        let annulus = Annulus::new(self, state, fields);
+        annulus.point(offset, &self.unworn.at(offset)).map_or(0.0, |point| point.grown())
     }
 
-    /// The coordinate of `ξ` on the mesh, and `λ` there, where the unworn slip is known.
-    ///
-    /// On a smooth mesh it is the local polynomial, corrected by what that is off by for the limit's `λ_∞`, which is known everywhere, as far as
-    /// wear has come: so the limit is met between the springs as it is at them.
-    fn log_slip_at(
-        &self,
-        fields: &Fields,
-        fraction: f64,
-        unworn: &UnwornValues,
-        of_limit: impl Fn(usize) -> f64,
-    ) -> (f64, f64) {
-        let mesh = self.operators.abel.mesh();
-        let y = mesh.place(fraction);
-        let local = mesh.local(y, self.springs());
-        let log_slip = local.sum(&fields.log_slip);
-        if mesh.clustering() != Clustering::Smooth {
-            return (y, log_slip);
-        }
-        let between = local.sum_of(of_limit);
-        let worn = if between > 0.0 { (log_slip / between).clamp(0.0, 1.0) } else { 1.0 };
-        (y, log_slip + worn * (unworn.limit_log_slip() - between))
-    }
-
-    /// Wear depth, m, at the places of the limit's springs that are not hidden, or of one in several where they are many; at least zero.
+    /// Wear depth, m, by which a step is accepted: at the output where the edge of stick leaves worn ground behind, else at the springs of the limit
+    /// that are not hidden, or at one in several where they are many; at least zero.
     pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
+        let annulus = Annulus::new(self, state, fields);
         if let Some(stick) = state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
-            let of_limit = self.limit_log_slip(fields);
-            let shown = self.output.offsets.iter().zip(&self.output.unworn).zip(&stick.wear_depth);
-            let depth = |((offset, unworn), worn): ((&f64, &UnwornValues), &f64)| {
-                let point = self.point(state, fields, &of_limit, *offset, unworn);
-                self.depth_beyond(stick, *offset, point.as_ref(), *worn)
+            let shown = self.output.iter().zip(&stick.wear_depth);
+            let depth = |((offset, unworn), worn): ((f64, &UnwornValues), &f64)| {
+                annulus.depth_beyond(stick, offset, annulus.point(offset, unworn).as_ref(), *worn)
             };
             return shown.map(depth).collect();
         }
         let every = self.springs().div_ceil(MOST_JUDGED);
-        let places = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
-        let places = places.step_by(every);
-        let of_limit = self.limit_log_slip(fields);
+        let springs = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
         let depth = |(x, unworn): (&f64, &UnwornValues)| {
-            let point = self.point(state, fields, &of_limit, self.unworn.limit_slip_area() * x, unworn);
+            let point = annulus.point(self.unworn.limit_slip_area() * x, unworn);
             point.map_or(0.0, |point| point.wear_depth())
         };
-        places.map(depth).collect()
-    }
-
-    /// Wear depth, m, at `offset` where the edge of stick leaves worn ground behind: `worn`, what every cycle took there; but outside the first
-    /// contact, where wear sets in as the contact edge passes, that of the slip, for steps do not resolve the passage.
-    ///
-    /// ```text
-    /// w = S - S_0 - K
-    /// ```
-    fn depth_beyond(&self, stick: &StickEdge, offset: f64, point: Option<&AnnulusPoint>, worn: f64) -> f64 {
-        let moving = self.moving.as_ref();
-        let squared = self.stick_zone.stick_area + offset;
-        match moving.and_then(|moving| moving.left_behind_outside(stick, squared)) {
-            Some(behind) => point.map_or(0.0, |point| (point.grown() - behind).max(0.0)),
-            None => worn,
-        }
+        springs.step_by(every).map(depth).collect()
     }
 
     /// The fields at [`Model::radii`], by the local polynomials between the springs.
@@ -254,16 +207,15 @@ impl Model {
         let shown = self.output.offsets.len();
         let mut radial =
             RadialFields { wear_depth: vec![0.0; shown], pressure: vec![0.0; shown], slip: vec![0.0; shown] };
-        let of_limit = self.limit_log_slip(fields);
-        let stick = state.stick.as_ref();
-        for (i, (offset, unworn)) in self.output.offsets.iter().zip(&self.output.unworn).enumerate() {
-            let point = self.point(state, fields, &of_limit, *offset, unworn);
-            let passed = stick.and_then(|stick| Some((stick, stick.wear_depth.get(i)?)));
+        let annulus = Annulus::new(self, state, fields);
+        for (i, (offset, unworn)) in self.output.iter().enumerate() {
+            let point = annulus.point(offset, unworn);
+            let passed = state.stick.as_ref().and_then(|stick| Some((stick, stick.wear_depth.get(i)?)));
             radial.wear_depth[i] = match passed {
-                Some((stick, worn)) => self.depth_beyond(stick, *offset, point.as_ref(), *worn),
+                Some((stick, worn)) => annulus.depth_beyond(stick, offset, point.as_ref(), *worn),
                 None => point.as_ref().map_or(0.0, AnnulusPoint::wear_depth),
             };
-            if self.sticks_at(state, *offset) {
+            if annulus.sticks_at(offset) {
                 radial.pressure[i] = f64::NAN;
             }
             let Some(AnnulusPoint { x, y, unworn, log_slip }) = point else { continue };
@@ -275,39 +227,76 @@ impl Model {
         }
         radial
     }
+}
 
-    /// Whether an edge of stick that moves outwards has passed `offset = r² - c²`, m², with the edge at rest.
-    fn sticks_at(&self, state: &State, offset: f64) -> bool {
-        state.stick.as_ref().is_some_and(|stick| self.stick_zone.stick_area + offset <= stick.area)
-    }
-
+/// The slip annulus in a state, at any `offset = r² - c²`, m², from the edge of stick at rest.
+struct Annulus<'a> {
+    model: &'a Model,
+    state: &'a State,
+    fields: &'a Fields,
     /// `λ_∞` on the springs.
-    fn limit_log_slip(&self, fields: &Fields) -> Vec<f64> {
-        fields.unworn.iter().map(UnwornValues::limit_log_slip).collect()
+    limit_log_slip: Vec<f64>,
+}
+
+impl<'a> Annulus<'a> {
+    fn new(model: &'a Model, state: &'a State, fields: &'a Fields) -> Self {
+        let limit_log_slip = fields.unworn.iter().map(UnwornValues::limit_log_slip).collect();
+        Self { model, state, fields, limit_log_slip }
     }
 
-    /// The point of the annulus at `offset = r² - c²`, m², of the edge at rest, where the unworn slip is known; none outside the annulus.
-    fn point(
-        &self,
-        state: &State,
-        fields: &Fields,
-        of_limit: &[f64],
-        offset: f64,
-        at_rest: &UnwornValues,
-    ) -> Option<AnnulusPoint> {
-        let (z, unworn) = match &state.stick {
+    /// A point of the annulus where the unworn slip of the edge at rest is known; none outside the annulus.
+    fn point(&self, offset: f64, at_rest: &UnwornValues) -> Option<AnnulusPoint> {
+        let (model, fields) = (self.model, self.fields);
+        let (z, unworn) = match &self.state.stick {
             None => (offset, *at_rest),
             Some(stick) => {
-                let z = self.stick_zone.stick_area + offset - stick.area;
-                (z, if z > 0.0 { self.unworn_at(&fields.stick_zone, z) } else { *at_rest })
+                let z = model.stick_zone.stick_area + offset - stick.area;
+                (z, if z > 0.0 { model.unworn_at(&fields.stick_zone, z) } else { *at_rest })
             }
         };
         let x = z / fields.slip_area;
         if x <= 0.0 || x >= 1.0 - AT_EDGE {
             return None;
         }
-        let (y, log_slip) = self.log_slip_at(fields, x, &unworn, |spring| of_limit[spring]);
-        Some(AnnulusPoint { x, y, unworn: unworn.slip, log_slip })
+        let y = model.operators.abel.mesh().place(x);
+        Some(AnnulusPoint { x, y, unworn: unworn.slip, log_slip: self.log_slip(y, &unworn) })
+    }
+
+    /// `λ` at a coordinate of the mesh where the unworn slip is known.
+    ///
+    /// On a smooth mesh the local polynomial is corrected by its error for the limit's `λ_∞`, which is known everywhere, in the proportion in
+    /// which wear has come to the limit: so the limit is met between the springs as it is at them.
+    fn log_slip(&self, y: f64, unworn: &UnwornValues) -> f64 {
+        let mesh = self.model.operators.abel.mesh();
+        let local = mesh.local(y, self.model.springs());
+        let log_slip = local.sum(&self.fields.log_slip);
+        if mesh.clustering() != Clustering::Smooth {
+            return log_slip;
+        }
+        let between = local.sum(&self.limit_log_slip);
+        let worn = if between > 0.0 { (log_slip / between).clamp(0.0, 1.0) } else { 1.0 };
+        log_slip + worn * (unworn.limit_log_slip() - between)
+    }
+
+    /// Wear depth, m, where the edge of stick leaves worn ground behind: `worn`, the sum over the cycles; but outside the first contact, where wear
+    /// sets in as the contact edge passes within a step, by the slip.
+    ///
+    /// ```text
+    /// w = S - S_0 - K
+    /// ```
+    fn depth_beyond(&self, stick: &StickEdge, offset: f64, point: Option<&AnnulusPoint>, worn: f64) -> f64 {
+        let squared = self.model.stick_zone.stick_area + offset;
+        let behind = self.model.moving.as_ref().and_then(|it| it.left_behind_outside(stick, squared));
+        match behind {
+            Some(behind) => point.map_or(0.0, |point| (point.grown() - behind).max(0.0)),
+            None => worn,
+        }
+    }
+
+    /// Whether an edge of stick that moves outwards has passed.
+    fn sticks_at(&self, offset: f64) -> bool {
+        let least = self.model.stick_zone.stick_area;
+        self.state.stick.as_ref().is_some_and(|stick| least + offset <= stick.area)
     }
 }
 
@@ -361,6 +350,11 @@ impl OutputRadii {
         };
         let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_slip_area() * x).collect();
         Self { unworn: offsets.iter().map(|offset| unworn.at(*offset)).collect(), offsets }
+    }
+
+    /// `r² - c²`, m², and the unworn slip there.
+    fn iter(&self) -> impl Iterator<Item = (f64, &UnwornValues)> {
+        self.offsets.iter().copied().zip(&self.unworn)
     }
 
     /// `r² - c²`, m².
