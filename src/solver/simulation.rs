@@ -438,7 +438,7 @@ impl Simulation {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
         let growth = largest(&self.cycle.growth);
-        let at_rest = || self.model.schedule().drive(now, now).asked() == 0.0;
+        let at_rest = || self.model.schedule().loading(now, now).asked() == 0.0;
         if let Some(target) = target.filter(|_| growth == 0.0 && at_rest()) {
             return Ok(landing(target - now, Some(target)));
         }
