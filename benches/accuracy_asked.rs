@@ -1,6 +1,6 @@
 //! Whether `numerics.accuracy` gives what is asked for: random scenes against a converged reference.
 //!
-//! `cargo bench --bench knob -- 200` prints the tables of docs/accuracy.md for so many scenes (default 200) of a fixed seed, asked for 1e-2,
+//! `cargo bench --bench accuracy_asked -- 200` prints the tables of docs/accuracy.md for so many scenes (default 200) of a fixed seed, asked for 1e-2,
 //! 1e-3 and 1e-4; with `fine` as well, for 1e-6, which takes longer: how often the
 //! actual error is within the asked one, how often the estimate is within a factor of five of it, and the misses. Errors are the largest
 //! over all snapshots, of the worn volume relative to the limit's or of the profile at any radius of the run relative to the limit's
