@@ -241,7 +241,7 @@ impl Simulation {
 
     /// Wear depth at the radii of the output, m, shape `(node,)`.
     pub fn wear_depth(&self) -> Vec<f64> {
-        self.radial_fields().wear_depth
+        self.model.radial_wear_depth(&self.state, &self.fields)
     }
 
     /// The plan.

@@ -177,14 +177,10 @@ impl Model {
     /// Wear depth, m, by which a step is accepted: at the output where the edge of stick leaves worn ground behind, else at the springs of the limit
     /// that are not hidden, or at one in several where they are many; at least zero.
     pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
-        let annulus = Annulus::new(self, state, fields);
-        if let Some(stick) = state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
-            let shown = self.output.iter().zip(&stick.wear_depth);
-            let depth = |((offset, unworn), worn): ((f64, &UnwornValues), &f64)| {
-                annulus.depth_beyond(stick, offset, annulus.point(offset, unworn).as_ref(), *worn)
-            };
-            return shown.map(depth).collect();
+        if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
+            return self.radial_wear_depth(state, fields);
         }
+        let annulus = Annulus::new(self, state, fields);
         let every = self.springs().div_ceil(MOST_JUDGED);
         let springs = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
         let depth = |(x, unworn): (&f64, &UnwornValues)| {
@@ -192,6 +188,14 @@ impl Model {
             point.map_or(0.0, |point| point.wear_depth())
         };
         springs.step_by(every).map(depth).collect()
+    }
+
+    /// Wear depth at [`Model::radii`], m.
+    pub fn radial_wear_depth(&self, state: &State, fields: &Fields) -> Vec<f64> {
+        let annulus = Annulus::new(self, state, fields);
+        let depth =
+            |(i, (offset, unworn))| annulus.wear_depth(i, offset, annulus.point(offset, unworn).as_ref());
+        self.output.iter().enumerate().map(depth).collect()
     }
 
     /// The fields at [`Model::radii`], by the local polynomials between the springs.
@@ -210,11 +214,7 @@ impl Model {
         let annulus = Annulus::new(self, state, fields);
         for (i, (offset, unworn)) in self.output.iter().enumerate() {
             let point = annulus.point(offset, unworn);
-            let passed = state.stick.as_ref().and_then(|stick| Some((stick, stick.wear_depth.get(i)?)));
-            radial.wear_depth[i] = match passed {
-                Some((stick, worn)) => annulus.depth_beyond(stick, offset, point.as_ref(), *worn),
-                None => point.as_ref().map_or(0.0, AnnulusPoint::wear_depth),
-            };
+            radial.wear_depth[i] = annulus.wear_depth(i, offset, point.as_ref());
             if annulus.sticks_at(offset) {
                 radial.pressure[i] = f64::NAN;
             }
@@ -276,6 +276,15 @@ impl<'a> Annulus<'a> {
         let between = local.sum(&self.limit_log_slip);
         let worn = if between > 0.0 { (log_slip / between).clamp(0.0, 1.0) } else { 1.0 };
         log_slip + worn * (unworn.limit_log_slip() - between)
+    }
+
+    /// Wear depth, m, at a radius of the output, at least zero.
+    fn wear_depth(&self, index: usize, offset: f64, point: Option<&AnnulusPoint>) -> f64 {
+        let passed = self.state.stick.as_ref().and_then(|stick| Some((stick, stick.wear_depth.get(index)?)));
+        match passed {
+            Some((stick, worn)) => self.depth_beyond(stick, offset, point, *worn),
+            None => point.map_or(0.0, AnnulusPoint::wear_depth),
+        }
     }
 
     /// Wear depth, m, where the edge of stick leaves worn ground behind: `worn`, the sum over the cycles; but outside the first contact, where wear

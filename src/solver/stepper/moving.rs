@@ -1,13 +1,12 @@
 //! Equations of an implicit stage where the edge of stick moves, for Newton's method.
 
 use super::newton::{Correction, Equations, Factorised, Newton};
-use super::resting::ROUND_OFF;
+use super::resting::{ROUND_OFF, newton_tolerance};
 use crate::numerics::linear::Factors;
 use crate::solver::model::{Model, StickEdge, StickStage, StickTrial, Target, Unknowns};
 
-/// Part of the tolerance of the time stepping that Newton's method may leave, and its bounds.
-const OF_TOLERANCE: f64 = 1e-3;
-const BOUNDS: [f64; 2] = [1e-12, 1e-8];
+/// Most that Newton's method may leave: the edge of stick takes more digits than the springs.
+const MOST_LEFT: f64 = 1e-8;
 
 /// Corrections of the edge of stick, relative, that are round-off of the balance that decides it.
 const STICK_ROUND_OFF: f64 = 1e-11;
@@ -26,8 +25,7 @@ pub(super) struct MovingStage<'a> {
 
 impl<'a> MovingStage<'a> {
     pub fn new(stage: StickStage<'a>, tolerance: f64, model: &Model, trial: &'a mut StickTrial) -> Self {
-        let [least, most] = BOUNDS;
-        let tolerance = (OF_TOLERANCE * tolerance).clamp(least, most);
+        let tolerance = newton_tolerance(tolerance).min(MOST_LEFT);
         Self { stage, tolerance, held: model.contact().indentation(), trial }
     }
 

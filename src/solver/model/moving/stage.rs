@@ -241,7 +241,12 @@ impl StickStage<'_> {
     /// What the motion of spring `i` makes of a quantity whose `ξ ∂/∂ξ` is given.
     fn carried(&self, at: &Unknowns, passed: &Passed, along: &[f64], i: usize) -> f64 {
         let node = self.model.operators.abel.nodes()[i + 1];
-        along[i] / node * (passed.area + node * (at.slip_area - self.target.springs.slip_area)) / at.slip_area
+        along[i] / node * self.motion(at, passed, node) / at.slip_area
+    }
+
+    /// By how much ground has passed the node `ξ` in the stage, m².
+    fn motion(&self, at: &Unknowns, passed: &Passed, node: f64) -> f64 {
+        passed.area + node * (at.slip_area - self.target.springs.slip_area)
     }
 
     /// `ln((S - K)/S_0)` at the contact edge; not a number where less slipped than was left behind.
@@ -324,6 +329,10 @@ impl StickStage<'_> {
         model.add_growth_slopes(&loading, &at.compression, fields, &trial.cycle, -step, &mut growth);
         let scale = fields.slip_area.powf(model.mu());
         let behind = fields.slip_depth[inner] - fields.unworn[inner].slip * trial.residual[inner].exp();
+        let nodes = &model.operators.abel.nodes()[1..];
+        let singular = |i| 1.0 - per_slip(fields, i) * passed.risen * (-fields.log_slip[i]).exp();
+        let singular: Vec<f64> = (0..inner).map(singular).collect();
+        let motion: Vec<f64> = nodes[..inner].iter().map(|node| self.motion(at, &passed, *node)).collect();
         let mut slopes = vec![0.0; n];
         for j in 0..inner {
             for (i, slope) in slopes.iter_mut().enumerate() {
@@ -331,9 +340,8 @@ impl StickStage<'_> {
             }
             let along = self.along_annulus(&slopes);
             for i in 0..inner {
-                matrix[(i, j)] = growth[(i, j)]
-                    + slopes[i] * (1.0 - per_slip(fields, i) * passed.risen * (-fields.log_slip[i]).exp())
-                    - self.carried(at, &passed, &along, i);
+                let carried = along[i] / nodes[i] * motion[i] / at.slip_area;
+                matrix[(i, j)] = growth[(i, j)] + slopes[i] * singular[i] - carried;
             }
             matrix[(inner, j)] =
                 slopes[inner] * fields.slip_depth[inner] / (fields.slip_depth[inner] - behind);
