@@ -38,11 +38,6 @@ impl Worn {
     }
 }
 
-/// The larger of two numbers; infinite where one is not a number.
-pub(super) fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) }
-}
-
 /// What a companion is to be.
 pub(super) struct Coarser<'a> {
     pub scene: &'a Scene,

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
-use super::companion::{Coarser, Companion, Worn, larger};
+use super::companion::{Coarser, Companion, Worn};
+use super::substeps::larger;
 use crate::data::{Snapshot, same_cycles};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::grid::Clustering;

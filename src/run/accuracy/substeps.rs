@@ -1,7 +1,6 @@
 //! What the substeps of a period leave out.
 
 use super::super::resolution;
-use super::companion::larger;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::scene::{Numerics, Scene};
@@ -11,6 +10,11 @@ use crate::solver::simulation::Simulation;
 /// Substeps of a period with which those of a run are compared, over these. Halves would tell little: as more substeps come next to a reversal,
 /// the error may stand still and then fall at once.
 const FINER: usize = 8;
+
+/// The larger of two numbers; infinite where one is not a number.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
 
 /// What the substeps of a period leave out: the integral over the cycles of what more of them would wear in the same states.
 #[derive(Debug)]
