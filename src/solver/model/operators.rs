@@ -36,6 +36,8 @@ enum Inverse {
 /// Key of operators: the bits of the grading and of the stretch of the mesh, number of springs, clustering, backend.
 type Key = (u64, u64, usize, Clustering, Backend);
 
+type Recent = Vec<(Key, Arc<Operators>)>;
+
 /// Operators used last, for all models of a process; at most one that is so large that it fills the memory.
 ///
 /// Models share them when grading, number of springs and the ratio `a∞/c` agree to the last bit: scenes that differ in load, friction,
@@ -45,7 +47,7 @@ type Key = (u64, u64, usize, Clustering, Backend);
 #[derive(Debug, Clone, Default)]
 pub struct OperatorStore {
     /// The ones used last first.
-    recent: Arc<Mutex<Vec<(Key, Arc<Operators>)>>>,
+    recent: Arc<Mutex<Recent>>,
 }
 
 impl OperatorStore {
@@ -76,7 +78,7 @@ impl OperatorStore {
         Ok(built)
     }
 
-    fn recent(&self) -> MutexGuard<'_, Vec<(Key, Arc<Operators>)>> {
+    fn recent(&self) -> MutexGuard<'_, Recent> {
         self.recent.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
