@@ -49,6 +49,7 @@ mod motion;
 mod patch;
 mod path_file;
 mod profile_file;
+mod reading;
 pub mod sampling;
 pub mod schema;
 mod sections;

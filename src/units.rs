@@ -3,6 +3,7 @@
 mod dimension;
 mod key;
 mod quantity;
+mod table;
 mod unit;
 
 pub use dimension::Dimension;
@@ -10,4 +11,5 @@ pub(crate) use dimension::wanted;
 pub use key::{Key, Kind, Range};
 pub use quantity::parse;
 pub(crate) use quantity::split_number;
+pub use table::{Form, Rule, Table};
 pub(crate) use unit::Unit;

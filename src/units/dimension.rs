@@ -20,6 +20,8 @@ impl Dimension {
     pub const LENGTH: Self = Self::new(1.0, 0.0, 0.0);
     /// Second.
     pub const TIME: Self = Self::new(0.0, 0.0, 1.0);
+    /// Hertz.
+    pub const FREQUENCY: Self = Self::new(0.0, 0.0, -1.0);
     /// N/m, of a spring between two bodies.
     pub const STIFFNESS: Self = Self::new(0.0, 1.0, -2.0);
     /// Newton.
@@ -67,12 +69,29 @@ impl Dimension {
         }
     }
 
+    /// The unit in SI, in the spelling of UDUNITS; "1" for a plain number and for what has no common name.
+    pub(crate) fn udunits(self) -> &'static str {
+        const UNITS: [(Dimension, &str); 9] = [
+            (Dimension::LENGTH, "m"),
+            (Dimension::TIME, "s"),
+            (Dimension::FREQUENCY, "Hz"),
+            (Dimension::FORCE, "N"),
+            (Dimension::STIFFNESS, "N m-1"),
+            (Dimension::PRESSURE, "Pa"),
+            (Dimension::INVERSE_PRESSURE, "Pa-1"),
+            (Dimension::ANGLE, "rad"),
+            (Dimension::ENERGY, "J"),
+        ];
+        UNITS.iter().find(|(dimension, _)| dimension.is(self)).map_or("1", |(_, unit)| unit)
+    }
+
     /// What a user calls it, and an example.
     fn name(self) -> Option<(&'static str, &'static str)> {
-        const NAMES: [(Dimension, &str, &str); 12] = [
+        const NAMES: [(Dimension, &str, &str); 13] = [
             (Dimension::NUMBER, "a plain number", "0.6"),
             (Dimension::LENGTH, "a length", "5 mm"),
             (Dimension::TIME, "a time", "30 s"),
+            (Dimension::FREQUENCY, "a frequency", "20 Hz"),
             (Dimension::FORCE, "a force", "50 N"),
             (Dimension::STIFFNESS, "a stiffness", "5 MN/m"),
             (Dimension::PRESSURE, "a pressure", "210 GPa"),

@@ -1,14 +1,23 @@
-//! Keys of scenes. One declaration serves the reader, the schema, the pages of documentation, `init`, `--set` and the axes of sweeps.
+//! Keys of scenes. One declaration serves the reader, the schema, the pages of documentation, `--set` and the axes of sweeps.
 
+use std::f64::consts::PI;
 use std::fmt;
 
-use super::Dimension;
+use super::{Dimension, Table};
 
 /// What a key takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     /// A number in SI, or a text with a unit of this dimension.
     Quantity(Dimension),
+    /// A number, or a text with a unit whose dimension depends on an exponent that another key gives.
+    Scaled,
+    /// A number with any unit or none.
+    Magnitude,
+    /// A number without quotes, or this word.
+    NumberOr(&'static str),
+    /// A ratio of whole numbers: a number, or a text such as `3/2`.
+    Ratio,
     /// A whole number.
     Whole,
     /// One of some words.
@@ -17,6 +26,22 @@ pub enum Kind {
     Switch,
     /// One line of text.
     Text,
+    /// The name of a file or of a unit: a text that is not empty.
+    Name,
+    /// The dotted name of a key of a scene.
+    KeyOfScene,
+    /// A value of any key of a scene.
+    Literal,
+    /// Any part of a scene, laid over another.
+    Patch,
+    /// An array: what each of its values is, the fewest and the most.
+    List(&'static Key, [usize; 2]),
+    /// A table.
+    Table(&'static Table),
+    /// An array of tables, the fewest and the most.
+    Tables(&'static Table, [usize; 2]),
+    /// One of several.
+    Either(&'static [Key]),
 }
 
 /// The numbers that a key takes.
@@ -32,9 +57,29 @@ impl Range {
     /// All numbers.
     pub const ANY: Self = Self { from: (f64::NEG_INFINITY, false), to: (f64::INFINITY, false) };
     /// Above zero.
-    pub const POSITIVE: Self = Self { from: (0.0, false), ..Self::ANY };
+    pub const POSITIVE: Self = Self::above(0.0);
     /// Zero and above.
-    pub const NOT_NEGATIVE: Self = Self { from: (0.0, true), ..Self::ANY };
+    pub const NOT_NEGATIVE: Self = Self::at_least(0.0);
+
+    /// All numbers above this one.
+    pub const fn above(least: f64) -> Self {
+        Self { from: (least, false), ..Self::ANY }
+    }
+
+    /// This number and all above it.
+    pub const fn at_least(least: f64) -> Self {
+        Self { from: (least, true), ..Self::ANY }
+    }
+
+    /// The range up to this number, which belongs to it.
+    pub const fn to(self, most: f64) -> Self {
+        Self { to: (most, true), ..self }
+    }
+
+    /// The range below this number.
+    pub const fn below(self, most: f64) -> Self {
+        Self { to: (most, false), ..self }
+    }
 
     /// Whether a number is in the range.
     pub fn contains(&self, value: f64) -> bool {
@@ -44,14 +89,23 @@ impl Range {
 }
 
 impl fmt::Display for Range {
-    /// `(0, inf)`, `[0, 1)`.
+    /// `(0, inf)`, `[0, 1)`, `[1e-10, 0.1]`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [open, close] = [if self.from.1 { '[' } else { '(' }, if self.to.1 { ']' } else { ')' }];
-        write!(f, "{open}{}, {}{close}", self.from.0, self.to.0)
+        let [from, to] = [self.from.0, self.to.0].map(short);
+        write!(f, "{open}{from}, {to}{close}")
     }
 }
 
-/// A key of a table of scenes.
+/// A number as one would write it: 0.1, 100000, 1e-10.
+fn short(number: f64) -> String {
+    match number != 0.0 && number.is_finite() && !(1e-3..=1e6).contains(&number.abs()) {
+        true => format!("{number:e}"),
+        false => number.to_string(),
+    }
+}
+
+/// A key of a table.
 ///
 /// ```
 /// use fretwear::units::{Dimension, Key, Range};
@@ -65,10 +119,14 @@ impl fmt::Display for Range {
 pub struct Key {
     /// The key as it stands in its table.
     pub name: &'static str,
+    /// Other names that people try, for which this one is suggested.
+    pub aliases: &'static [&'static str],
     /// What it takes.
     pub kind: Kind,
     /// The numbers that it takes, in SI.
     pub range: Range,
+    /// What more a value outside the range should be told; empty for nothing.
+    pub hint: &'static str,
     /// What is taken where it is left out, as it would be written; none where the key must be given or has no value without it.
     pub default: Option<&'static str>,
     /// Whether the table must have it.
@@ -77,12 +135,25 @@ pub struct Key {
     pub example: &'static str,
     /// One sentence: what it is, its symbol, its unit in SI.
     pub about: &'static str,
+    /// Unit in SI, in the spelling of UDUNITS, where it is not that of the dimension.
+    unit: Option<&'static str>,
 }
 
 impl Key {
     /// A required key of any kind and range.
     pub const fn new(name: &'static str, kind: Kind, about: &'static str) -> Self {
-        Self { name, kind, range: Range::ANY, default: None, required: true, example: "", about }
+        Self {
+            name,
+            aliases: &[],
+            kind,
+            range: Range::ANY,
+            hint: "",
+            default: None,
+            required: true,
+            example: "",
+            about,
+            unit: None,
+        }
     }
 
     /// A required key that takes a quantity.
@@ -95,9 +166,24 @@ impl Key {
         Self::quantity(name, Dimension::NUMBER, about)
     }
 
+    /// A required key that takes a table.
+    pub const fn table(table: &'static Table) -> Self {
+        Self::new(table.name, Kind::Table(table), table.about)
+    }
+
+    /// The key with other names, for which it is suggested.
+    pub const fn aliases(self, aliases: &'static [&'static str]) -> Self {
+        Self { aliases, ..self }
+    }
+
     /// The key with a range.
     pub const fn range(self, range: Range) -> Self {
         Self { range, ..self }
+    }
+
+    /// The key with a hint for values outside its range.
+    pub const fn hint(self, hint: &'static str) -> Self {
+        Self { hint, ..self }
     }
 
     /// The key with an example.
@@ -113,5 +199,52 @@ impl Key {
     /// The key, which may be left out.
     pub const fn optional(self) -> Self {
         Self { required: false, ..self }
+    }
+
+    /// The key with its unit in SI spelled out for UDUNITS.
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit: Some(unit), ..self }
+    }
+
+    /// The key for a quantity of this dimension.
+    pub const fn of(self, dimension: Dimension) -> Self {
+        Self { kind: Kind::Quantity(dimension), ..self }
+    }
+
+    /// Unit of its number in SI, in the spelling of UDUNITS; "1" for plain numbers, words and what has a unit that depends on an exponent.
+    pub fn si_unit(&self) -> &'static str {
+        match (self.unit, self.kind) {
+            (Some(unit), _) => unit,
+            (None, Kind::Quantity(dimension)) => dimension.udunits(),
+            _ => "1",
+        }
+    }
+
+    /// The range as an error tells it: angles in degrees, a bound of another dimension with its unit, then the hint.
+    pub(crate) fn range_in_words(&self) -> String {
+        let Range { from, to } = self.range;
+        let bounded = [from.0, to.0].iter().any(|end| end.is_finite() && *end != 0.0);
+        let range = match (self.kind, self.si_unit()) {
+            (Kind::Whole, _) if to.0.is_finite() => format!("{} to {}", from.0, to.0),
+            (_, "1") => self.range.to_string(),
+            (_, "rad") if bounded => {
+                let degrees = |(end, belongs): (f64, bool)| ((end * 180.0 / PI * 1e9).round() / 1e9, belongs);
+                let range = Range { from: degrees(from), to: degrees(to) }.to_string();
+                let (inside, close) = range.split_at(range.len() - 1);
+                format!("{inside} deg{close}")
+            }
+            (_, unit) if bounded => format!("{} {unit}", self.range),
+            _ => self.range.to_string(),
+        };
+        if self.hint.is_empty() { range } else { format!("{range}; {}", self.hint) }
+    }
+
+    /// The example as it stands in TOML; None without one.
+    pub(crate) fn example_in_toml(&self) -> Option<String> {
+        let bare = !matches!(self.kind, Kind::Word(_) | Kind::Text | Kind::Name | Kind::KeyOfScene)
+            && self.example.parse::<toml::Table>().is_err()
+            && format!("x = {}", self.example).parse::<toml::Table>().is_ok();
+        let quoted = || format!("{:?}", self.example);
+        (!self.example.is_empty()).then(|| if bare { self.example.into() } else { quoted() })
     }
 }

@@ -2,10 +2,124 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::units::{Dimension, Form, Key, Kind, Range, Rule, Table as Declared};
+
 /// A number as text begins so; what follows is left to the reader of units.
 const NUMBER: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)";
 /// Something must follow the number.
 const AND_UNIT: &str = r"(\s+\S|[^0-9\s.+-])";
+
+/// The schema of what a key takes.
+pub(in crate::scene) fn of_key(key: &Key) -> Value {
+    let mut value = match key.kind {
+        Kind::Quantity(dimension) if dimension == Dimension::NUMBER => either_number(key, NUMBER.into()),
+        Kind::Magnitude => either_number(key, NUMBER.into()),
+        Kind::Quantity(_) | Kind::Scaled => {
+            let mut value = either_number(key, format!("{NUMBER}{AND_UNIT}"));
+            value[UNIT] = key.si_unit().into();
+            value
+        }
+        Kind::NumberOr(word) => json!({ "anyOf": [bounded("number", key.range), { "const": word }] }),
+        Kind::Ratio => either_number(key, r"^\s*\+?[0-9.]".into()),
+        Kind::Whole => bounded("integer", key.range),
+        Kind::Word(words) => json!({ "enum": words }),
+        Kind::Switch => json!({ "type": "boolean" }),
+        Kind::Text => {
+            json!({ "type": "string", "maxLength": 1000, "pattern": "^[^\u{0}-\u{1f}\u{7f}-\u{9f}]*$" })
+        }
+        Kind::Name => json!({ "type": "string", "minLength": 1 }),
+        Kind::KeyOfScene => {
+            json!({ "type": "string", "pattern": r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)+$", "maxLength": 199 })
+        }
+        Kind::Literal => json!({ "type": ["number", "string", "boolean", "array"] }),
+        Kind::Patch => return defined(PATCH),
+        Kind::List(item, counts) => array(of_key(item), counts),
+        Kind::Table(table) => of_table(table),
+        Kind::Tables(table, counts) => array(of_table(table), counts),
+        Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(of_key).collect::<Vec<_>>() }),
+    };
+    if let Some(example) = key.example_in_toml() {
+        value["examples"] = json!([from_toml(&example)]);
+    }
+    if let Some(default) = key.default {
+        value["default"] = from_toml(default);
+    }
+    described(value, key.about)
+}
+
+/// The schema of a table as it stands in a file.
+pub(in crate::scene) fn of_table(table: &Declared) -> Value {
+    let mut schema = part_of_table(table);
+    let required: Vec<_> = table.keys.iter().filter(|key| key.required).map(|key| key.name).collect();
+    if !required.is_empty() {
+        schema["required"] = required.into();
+    }
+    if !table.rules.is_empty() {
+        schema["allOf"] = table.rules.iter().map(of_rule).collect();
+    }
+    schema
+}
+
+/// The schema of any part of a table, as in a patch.
+pub(in crate::scene) fn part_of_table(table: &Declared) -> Value {
+    let keys = table.keys.iter().map(|key| (key.name.to_owned(), of_key(key)));
+    let keys: Map<String, Value> = keys.collect();
+    let schema = json!({ "type": "object", "properties": keys, "additionalProperties": false });
+    described(schema, table.about)
+}
+
+fn of_rule(rule: &Rule) -> Value {
+    match rule {
+        Rule::OneOf(keys) => one_of(keys),
+        Rule::AtMostOneOf(keys) => at_most_one_of(keys),
+        Rule::Needs(key, other) => json!({ "dependencies": { *key: [other] } }),
+        Rule::Forms(forms) => {
+            let form = |form: &Form| {
+                let others = forms.iter().flat_map(Form::keys);
+                let strays: Vec<_> = others.filter(|key| !form.keys().any(|own| own == *key)).collect();
+                let strays: Vec<_> = strays.iter().map(|key| json!({ "required": [key] })).collect();
+                match strays.is_empty() {
+                    true => json!({ "required": form.needs }),
+                    false => json!({ "required": form.needs, "not": { "anyOf": strays } }),
+                }
+            };
+            json!({ "oneOf": forms.iter().map(form).collect::<Vec<_>>() })
+        }
+    }
+}
+
+/// A number in the range of a key, or a text.
+fn either_number(key: &Key, pattern: String) -> Value {
+    json!({ "anyOf": [bounded("number", key.range), { "type": "string", "pattern": pattern }] })
+}
+
+fn array(items: Value, [fewest, most]: [usize; 2]) -> Value {
+    json!({ "type": "array", "items": items, "minItems": fewest, "maxItems": most })
+}
+
+fn bounded(kind: &str, range: Range) -> Value {
+    let mut value = json!({ "type": kind });
+    let mut limit = |(end, belongs): (f64, bool), names: [&str; 2]| {
+        if end.is_finite() {
+            let whole = end == end.trunc() && end.abs() < 1e15;
+            let end = if whole { json!(end as i64) } else { json!(end) };
+            value[names[usize::from(belongs)]] = end;
+        }
+    };
+    limit(range.from, ["exclusiveMinimum", "minimum"]);
+    limit(range.to, ["exclusiveMaximum", "maximum"]);
+    value
+}
+
+/// A value in TOML, or the text itself where it is none.
+fn from_toml(text: &str) -> Value {
+    let value = format!("value = {text}").parse::<toml::Table>();
+    let value = value.ok().and_then(|mut table| table.remove("value"));
+    value.and_then(|value| serde_json::to_value(value).ok()).unwrap_or_else(|| text.into())
+}
+
+/// Name of a part of a scene among the definitions.
+pub(super) const PATCH: &str = "patch";
 
 pub(super) fn above_zero() -> Value {
     json!({ "exclusiveMinimum": 0 })

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::keys::{
-    DEFINITIONS, Table, above_zero, defined, described, line, list, magnitude, number, one_form, or, switch,
-    text, whole, word,
+    DEFINITIONS, PATCH, Table, above_zero, defined, described, line, list, magnitude, number, one_form, or,
+    switch, text, whole, word,
 };
 use super::tables::{patch, poisson_ratio};
 use crate::scene::map::MOST_ALONG_AXIS;
@@ -14,8 +14,6 @@ use crate::scene::universality::MOST_ENTRIES;
 use crate::scene::{MOST_SCENES, Prediction, Task};
 
 const MOST: usize = MOST_SCENES as usize;
-/// Name of a part of a scene among the definitions.
-const PATCH: &str = "patch";
 
 fn key_of_scene(about: &str) -> Value {
     let pattern = r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)+$";
