@@ -10,7 +10,7 @@ const LAYERS: [&str; 14] = [
 ];
 
 /// Circles that are still to be untied.
-const KNOWN: [&str; 29] = [
+const KNOWN: [&str; 25] = [
     "contact::indenter::equivalent -> contact::indenter::table_equivalent",
     "contact::indenter::table -> contact::indenter::table_equivalent",
     "contact::indenter::table_equivalent -> contact::indenter::equivalent",
@@ -31,10 +31,6 @@ const KNOWN: [&str; 29] = [
     "run::knob -> run::mesh",
     "run::mesh -> run::knob",
     "run::ready -> run::effort",
-    "scene::schema -> scene::study",
-    "scene::schema -> scene::universality",
-    "scene::study -> scene::schema",
-    "scene::universality -> scene::study",
     "solver::model::jacobian -> solver::model::operators",
     "solver::model::operators -> solver::model::jacobian",
     "solver::model::reach -> solver::model::schedule",

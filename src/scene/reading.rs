@@ -10,7 +10,12 @@ pub(super) trait Read<'a>: Sized {
     fn read(entry: &Entry<'a>, key: &Key) -> Result<Self>;
 
     /// The value of a text that a key has as its default.
-    fn default(text: &'static str, key: &Key) -> Option<Self>;
+    fn parse(text: &'static str, key: &Key) -> Option<Self>;
+
+    /// The default of a key; None for one that has none.
+    fn default_of(key: &Key) -> Option<Self> {
+        key.default.map(|text| Self::parse(text, key).expect("defaults are values of their keys"))
+    }
 }
 
 /// Quantities in SI.
@@ -21,7 +26,7 @@ impl<'a> Read<'a> for f64 {
         if key.range.contains(value) { Ok(value) } else { Err(entry.outside(&key.range_in_words())) }
     }
 
-    fn default(text: &'static str, key: &Key) -> Option<Self> {
+    fn parse(text: &'static str, key: &Key) -> Option<Self> {
         let Kind::Quantity(dimension) = key.kind else { return None };
         units::parse(text, dimension).ok()
     }
@@ -37,7 +42,7 @@ impl<'a> Read<'a> for usize {
         number.ok_or_else(|| entry.outside(&key.range_in_words()))
     }
 
-    fn default(text: &'static str, key: &Key) -> Option<Self> {
+    fn parse(text: &'static str, key: &Key) -> Option<Self> {
         match key.kind {
             Kind::Word(words) => words.iter().position(|word| *word == text),
             _ => text.parse().ok(),
@@ -50,8 +55,27 @@ impl<'a> Read<'a> for bool {
         entry.boolean()
     }
 
-    fn default(text: &'static str, _: &Key) -> Option<Self> {
+    fn parse(text: &'static str, _: &Key) -> Option<Self> {
         text.parse().ok()
+    }
+}
+
+/// One line, which goes into files and figures.
+impl<'a> Read<'a> for String {
+    fn read(entry: &Entry<'a>, _: &Key) -> Result<Self> {
+        const LONGEST: usize = 1000;
+        let line = entry.string()?;
+        if line.chars().any(char::is_control) {
+            return Err(entry.error("holds a line break or another control character; a title is one line"));
+        }
+        match line.len() > LONGEST {
+            true => Err(entry.error(format_args!("is longer than {LONGEST} bytes"))),
+            false => Ok(line.into()),
+        }
+    }
+
+    fn parse(text: &'static str, _: &Key) -> Option<Self> {
+        Some(text.into())
     }
 }
 
@@ -61,7 +85,7 @@ impl<'a> Read<'a> for &'a str {
         entry.string()
     }
 
-    fn default(text: &'static str, _: &Key) -> Option<Self> {
+    fn parse(text: &'static str, _: &Key) -> Option<Self> {
         Some(text)
     }
 }
@@ -85,6 +109,33 @@ impl<'a> Section<'a> {
                 ))),
                 _ => Ok(()),
             },
+            Rule::Words(key, words) => self.as_the_word_says(key, words, table),
+        }
+    }
+
+    /// Refuses keys that go with another word, and one that is missing for the word that is given.
+    fn as_the_word_says(&self, key: &str, words: &[(&str, Form)], table: &Table) -> Result<()> {
+        let Some(entry) = self.optional(key) else { return Ok(()) };
+        let (word, form) = &words[entry.word(&words.iter().map(|(word, _)| *word).collect::<Vec<_>>())?];
+        for (other, foreign) in words {
+            let stray = foreign.keys().filter(|key| !form.has(key)).find_map(|key| self.optional(key));
+            if let Some(stray) = stray {
+                let beside = format!("has no meaning beside {} = {word:?}", entry.path());
+                return Err(stray.misplaced(format_args!("{beside}; remove it, or write {other:?}")));
+            }
+        }
+        match form.needs.iter().find(|key| self.optional(key).is_none()) {
+            None => Ok(()),
+            Some(missing) => {
+                let key = table.key(missing).expect("forms are made of keys");
+                let example = key.example_in_toml().map_or(String::new(), |it| format!(", for example {it}"));
+                let needs = form.needs.join(" and ");
+                Err(self.error(format_args!(
+                    "{} is missing; {} = {word:?} needs {needs}{example}",
+                    self.name(missing),
+                    entry.path()
+                )))
+            }
         }
     }
 
@@ -131,14 +182,32 @@ impl<'a> Section<'a> {
 
     /// The value of a key, checked; its default where it is left out.
     pub(super) fn read<T: Read<'a>>(&self, key: &Key) -> Result<T> {
-        match (self.optional(key.name), key.default) {
-            (None, Some(default)) => Ok(T::default(default, key).expect("defaults are values of their keys")),
-            _ => T::read(&self.required_key(key)?, key),
+        match T::default_of(key).filter(|_| self.optional(key.name).is_none()) {
+            Some(default) => Ok(default),
+            None => T::read(&self.required_key(key)?, key),
         }
     }
 
     /// The value of a key, checked, if it is given.
     pub(super) fn read_optional<T: Read<'a>>(&self, key: &Key) -> Result<Option<T>> {
         self.optional(key.name).map(|entry| T::read(&entry, key)).transpose()
+    }
+}
+
+impl Entry<'_> {
+    /// Checks a value by itself, as far as it does not depend on other keys.
+    pub(super) fn check(&self, key: &Key) -> Result<()> {
+        match key.kind {
+            Kind::Quantity(_) => f64::read(self, key).map(drop),
+            Kind::Whole | Kind::Word(_) => usize::read(self, key).map(drop),
+            Kind::Switch => self.boolean().map(drop),
+            Kind::Text => String::read(self, key).map(drop),
+            Kind::Name => self.string().map(drop),
+            Kind::List(item, [_, most]) => self.array(most)?.iter().try_for_each(|it| it.check(item)),
+            Kind::Tables(table, [_, most]) => {
+                self.array(most)?.iter().try_for_each(|it| it.section()?.check(table))
+            }
+            _ => Ok(()),
+        }
     }
 }

@@ -36,6 +36,8 @@ pub enum Kind {
     Patch,
     /// An array: what each of its values is, the fewest and the most.
     List(&'static Key, [usize; 2]),
+    /// Values along an axis: an array, or where they begin and end and how many they are; what each of them is, and the most.
+    Axis(&'static Key, usize),
     /// A table.
     Table(&'static Table),
     /// An array of tables, the fewest and the most.
@@ -99,7 +101,7 @@ impl fmt::Display for Range {
 
 /// A number as one would write it: 0.1, 100000, 1e-10.
 fn short(number: f64) -> String {
-    match number != 0.0 && number.is_finite() && !(1e-3..=1e6).contains(&number.abs()) {
+    match number != 0.0 && number.is_finite() && !(1e-3..1e6).contains(&number.abs()) {
         true => format!("{number:e}"),
         false => number.to_string(),
     }
@@ -125,8 +127,8 @@ pub struct Key {
     pub kind: Kind,
     /// The numbers that it takes, in SI.
     pub range: Range,
-    /// What more a value outside the range should be told; empty for nothing.
-    pub hint: &'static str,
+    /// Why no others are taken, where that is not plain; empty else.
+    pub reason: &'static str,
     /// What is taken where it is left out, as it would be written; none where the key must be given or has no value without it.
     pub default: Option<&'static str>,
     /// Whether the table must have it.
@@ -136,7 +138,7 @@ pub struct Key {
     /// One sentence: what it is, its symbol, its unit in SI.
     pub about: &'static str,
     /// Unit in SI, in the spelling of UDUNITS, where it is not that of the dimension.
-    unit: Option<&'static str>,
+    pub unit: Option<&'static str>,
 }
 
 impl Key {
@@ -147,7 +149,7 @@ impl Key {
             aliases: &[],
             kind,
             range: Range::ANY,
-            hint: "",
+            reason: "",
             default: None,
             required: true,
             example: "",
@@ -181,9 +183,9 @@ impl Key {
         Self { range, ..self }
     }
 
-    /// The key with a hint for values outside its range.
-    pub const fn hint(self, hint: &'static str) -> Self {
-        Self { hint, ..self }
+    /// The key with a reason for its range, which an error tells.
+    pub const fn because(self, reason: &'static str) -> Self {
+        Self { reason, ..self }
     }
 
     /// The key with an example.
@@ -220,7 +222,7 @@ impl Key {
         }
     }
 
-    /// The range as an error tells it: angles in degrees, a bound of another dimension with its unit, then the hint.
+    /// The range as an error tells it: angles in degrees, a bound of another dimension with its unit, then the reason.
     pub(crate) fn range_in_words(&self) -> String {
         let Range { from, to } = self.range;
         let bounded = [from.0, to.0].iter().any(|end| end.is_finite() && *end != 0.0);
@@ -236,7 +238,7 @@ impl Key {
             (_, unit) if bounded => format!("{} {unit}", self.range),
             _ => self.range.to_string(),
         };
-        if self.hint.is_empty() { range } else { format!("{range}; {}", self.hint) }
+        if self.reason.is_empty() { range } else { format!("{range}; {}", self.reason) }
     }
 
     /// The example as it stands in TOML; None without one.

@@ -36,6 +36,8 @@ pub enum Rule {
     Forms(&'static [Form]),
     /// The first of these is given beside the second only.
     Needs(&'static str, &'static str),
+    /// The word of a key decides which other keys are given.
+    Words(&'static str, &'static [(&'static str, Form)]),
 }
 
 /// Keys that are given together. Those of other forms have no place beside them.
@@ -48,6 +50,9 @@ pub struct Form {
 }
 
 impl Form {
+    /// No keys.
+    pub const NONE: Self = Self::new(&[]);
+
     /// Keys that must be given together.
     pub const fn new(needs: &'static [&'static str]) -> Self {
         Self { needs, may: &[] }
@@ -77,7 +82,7 @@ impl Rule {
                 (0..keys.len()).map(|place| Form::new(&keys[place..=place])).collect()
             }
             Rule::Forms(forms) => forms.to_vec(),
-            Rule::Needs(..) => vec![],
+            Rule::Needs(..) | Rule::Words(..) => vec![],
         }
     }
 }
