@@ -138,9 +138,9 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
         (WEAR, "coefficient = \"1e-5 mm^3/N m\"", "mm^3/N m", &["wear.archard.coefficient", "a/(b c)"]),
         (
             WEAR,
-            "coefficient = \"1e-5 mm^3/Nm\"",
-            "mm^3/Nm",
-            &["wear.archard.coefficient", "did you mean \"N m\"?"],
+            "coefficient = \"1e-5 mm^3/Jm\"",
+            "mm^3/Jm",
+            &["wear.archard.coefficient", "did you mean \"J m\"?"],
         ),
         (
             WEAR,

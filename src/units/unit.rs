@@ -57,14 +57,15 @@ impl Unit {
     }
 }
 
-const PREFIXED: [(&str, Unit); 8] = [
+const PREFIXED: [(&str, Unit); 9] = [
     ("m", Unit::decimal(Dimension::LENGTH, 0.0)),
     ("g", Unit::decimal(Dimension::MASS, -3.0)),
     ("s", Unit::decimal(Dimension::TIME, 0.0)),
     ("N", Unit::decimal(Dimension::FORCE, 0.0)),
-    ("Hz", Unit::decimal(Dimension::FREQUENCY, 0.0)),
     ("Pa", Unit::decimal(Dimension::PRESSURE, 0.0)),
     ("J", Unit::decimal(Dimension::ENERGY, 0.0)),
+    ("W", Unit::decimal(Dimension::POWER, 0.0)),
+    ("Hz", Unit::decimal(Dimension::FREQUENCY, 0.0)),
     ("rad", Unit::decimal(Dimension::ANGLE, 0.0)),
 ];
 
@@ -134,7 +135,7 @@ fn suggestion(symbol: &str) -> String {
     }
     alike.extend(PLAIN.iter().filter(|(name, _)| *name == folded).map(|(name, _)| name.to_string()));
     match alike.is_empty() {
-        true => "; known are m g s N Pa J Hz rad with SI prefixes, min h deg".to_string(),
+        true => "; known are m g s N Pa J W Hz rad with SI prefixes, min h deg".to_string(),
         false => format!("; did you mean {}?", alike.join(" or ")),
     }
 }
