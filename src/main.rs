@@ -89,17 +89,26 @@ enum Command {
     Man(completions::Man),
 }
 
+#[derive(Args, Default)]
+struct Settings {
+    /// Give a key of the scene another value, with its unit: loading.amplitude="2 um"; what excludes the key is left out
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
+}
+
 #[derive(Args)]
 struct Run {
     /// The scene, a TOML file
     #[arg(value_name = "SCENE.toml", required_unless_present = "resume", conflicts_with = "resume")]
     scene: Option<PathBuf>,
     /// Go on from the last checkpoint in this result file, which holds everything needed
-    #[arg(long, value_name = "FILE.h5", conflicts_with_all = ["output", "force"])]
+    #[arg(long, value_name = "FILE.h5", conflicts_with_all = ["output", "force", "settings"])]
     resume: Option<PathBuf>,
     /// The result file; by default the scene's name with .h5, in the current directory
     #[arg(short, long, value_name = "FILE.h5")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    set: Settings,
     /// Print the summary as one JSON object in SI units
     #[arg(long)]
     json: bool,
@@ -122,6 +131,8 @@ struct Limit {
     /// The scene, a TOML file
     #[arg(value_name = "SCENE.toml")]
     scene: PathBuf,
+    #[command(flatten)]
+    set: Settings,
     /// Print one JSON object in SI units
     #[arg(long)]
     json: bool,
@@ -201,6 +212,8 @@ struct Check {
     /// The scene, a TOML file
     #[arg(value_name = "SCENE.toml")]
     scene: PathBuf,
+    #[command(flatten)]
+    set: Settings,
     /// Print one JSON object in SI units
     #[arg(long)]
     json: bool,
@@ -278,13 +291,17 @@ fn run(arguments: &Run) -> Result<(String, ExitCode)> {
             }
         },
         (Some(path), None) => {
-            let scene = read(path)?;
+            let scene = read(path, &arguments.set)?;
             let output = arguments.output.clone().unwrap_or_else(|| default_output(path));
             check_distinct(&output, path)?;
             if arguments.output.is_none() && arguments.force {
                 check_own(&output, Mark::Results)?;
             }
-            fretwear::run::Run::new(&scene, &output, arguments.force).map_err(at(&scene, path))?
+            fretwear::run::Run::new(&scene, &output, arguments.force).map_err(at(
+                &scene,
+                path,
+                &arguments.set,
+            ))?
         }
         (None, None) => unreachable!("clap requires one of the two"),
     };
@@ -339,11 +356,12 @@ fn default_output(scene: &Path) -> PathBuf {
 }
 
 fn limit(arguments: &Limit) -> Result<String> {
-    let scene = read(&arguments.scene)?;
+    let scene = read(&arguments.scene, &arguments.set)?;
     let radii = arguments.at.as_deref().map(report::parse_radii).transpose()?;
     arguments.csv.as_deref().map_or(Ok(()), |path| check_distinct(path, &arguments.scene))?;
     let table = arguments.csv.as_deref().map(|path| TableFile::new(path, arguments.force)).transpose()?;
-    let report = LimitReport::new(&scene, radii.as_deref()).map_err(at(&scene, &arguments.scene))?;
+    let report =
+        LimitReport::new(&scene, radii.as_deref()).map_err(at(&scene, &arguments.scene, &arguments.set))?;
     if let Some(table) = table {
         table.write(&report.csv())?;
     }
@@ -426,8 +444,8 @@ fn map(arguments: &Map) -> Result<String> {
 }
 
 fn check(arguments: &Check) -> Result<String> {
-    let scene = Scene::read(&arguments.scene)?;
-    let report = CheckReport::new(&scene).map_err(at(&scene, &arguments.scene))?;
+    let scene = Scene::read_with(&arguments.scene, &arguments.set.settings)?;
+    let report = CheckReport::new(&scene).map_err(at(&scene, &arguments.scene, &arguments.set))?;
     report.warnings.iter().for_each(|warning| complain("warning", warning));
     Ok(if arguments.json { report::json(&report) } else { report.text() })
 }
@@ -460,15 +478,16 @@ fn result_file(path: &Path, unchecked: bool) -> Result<ResultPath<'_>> {
 }
 
 /// Reads a scene and passes its warnings on.
-fn read(path: &Path) -> Result<Scene> {
-    let scene = Scene::read(path)?;
+fn read(path: &Path, set: &Settings) -> Result<Scene> {
+    let scene = Scene::read_with(path, &set.settings)?;
     scene.warnings().iter().for_each(|warning| complain("warning", warning));
     Ok(scene)
 }
 
 /// Shows an error at its line of the scene.
-fn at<'a>(scene: &'a Scene, path: &'a Path) -> impl Fn(Error) -> Error + 'a {
-    move |error| scene.locate(error, &path.display().to_string())
+fn at<'a>(scene: &'a Scene, path: &Path, set: &Settings) -> impl Fn(Error) -> Error + 'a {
+    let name = Scene::name_with(path, &set.settings);
+    move |error| scene.locate(error, &name)
 }
 
 fn complain(kind: &str, message: &str) {

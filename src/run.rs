@@ -16,7 +16,7 @@ use crate::data::{
 };
 use crate::error::{Error, Result};
 use crate::laws::loading::{self, Mode, cycles_at, has_come};
-use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice, WearFrom};
+use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice};
 use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::solver::simulation::{End, Observer, Outcome, Plan, Simulation};
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, Sdirk, Stepper};
@@ -426,7 +426,6 @@ impl Parts {
     ) -> Result<Self> {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
-        check_start(numerics)?;
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
         let model = mesh::model(&contact, &schedule, numerics, wanted, store)?;
         let unlimited = model.slides() || scene.conditions().holds_normal_force;
@@ -465,19 +464,6 @@ fn check_sliding(model: &Model) -> Result<()> {
         "{springs} springs are too few where the whole contact slides; ask for at least {SPRINGS_TO_SLIDE}, or for a smaller amplitude"
     );
     Err(Error::Inconsistent { what: "numerics.springs", why })
-}
-
-/// Refuses what would have to wear springs that only slip while the contact settles.
-fn check_start(numerics: &Numerics) -> Result<()> {
-    if numerics.wear_from == WearFrom::Shakedown {
-        return Ok(());
-    }
-    Err(Error::Inconsistent {
-        what: "numerics.wear_from",
-        why: "\"first-cycle\" is not offered by this version: springs that slip only before the cycle repeats itself lie within the \
-              edge of stick, where the mesh begins; leave it out (the difference is of the order of the wear of one cycle)"
-            .into(),
-    })
 }
 
 /// Refuses explicit steps where the edge of stick moves.

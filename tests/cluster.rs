@@ -17,6 +17,7 @@ radius = "10 mm"
 [half_space]
 grading = 0.2
 modulus = "210 GPa"
+reference_depth = "1 m"
 poisson_ratio = "similar"
 [friction.coulomb]
 coefficient = 0.6

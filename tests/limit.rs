@@ -55,7 +55,7 @@ fn data(name: &str) -> PathBuf {
 
 fn scene(amplitude: &str) -> String {
     format!(
-        "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = 0.2\nmodulus = \"210 GPa\"\npoisson_ratio = 0.3\n\
+        "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = 0.2\nmodulus = \"210 GPa\"\nreference_depth = \"1 m\"\npoisson_ratio = 0.3\n\
          [friction.coulomb]\ncoefficient = 0.6\n[wear.archard]\ncoefficient = 1e-14\n\
          [loading]\nindentation = \"1 um\"\n{amplitude}\ntau = 30\n"
     )

@@ -10,7 +10,7 @@ use fretwear::scene::Stepper;
 use fretwear::study::tradeoff::{self, Ladders};
 use fretwear::{Error, Result};
 
-use super::{INTERRUPTED, at, complain, done, read};
+use super::{INTERRUPTED, Settings, at, complain, done, read};
 
 /// Candidates of the trade-off and where its results go.
 #[derive(Args)]
@@ -60,7 +60,7 @@ fn stepper(word: &str) -> std::result::Result<Stepper, String> {
 }
 
 pub fn tradeoff(arguments: &Tradeoff) -> Result<(String, ExitCode)> {
-    let scene = read(&arguments.scene)?;
+    let scene = read(&arguments.scene, &Settings::default())?;
     let usual = Ladders::default();
     let ladders = Ladders {
         springs: arguments.springs.clone().unwrap_or(usual.springs),
@@ -75,8 +75,11 @@ pub fn tradeoff(arguments: &Tradeoff) -> Result<(String, ExitCode)> {
         keep_runs: arguments.keep_runs,
         overwrite: arguments.force,
     };
-    let ready =
-        tradeoff::Tradeoff::new(&scene, &arguments.output, &options).map_err(at(&scene, &arguments.scene))?;
+    let ready = tradeoff::Tradeoff::new(&scene, &arguments.output, &options).map_err(at(
+        &scene,
+        &arguments.scene,
+        &Settings::default(),
+    ))?;
     let shown = !arguments.quiet && !arguments.json;
     if shown {
         complain("note", &format!("{} candidates, one after the other", ready.candidates()));
