@@ -43,7 +43,7 @@ mod worn_profiles;
 pub use output::FigureFile;
 pub use run::RunResults;
 
-use crate::data::{Format, ResultPath, RunFile, StoredArrays, SweepFile, format_of};
+use crate::data::{Dataset, Format, ResultPath, RunFile, SweepFile, format_of};
 use crate::error::{Error, Result};
 use crate::figures::drawing::Figure;
 
@@ -116,11 +116,11 @@ pub enum Results {
     /// Of `fretwear sweep` or `merge`.
     Sweep(Box<SweepFile>),
     /// Of `fretwear map`.
-    Map(StoredArrays),
+    Map(Dataset),
     /// Of `fretwear universality`.
-    Universality(StoredArrays),
+    Universality(Dataset),
     /// Of `fretwear tradeoff`.
-    Tradeoff(StoredArrays),
+    Tradeoff(Dataset),
 }
 
 impl Results {
@@ -131,7 +131,7 @@ impl Results {
     pub fn read<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
         let file = file.into().ready()?;
         let format = format_of(file)?;
-        let arrays = |kind: fn(StoredArrays) -> Self| StoredArrays::read(file, format).map(kind);
+        let arrays = |kind: fn(Dataset) -> Self| Dataset::read(file, format).map(kind);
         match format {
             Format::Run => RunResults::new(RunFile::open(file)?, file.path()).map(Box::new).map(Self::Run),
             Format::Map => arrays(Self::Map),

@@ -26,6 +26,7 @@ mod knob;
 mod ladder;
 mod mesh;
 pub mod progress;
+pub mod readings;
 mod ready;
 mod recorder;
 mod threads;

@@ -10,7 +10,7 @@ const LAYERS: [&str; 14] = [
 ];
 
 /// Circles that are still to be untied.
-const KNOWN: [&str; 29] = [
+const KNOWN: [&str; 27] = [
     "contact::indenter::equivalent -> contact::indenter::table_equivalent",
     "contact::indenter::table -> contact::indenter::table_equivalent",
     "contact::indenter::table_equivalent -> contact::indenter::equivalent",
@@ -26,7 +26,6 @@ const KNOWN: [&str; 29] = [
     "figures::run -> figures::loops",
     "figures::run -> figures::pressure",
     "figures::run -> figures::profile",
-    "report -> study",
     "run::effort -> run::ready",
     "run::knob -> run::mesh",
     "run::mesh -> run::knob",
@@ -39,7 +38,6 @@ const KNOWN: [&str; 29] = [
     "solver::model::operators -> solver::model::jacobian",
     "solver::model::reach -> solver::model::schedule",
     "solver::model::schedule -> solver::model::reach",
-    "study -> report",
 ];
 
 fn source() -> PathBuf {

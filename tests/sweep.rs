@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use fretwear::data::{Column, SweepFile, Values};
+use fretwear::data::{SweepFile, Values, Variable};
 use fretwear::scene::Study;
 use fretwear::study::sweep::{SweepOptions, merge, sweep};
 use tempfile::TempDir;
@@ -65,7 +65,7 @@ fn study(scenes: usize) -> String {
 
 /// Bits of all that must not depend on how the scenes were run.
 fn bits(file: &SweepFile) -> Vec<(String, Vec<u64>, Vec<String>)> {
-    let column = |Column { name, values, .. }: &Column| match values {
+    let column = |Variable { name, values, .. }: &Variable| match values {
         Values::Numbers(numbers) => (name.clone(), numbers.iter().map(|it| it.to_bits()).collect(), vec![]),
         Values::Texts(texts) => (name.clone(), vec![], texts.iter().map(str::to_owned).collect()),
     };

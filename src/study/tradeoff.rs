@@ -15,14 +15,14 @@ mod judge;
 mod measure;
 mod profile;
 mod reference;
-
-pub(crate) use files::OBJECT;
+mod report;
 
 pub use candidates::{Candidate, Choice, Ladders};
 pub use front::{cheapest, pareto_front};
 pub use judge::{Errors, Measured, Source, Worst};
 pub use measure::{Cost, Measurement};
 pub use reference::Reference;
+pub use report::TradeoffReport;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

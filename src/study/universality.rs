@@ -11,9 +11,11 @@
 
 mod files;
 mod judge;
+mod report;
 mod runs;
 
 pub use judge::{Judgement, Verdict};
+pub use report::UniversalityReport;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -60,6 +62,14 @@ impl Row {
                 Prediction::Within => Verdict::Obeys,
                 Prediction::Outside => Verdict::Violates,
             }
+    }
+
+    /// Why its run or the finer one failed.
+    pub fn error(&self) -> Option<&str> {
+        match (&self.end, &self.finer) {
+            (Err(why), _) | (_, Some(Err(why))) => Some(why),
+            _ => None,
+        }
     }
 
     /// Distance and worn volume of the finer run against those of the run itself: `(D' - D, V'/V - 1)`.
