@@ -180,7 +180,7 @@ impl Results {
             return Err(Error::Inconsistent { what: "quantity", why });
         }
         let mut figure = match self {
-            Self::Run(run) => run.figure(kind),
+            Self::Run(run) => of_run(run, kind),
             Self::Sweep(file) => sweep::figure(file, quantity),
             Self::Map(file) if kind == Kind::WornProfiles => worn_profiles::figure(file),
             Self::Map(file) if kind == Kind::Optimum => optimum::figure(file),
@@ -215,4 +215,15 @@ impl Results {
             _ => "",
         }
     }
+}
+
+fn of_run(run: &RunResults, kind: Kind) -> Result<Figure> {
+    let rows = match kind {
+        Kind::Pressure => pressure::rows(run),
+        Kind::History => history::rows(run),
+        Kind::Approach => approach::rows(run),
+        Kind::Loops => loops::rows(run),
+        _ => profile::rows(run),
+    };
+    Ok(Figure { title: run.run.header.title.as_deref().map(drawing::plain), rows, notes: run.notes() })
 }

@@ -201,6 +201,7 @@ fn bits(file: &SweepFile) -> Vec<(String, Vec<u64>, Vec<String>)> {
     let column = |Variable { name, values, .. }: &Variable| match values {
         Values::Numbers(numbers) => (name.clone(), numbers.iter().map(|it| it.to_bits()).collect(), vec![]),
         Values::Texts(texts) => (name.clone(), vec![], texts.iter().map(str::to_owned).collect()),
+        _ => panic!("{name} holds neither numbers nor words"),
     };
     file.columns.iter().filter(|column| column.name != "wall_seconds").map(column).collect()
 }

@@ -179,16 +179,16 @@ impl Entries {
         self.0.iter().find(|(other, _)| *other == name).map(|(_, value)| value)
     }
 
-    /// Some of the readings of a record, in the order of their names.
+    /// Some of the readings of a record, in the order of their names, which blanks separate.
     ///
     /// # Panics
     /// If there is none of a name.
-    pub fn some<R>(readings: &[Reading<R>], record: &R, names: &[&str]) -> Self {
-        let named = |name: &&str| {
-            let found = readings.iter().find(|it| it.quantity.name == *name);
+    pub fn some<R>(readings: &[Reading<R>], record: &R, names: &str) -> Self {
+        let named = |name: &str| {
+            let found = readings.iter().find(|it| it.quantity.name == name);
             found.unwrap_or_else(|| panic!("{name} is not declared"))
         };
-        names.iter().map(named).map(|it| (it.quantity.name, (it.of)(record))).collect()
+        names.split_whitespace().map(named).map(|it| (it.quantity.name, (it.of)(record))).collect()
     }
 }
 

@@ -48,22 +48,8 @@ pub struct ReferenceReport {
 }
 
 /// Keys of a candidate that are columns too.
-const KEYS: [&str; 14] = [
-    "accuracy",
-    "stepper",
-    "cycle",
-    "springs",
-    "tolerance",
-    "status",
-    "reason",
-    "wall_seconds",
-    "wall_seconds_file",
-    "repeats",
-    "rate_evaluations",
-    "steps",
-    "rejected_steps",
-    "memory",
-];
+const KEYS: &str = "accuracy stepper cycle springs tolerance status reason wall_seconds wall_seconds_file repeats \
+                    rate_evaluations steps rejected_steps memory";
 
 /// One candidate; what is not known is null.
 #[derive(Debug, Clone, Serialize)]
@@ -123,7 +109,7 @@ impl CandidateReport {
         let three = row.worst.map(|it| [it.volume, it.profile, it.nodes]);
         let over_fronts = || FRONTS.iter().zip(row.over_front).map(|(front, over)| (front.name, over.into()));
         Self {
-            readings: Entries::some(&READINGS, row, &KEYS),
+            readings: Entries::some(&READINGS, row, KEYS),
             volume_error: three.map(|it| it[0].value),
             profile_error: three.map(|it| it[1].value),
             node_error: three.map(|it| it[2].value),

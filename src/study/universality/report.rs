@@ -35,31 +35,9 @@ pub struct UniversalityReport<'a> {
 }
 
 /// Keys of a case.
-const KEYS: [&str; 23] = [
-    "name",
-    "medium",
-    "wear",
-    "friction",
-    "mode",
-    "predicted",
-    "reason",
-    "verdict",
-    "agrees",
-    "distance",
-    "wear_volume_relative",
-    "wear_volume_limit_relative",
-    "wear_volume_ratio",
-    "stick_radius",
-    "stick_ratio",
-    "indentation",
-    "stop_reason",
-    "cycles",
-    "tau",
-    "wall_seconds",
-    "finer_distance_change",
-    "finer_wear_volume_change",
-    "error",
-];
+const KEYS: &str = "name medium wear friction mode predicted reason verdict agrees distance wear_volume_relative \
+                    wear_volume_limit_relative wear_volume_ratio stick_radius stick_ratio indentation stop_reason \
+                    cycles tau wall_seconds finer_distance_change finer_wear_volume_change error";
 
 impl<'a> UniversalityReport<'a> {
     /// The summary of a study that is done.
@@ -77,7 +55,7 @@ impl<'a> UniversalityReport<'a> {
             count: outcome.rows.len(),
             agreeing: outcome.rows.iter().filter(|row| row.agrees()).count(),
             wall_seconds: outcome.wall_seconds,
-            cases: outcome.rows.iter().map(|row| Entries::some(&readings, row, &KEYS)).collect(),
+            cases: outcome.rows.iter().map(|row| Entries::some(&readings, row, KEYS)).collect(),
             rows: &outcome.rows,
         }
     }
