@@ -43,7 +43,7 @@ use crate::run::readings::{self, ClosedForm};
 use crate::run::{Resumed, Run, Shared, thread_pool};
 use crate::scene::{Study, Task};
 use folder::Folder;
-use rows::{Row, Schema};
+use rows::{SceneResult, Schema};
 
 /// Kept runs in memory after which a part is written.
 const MOST_RUNS: usize = 100;
@@ -257,7 +257,7 @@ struct Worker<'a> {
 
 impl Worker<'_> {
     /// The row of a scene; none if a signal came first.
-    fn row(&self, scene: u64) -> Result<Option<Row>> {
+    fn row(&self, scene: u64) -> Result<Option<SceneResult>> {
         if self.shared.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -266,7 +266,7 @@ impl Worker<'_> {
             Task::Limit => self.limit(scene).map(Some),
             Task::Run => self.run(scene),
         }));
-        let row = |results: Option<Results>, run: Option<RunFile>, error: Option<String>| Row {
+        let row = |results: Option<Results>, run: Option<RunFile>, error: Option<String>| SceneResult {
             scene,
             inputs: self.study.inputs(scene),
             results,
@@ -326,7 +326,7 @@ struct Collector<'a> {
 }
 
 struct Waiting {
-    rows: Vec<Row>,
+    rows: Vec<SceneResult>,
     /// How many of them have a run.
     runs: usize,
     saved: Instant,
@@ -341,7 +341,7 @@ impl<'a> Collector<'a> {
         Self { study, folder, schema, interval, waiting }
     }
 
-    fn add(&self, row: Row) -> Result<()> {
+    fn add(&self, row: SceneResult) -> Result<()> {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.done += 1;
         waiting.failed += u64::from(row.error.is_some());
@@ -358,7 +358,7 @@ impl<'a> Collector<'a> {
         self.write(rows)
     }
 
-    fn write(&self, rows: Vec<Row>) -> Result<()> {
+    fn write(&self, rows: Vec<SceneResult>) -> Result<()> {
         if rows.is_empty() {
             return Ok(());
         }

@@ -43,7 +43,7 @@ pub struct Options {
 
 /// A case and what came of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct CaseResult {
     /// The case.
     pub case: Case,
     /// Where its run ended, or why it has no end.
@@ -54,7 +54,7 @@ pub struct Row {
     pub verdict: Verdict,
 }
 
-impl Row {
+impl CaseResult {
     /// Whether the verdict is the one that was predicted.
     pub fn agrees(&self) -> bool {
         self.verdict
@@ -83,7 +83,7 @@ impl Row {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// One row for each case, in the order of the study.
-    pub rows: Vec<Row>,
+    pub rows: Vec<CaseResult>,
     /// The files written.
     pub files: Vec<PathBuf>,
     /// Wall time of this call, s.
@@ -188,8 +188,8 @@ fn rows(
     study: &UniversalityStudy,
     jobs: &[Job],
     ends: Vec<std::result::Result<Judgement, String>>,
-) -> Vec<Row> {
-    let mut rows: Vec<Row> = vec![];
+) -> Vec<CaseResult> {
+    let mut rows: Vec<CaseResult> = vec![];
     // The finer run of a case follows it.
     for (job, end) in jobs.iter().zip(ends) {
         if job.finer {
@@ -197,7 +197,7 @@ fn rows(
             continue;
         }
         let verdict = Verdict::new(&end, study.tolerances());
-        rows.push(Row { case: study.cases()[job.case].clone(), end, finer: None, verdict });
+        rows.push(CaseResult { case: study.cases()[job.case].clone(), end, finer: None, verdict });
     }
     rows
 }

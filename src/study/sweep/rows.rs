@@ -7,7 +7,7 @@ use crate::scene::{Input, Study, Task, schema};
 
 /// What came out of one scene.
 #[derive(Debug, Clone)]
-pub(super) struct Row {
+pub(super) struct SceneResult {
     pub scene: u64,
     /// In the order of [`Study::keys`].
     pub inputs: Vec<Input>,
@@ -49,7 +49,7 @@ impl Schema {
     }
 
     /// Rows as a file.
-    pub(super) fn file(&self, header: SweepHeader, complete: bool, mut rows: Vec<Row>) -> SweepFile {
+    pub(super) fn file(&self, header: SweepHeader, complete: bool, mut rows: Vec<SceneResult>) -> SweepFile {
         rows.sort_by_key(|row| row.scene);
         let mut columns = vec![];
         for (index, key) in self.keys.iter().enumerate() {
@@ -74,14 +74,15 @@ impl Schema {
                 columns.push(column(quantity(&name, "1", &long_name), texts));
             }
         }
-        let status = |row: &Row| if row.error.is_some() { FAILED } else { "done" };
+        let status = |row: &SceneResult| if row.error.is_some() { FAILED } else { "done" };
         let texts: Words = rows.iter().map(status).collect();
         columns.push(column(quantity(STATUS, "1", "done or failed"), texts));
         let texts: Words = rows.iter().map(|row| row.error.as_deref().unwrap_or_default()).collect();
         columns.push(column(quantity("error", "1", "why the scene failed"), texts));
         for kind in [true, false] {
             for (index, (quantity, _)) in self.results.iter().enumerate().filter(|it| it.1.1 == kind) {
-                let of = |row: &Row| row.results.as_ref().map_or(Value::Missing, |it| it[index].clone());
+                let of =
+                    |row: &SceneResult| row.results.as_ref().map_or(Value::Missing, |it| it[index].clone());
                 columns.push(column(*quantity, Value::all(rows.iter().map(of), kind)));
             }
         }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Choice, Cost, Errors, Measured, Outcome, Row, Worst};
+use super::{CandidateResult, Choice, Cost, Errors, Measured, Outcome, Worst};
 use crate::data::quantity::{Quantity, Reading, Value, csv, number, quantity, word};
 use crate::data::{self, AtomicFile, Dataset, Format, Mark, Variable};
 use crate::error::Result;
@@ -18,7 +18,7 @@ const SNAPSHOT: Quantity =
     quantity("snapshot", "1", "number of the snapshot, from the first after the start");
 
 /// All that is told of a candidate, in the order of columns.
-pub(super) const READINGS: [Reading<Row>; 28] = [
+pub(super) const READINGS: [Reading<CandidateResult>; 28] = [
     word("stepper", "method of time stepping", |row| row.candidate.stepper.name().into()),
     word("cycle", "how a cycle is passed through: closed-form or resolved", |row| {
         row.candidate.cycle.name().into()
@@ -175,11 +175,11 @@ const AT_SNAPSHOTS: [Reading<Errors>; 14] = [
 ];
 
 /// What it cost; nothing where it was not run to its end.
-fn cost<T: Into<Value>>(row: &Row, of: impl Fn(&Cost) -> T) -> Value {
+fn cost<T: Into<Value>>(row: &CandidateResult, of: impl Fn(&Cost) -> T) -> Value {
     row.measurement.cost().map(of).into()
 }
 
-fn worst<T: Into<Value>>(row: &Row, of: impl Fn(&Worst) -> T) -> Value {
+fn worst<T: Into<Value>>(row: &CandidateResult, of: impl Fn(&Worst) -> T) -> Value {
     row.worst.as_ref().map(of).into()
 }
 
@@ -233,7 +233,7 @@ fn dataset(scene: &Scene, outcome: &Outcome) -> Dataset {
     dataset.variables.extend(numbers);
     let plane = [(CANDIDATE.name, rows.len()), (SNAPSHOT.name, snapshots)];
     for reading in &AT_SNAPSHOTS {
-        let of = |row: &Row, at: usize| row.errors.get(at).map_or(Value::Missing, reading.of);
+        let of = |row: &CandidateResult, at: usize| row.errors.get(at).map_or(Value::Missing, reading.of);
         let values = rows.iter().flat_map(|row| (0..snapshots).map(move |at| of(row, at)));
         dataset.add(Variable::new(reading.quantity, &plane, Value::all(values, reading.is_word)));
     }

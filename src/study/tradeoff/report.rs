@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::files::{OBJECT, READINGS};
-use super::{Choice, Errors, FRONTS, Front, Measured, Outcome, Row, Source, pareto_front};
+use super::{CandidateResult, Choice, Errors, FRONTS, Front, Measured, Outcome, ReferenceKind, pareto_front};
 use crate::data::quantity::Entries;
 use crate::error::Result;
 use crate::report::{Scale, TableFile, TextTable, json, number};
@@ -93,19 +93,19 @@ impl SnapshotReport {
         Self {
             cycles: errors.cycles,
             tau: errors.tau,
-            judges: errors.sources.map(Source::name),
+            judges: errors.sources.map(ReferenceKind::name),
             wear_volume: errors.wear_volume,
             wear_volume_judge: errors.wear_volume_judge,
             volume_error: errors.volume.value,
             profile_error: errors.profile.value,
             node_error: errors.nodes.value,
-            bounded: (!errors.sources.contains(&Source::None)).then(|| three.map(|it| it.bounded)),
+            bounded: (!errors.sources.contains(&ReferenceKind::None)).then(|| three.map(|it| it.bounded)),
         }
     }
 }
 
 impl CandidateReport {
-    fn new(row: &Row) -> Self {
+    fn new(row: &CandidateResult) -> Self {
         let three = row.worst.map(|it| [it.volume, it.profile, it.nodes]);
         let over_fronts = || FRONTS.iter().zip(row.over_front).map(|(front, over)| (front.name, over.into()));
         Self {
@@ -176,7 +176,7 @@ impl TradeoffReport {
         text + "\n" + &self.rows(&outcome.rows)
     }
 
-    fn rows(&self, candidates: &[Row]) -> String {
+    fn rows(&self, candidates: &[CandidateResult]) -> String {
         let mut rows = TextTable::default();
         let count = |status: &str| candidates.iter().filter(|it| it.measurement.name() == status).count();
         let counts = ["done", "failed", "stopped", "skipped"].map(|it| format!("{} {it}", count(it)));
@@ -202,7 +202,7 @@ impl TradeoffReport {
 
 const HEADER: &str = "  stepper      cycle        springs  tolerance   wall time    with file  evaluations  volume error  profile error";
 
-fn places(front: &Front, rows: &[Row]) -> Vec<usize> {
+fn places(front: &Front, rows: &[CandidateResult]) -> Vec<usize> {
     let points = rows.iter().map(|row| match row.candidate.choice {
         Choice::Hand { .. } => front.point(row),
         Choice::Knob(_) => (f64::NAN, f64::NAN),
@@ -210,7 +210,7 @@ fn places(front: &Front, rows: &[Row]) -> Vec<usize> {
     pareto_front(&points.collect::<Vec<_>>())
 }
 
-fn line(row: &Row, more: &str, text: &mut String) {
+fn line(row: &CandidateResult, more: &str, text: &mut String) {
     let error = |it: Option<Measured>| {
         it.map_or("-".into(), |it| format!("{}{:.1e}", if it.bounded { "<" } else { "" }, it.value))
     };

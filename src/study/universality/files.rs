@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CURVE_POINTS, Judgement, Row};
+use super::{CURVE_POINTS, CaseResult, Judgement};
 use crate::data::quantity::{Quantity, Reading, Value, csv, number, quantity, word};
 use crate::data::{self, AtomicFile, Dataset, Format, Mark, Variable};
 use crate::error::Result;
@@ -16,7 +16,7 @@ const POSITION: Quantity =
     quantity("position", "1", "distance from the stick radius over the width of the limit's worn annulus");
 
 /// All that is told of a case, in the order of columns.
-pub(super) const READINGS: [Reading<Row>; 26] = [
+pub(super) const READINGS: [Reading<CaseResult>; 26] = [
     word("name", "name of the case", |row| row.case.name.as_str().into()),
     word("medium", "medium and indenter; empty where the study names none", |row| level(row, 0)),
     word("wear", "law of wear; empty where the study names none", |row| level(row, 1)),
@@ -82,12 +82,12 @@ pub(super) const READINGS: [Reading<Row>; 26] = [
 ];
 
 /// Name of a level of a case; none where the study names none.
-fn level(row: &Row, which: usize) -> Value {
+fn level(row: &CaseResult, which: usize) -> Value {
     Some(row.case.levels[which].as_str()).filter(|name| !name.is_empty()).into()
 }
 
 /// What the end of a run tells; nothing if it failed.
-fn at_end<T: Into<Value>>(row: &Row, of: impl Fn(&Judgement) -> T) -> Value {
+fn at_end<T: Into<Value>>(row: &CaseResult, of: impl Fn(&Judgement) -> T) -> Value {
     row.end.as_ref().ok().map(of).into()
 }
 
@@ -100,7 +100,7 @@ pub(super) fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
 /// Writes both files, each as a whole or not at all; returns their paths.
 pub(super) fn write(
     study: &UniversalityStudy,
-    rows: &[Row],
+    rows: &[CaseResult],
     folder: &Path,
     overwrite: bool,
 ) -> Result<Vec<PathBuf>> {
@@ -112,7 +112,7 @@ pub(super) fn write(
     Ok(vec![arrays, table])
 }
 
-fn dataset(study: &UniversalityStudy, rows: &[Row]) -> Dataset {
+fn dataset(study: &UniversalityStudy, rows: &[CaseResult]) -> Dataset {
     let index = |count: usize| (0..count).map(|number| number as f64);
     let last = (CURVE_POINTS - 1) as f64;
     let tolerances = study.tolerances();
@@ -131,8 +131,9 @@ fn dataset(study: &UniversalityStudy, rows: &[Row]) -> Dataset {
         READINGS.iter().map(|it| it.variable(CASE.name, rows)).partition(Variable::is_numeric);
     dataset.variables.extend(numbers);
     let mut curve = |name, long_name, of: fn(&Judgement) -> &Vec<f64>| {
-        let of =
-            |row: &Row| row.end.as_ref().map_or_else(|_| vec![f64::NAN; CURVE_POINTS], |end| of(end).clone());
+        let of = |row: &CaseResult| {
+            row.end.as_ref().map_or_else(|_| vec![f64::NAN; CURVE_POINTS], |end| of(end).clone())
+        };
         let values: Vec<f64> = rows.iter().flat_map(of).collect();
         let plane = [(CASE.name, rows.len()), (POSITION.name, CURVE_POINTS)];
         dataset.add(Variable::new(quantity(name, "1", long_name), &plane, values));

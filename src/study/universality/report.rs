@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::files::READINGS;
-use super::{Judgement, Outcome, Row};
+use super::{CaseResult, Judgement, Outcome};
 use crate::data::quantity::{Entries, word};
 use crate::report::{Scale, TextTable, number};
 use crate::scene::{Prediction, UniversalityStudy};
@@ -31,7 +31,7 @@ pub struct UniversalityReport<'a> {
     /// The cases, in the order of the study; what a case does not have is null.
     cases: Vec<Entries>,
     #[serde(skip)]
-    rows: &'a [Row],
+    rows: &'a [CaseResult],
 }
 
 /// Keys of a case.
@@ -44,8 +44,9 @@ impl<'a> UniversalityReport<'a> {
     pub fn new(study: &UniversalityStudy, outcome: &'a Outcome) -> Self {
         let tolerances = study.tolerances();
         // In no file, as the study says it.
-        let reason =
-            word("reason", "why, where the study says it", |row: &Row| row.case.reason.as_deref().into());
+        let reason = word("reason", "why, where the study says it", |row: &CaseResult| {
+            row.case.reason.as_deref().into()
+        });
         let readings = [&READINGS[..], &[reason]].concat();
         Self {
             title: study.title().map(str::to_owned),
@@ -93,7 +94,7 @@ impl<'a> UniversalityReport<'a> {
     }
 }
 
-fn line(row: &Row, width: usize, text: &mut String) {
+fn line(row: &CaseResult, width: usize, text: &mut String) {
     let end = row.end.as_ref().ok();
     let shown = |of: &dyn Fn(&Judgement) -> f64| end.map_or("-".into(), |end| number(of(end)));
     let distance = end.and_then(|it| it.distance).map_or("-".into(), |it| format!("{it:.3e}"));
