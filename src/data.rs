@@ -6,36 +6,37 @@
 //! A file is laid out in memory, written to a temporary beside it, synchronised and renamed, so a run killed at
 //! any moment leaves either the previous save or the new one, never a torn file.
 
-mod arrays;
 mod atomic;
-mod encode;
+mod dataset;
 mod fingerprint;
 mod folder;
 mod format;
 mod labelled;
 pub mod layout;
+pub mod quantity;
 mod reader;
+mod run_file;
 mod scratch;
 mod seal;
 mod shard;
-mod stored;
 mod surface;
 mod tables;
 mod writer;
 
-pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray, TextColumn};
 pub(crate) use atomic::{AtomicFile, failure, remove_abandoned};
+pub use dataset::{Attribute, Dataset, Number, Values, Variable, Words};
 pub(crate) use fingerprint::{Fingerprint, scene_hash};
 pub use folder::{Mark, check_distinct, check_own, make_folder};
-pub(crate) use folder::{cell, check_can_be_made, check_folder, quoted, table};
+pub(crate) use folder::{cell, check_can_be_made, check_folder};
 pub use format::Format;
-pub use reader::RunFile;
+pub use quantity::{Quantity, Reading, Value};
+pub use reader::format_of;
+pub use run_file::RunFile;
 pub(crate) use scratch::Scratch;
 pub use seal::ResultPath;
-pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
-pub use stored::{StoredArray, StoredArrays, format_of};
+pub use shard::{SweepFile, SweepHeader, column};
 pub use surface::SurfaceSeries;
-pub use tables::{ResultTables, TableSummary};
+pub use tables::{DatasetSummary, ResultTables, TableSummary, VariableSummary};
 pub use writer::RunWriter;
 
 use std::sync::Arc;

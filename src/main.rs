@@ -6,14 +6,15 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::{Args, Parser, Subcommand};
-use fretwear::data::{ArraySummary, Mark, ResultPath, StopReason, check_distinct, check_own};
+use fretwear::data::{DatasetSummary, Mark, ResultPath, StopReason, check_distinct, check_own};
 use fretwear::figures::FigureFile;
-use fretwear::report::{self, CheckReport, InfoReport, LimitReport, MapReport, RunReport, TableFile};
+use fretwear::report::{self, CheckReport, InfoReport, LimitReport, RunReport, TableFile};
 use fretwear::run::progress::{Progress, SceneProgress};
 use fretwear::run::{Resumed, RunResult, most_threads};
 use fretwear::scene::{MapScene, Scene, Study};
 use fretwear::solver::simulation::Observer;
 use fretwear::study::sweep::{MergeReport, SweepOptions, SweepReport};
+use fretwear::study::wear_map::MapReport;
 use fretwear::{Error, Result};
 use signal_hook::consts::SIGXFSZ;
 
@@ -452,7 +453,7 @@ fn check(arguments: &Check) -> Result<String> {
 
 fn info(arguments: &Info) -> Result<String> {
     let file = result_file(&arguments.file, arguments.unchecked)?;
-    if let Some(summary) = ArraySummary::read(file)? {
+    if let Some(summary) = DatasetSummary::read(file)? {
         return Ok(if arguments.json { report::json(&summary) } else { report::arrays_text(&summary) });
     }
     let report = InfoReport::read(file)?;

@@ -7,20 +7,14 @@ mod conditions;
 pub mod export;
 mod info;
 mod limit;
-mod map;
 mod run;
 mod text;
-mod tradeoff;
-mod universality;
 
 pub use check::CheckReport;
 pub use info::{InfoReport, arrays_text};
 pub use limit::{LimitReport, ProfileTable, parse_radii};
-pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;
-pub(crate) use text::{Rows, Scale, cells, number};
-pub use tradeoff::{CandidateReport, Fronts, OverFront, ReferenceReport, SnapshotReport, TradeoffReport};
-pub use universality::{UniversalityReport, UniversalityRow};
+pub(crate) use text::{Scale, TextTable, number};
 
 use std::path::Path;
 

@@ -25,6 +25,7 @@ mod accuracy;
 mod cost;
 mod mesh;
 pub mod progress;
+pub mod readings;
 mod ready;
 mod recorder;
 mod threads;

@@ -10,24 +10,11 @@ const LAYERS: [&str; 14] = [
 ];
 
 /// Circles that are still to be untied.
-const KNOWN: [&str; 17] = [
+const KNOWN: [&str; 4] = [
     "contact::indenter::equivalent -> contact::indenter::table_equivalent",
     "contact::indenter::table -> contact::indenter::table_equivalent",
     "contact::indenter::table_equivalent -> contact::indenter::equivalent",
     "contact::indenter::table_equivalent -> contact::indenter::table",
-    "figures::approach -> figures::run",
-    "figures::history -> figures::run",
-    "figures::loops -> figures::run",
-    "figures::pressure -> figures::profile",
-    "figures::pressure -> figures::run",
-    "figures::profile -> figures::run",
-    "figures::run -> figures::approach",
-    "figures::run -> figures::history",
-    "figures::run -> figures::loops",
-    "figures::run -> figures::pressure",
-    "figures::run -> figures::profile",
-    "report -> study",
-    "study -> report",
 ];
 
 fn source() -> PathBuf {

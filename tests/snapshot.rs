@@ -11,10 +11,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fretwear::contact::stick_slip::Regime;
-use fretwear::data::layout::label;
+use fretwear::data::quantity::quantity;
 use fretwear::data::{
-    ArrayFile, Checkpoint, Column, Coordinate, Format, LimitCurves, ResultPath, ResultTables, RunFile,
-    RunHeader, RunWriter, Snapshot, StopReason, StoredArrays, SweepFile, SweepHeader, TextArray, Values,
+    Checkpoint, Dataset, Format, LimitCurves, ResultPath, ResultTables, RunFile, RunHeader, RunWriter,
+    Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
 };
 use fretwear::laws::loading::RecordedPath;
 use fretwear::solver::model::{Linearised, Past, PastPoint, State, StickEdge};
@@ -663,12 +663,9 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
     };
 
     let sweep = folder.path().join("sweep.h5");
-    let column = Column {
-        name: "verdict".into(),
-        units: "1".into(),
-        long_name: "a word".into(),
-        values: Values::Texts([WORD].into_iter().collect()),
-    };
+    let verdict = quantity("verdict", "1", "a word");
+    let words = || [WORD].into_iter().collect::<Words>();
+    let column = column(verdict, words());
     let header = SweepHeader::default();
     SweepFile::new(header, true, vec![0], vec![column], vec![]).write(&sweep, false).expect("written");
     damage(&sweep);
@@ -676,21 +673,13 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
     assert_eq!(column.values, Values::Texts([READ].into_iter().collect()));
 
     let study = folder.path().join("study.h5");
-    let file = ArrayFile {
-        format: Format::Universality,
-        attributes: vec![("title", String::new())],
-        coordinates: vec![Coordinate { label: label("case", "1", "a number"), values: vec![0.0] }],
-        arrays: vec![],
-        texts: vec![TextArray {
-            label: label("verdict", "1", "a word"),
-            axis: "case",
-            values: vec![WORD.into()],
-        }],
-    };
+    let mut file = Dataset::of(Format::Universality, &[("title", String::new())]);
+    file.coordinate(quantity("case", "1", "a number"), vec![0.0]);
+    file.add(Variable::new(verdict, &[("case", 1)], words()));
     file.write(&study, false).expect("written");
     damage(&study);
-    let stored = StoredArrays::read(ResultPath::unchecked(&study), file.format).expect("readable");
-    assert_eq!(stored.words("verdict", 1).expect("one"), [READ]);
+    let stored = Dataset::read(ResultPath::unchecked(&study), Format::Universality).expect("readable");
+    assert_eq!(stored.words("verdict", 1).expect("one").iter().collect::<Vec<_>>(), [READ]);
 }
 
 const SAVE_LOOP: &str = "FRETWEAR_TEST_SAVE_LOOP";

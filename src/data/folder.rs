@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use super::atomic::{AtomicFile, failure};
+use super::reader::format_of;
 use super::scratch::Scratch;
-use super::stored::format_of;
 use crate::error::{Error, Result};
 
 /// How a file is known for this program's own.

@@ -1,10 +1,11 @@
-//! Writing the file of a run.
+//! Writing files: of a dataset at once, of a run with each of its saves.
 
 use std::path::{Path, PathBuf};
 
 use super::atomic::AtomicFile;
-use super::encode::Run;
-use super::labelled::laid_out;
+use super::dataset::Dataset;
+use super::labelled::{laid_out, put_dataset};
+use super::run_file::Run;
 use super::seal::sealed;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
 use crate::error::Result;
@@ -39,6 +40,20 @@ enum Target {
     Ready(AtomicFile),
     /// One that is looked at when it is first written.
     Later(PathBuf),
+}
+
+impl Dataset {
+    /// Writes a file, as a whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::File`](crate::Error::File) if the file exists and `overwrite` is not given, or cannot be written.
+    ///
+    /// # Panics
+    /// If a variable runs along a dimension that has no coordinate before it.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
+        let mut file = AtomicFile::new(path, overwrite)?;
+        file.write(&sealed(laid_out(path, |file| put_dataset(file, self))?))
+    }
 }
 
 impl RunHeader {
@@ -144,7 +159,7 @@ impl RunWriter {
     /// [`Error::File`](crate::Error::File) names the file and the cure; the previous save is then still there.
     pub fn save(&mut self, checkpoint: &Checkpoint, stop_reason: StopReason, complete: bool) -> Result<()> {
         let run = Run { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
-        let bytes = sealed(laid_out(self.path(), |file| run.put_into(file))?);
+        let bytes = sealed(laid_out(self.path(), |file| put_dataset(file, &run.dataset()))?);
         if let Target::Later(path) = &self.file {
             self.file = Target::Ready(AtomicFile::new(path, true)?);
         }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use fretwear::report::{self, TradeoffReport};
+use fretwear::report;
 use fretwear::run::progress::SceneProgress;
 use fretwear::scene::Stepper;
-use fretwear::study::tradeoff::{self, Ladders};
+use fretwear::study::tradeoff::{self, Ladders, TradeoffReport};
 use fretwear::{Error, Result};
 
 use super::{INTERRUPTED, Settings, at, complain, done, read};

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use clap::Args;
 use fretwear::Result;
-use fretwear::report::{self, UniversalityReport};
+use fretwear::report;
 use fretwear::run::progress::SceneProgress;
 use fretwear::scene::UniversalityStudy;
-use fretwear::study::universality;
+use fretwear::study::universality::{self, UniversalityReport};
 
 use super::{INTERRUPTED, complain, done, threads};
 

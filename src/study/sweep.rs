@@ -36,14 +36,14 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use crate::data::{RunFile, StopReason, SweepHeader};
+use crate::data::{RunFile, StopReason, SweepHeader, Value};
 use crate::error::{Error, Result};
-use crate::report::{LimitReport, RunReport};
 use crate::run::progress::SceneProgress;
+use crate::run::readings::{self, ClosedForm};
 use crate::run::{Resumed, Run, Shared, thread_pool};
 use crate::scene::{Study, Task};
 use folder::Folder;
-use rows::{Row, Schema};
+use rows::{SceneResult, Schema};
 
 /// Kept runs in memory after which a part is written.
 const MOST_RUNS: usize = 100;
@@ -183,7 +183,7 @@ impl<'a> Sweep<'a> {
         if let Some(progress) = progress {
             progress.begin(missing.len() as u64);
         }
-        let worker = Worker { study, schema, folder, shared, progress };
+        let worker = Worker { study, folder, shared, progress };
         let interval = shared.checkpoint_interval.unwrap_or_default();
         let collector = Collector::new(study, folder, schema, interval);
         let finished = pool.install(|| {
@@ -245,12 +245,11 @@ fn validate(
 }
 
 /// Texts and numbers of a row.
-type Results = (Vec<String>, Vec<f64>);
+type Results = Vec<Value>;
 
 /// Does scenes.
 struct Worker<'a> {
     study: &'a Study,
-    schema: &'a Schema,
     folder: &'a Folder,
     shared: &'a Shared,
     progress: Option<&'a SceneProgress>,
@@ -258,7 +257,7 @@ struct Worker<'a> {
 
 impl Worker<'_> {
     /// The row of a scene; none if a signal came first.
-    fn row(&self, scene: u64) -> Result<Option<Row>> {
+    fn row(&self, scene: u64) -> Result<Option<SceneResult>> {
         if self.shared.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -267,22 +266,20 @@ impl Worker<'_> {
             Task::Limit => self.limit(scene).map(Some),
             Task::Run => self.run(scene),
         }));
-        let row = |(texts, numbers): Results, run: Option<RunFile>, error: Option<String>| Row {
+        let row = |results: Option<Results>, run: Option<RunFile>, error: Option<String>| SceneResult {
             scene,
             inputs: self.study.inputs(scene),
-            numbers,
-            texts,
+            results,
             run,
             error,
         };
-        let nothing = || self.schema.results(None::<&RunReport>);
         let row = match done {
             Ok(Ok(None)) => return Ok(None),
-            Ok(Ok(Some((results, run)))) => row(results, run, None),
+            Ok(Ok(Some((results, run)))) => row(Some(results), run, None),
             // Concerns all scenes: the disk is full, a directory has vanished.
             Ok(Err(error @ Error::File { .. })) => return Err(error),
-            Ok(Err(error)) => row(nothing(), None, Some(error.to_string())),
-            Err(_) => row(nothing(), None, Some("the program panicked; please report this scene".into())),
+            Ok(Err(error)) => row(None, None, Some(error.to_string())),
+            Err(_) => row(None, None, Some("the program panicked; please report this scene".into())),
         };
         if let Some(progress) = self.progress {
             progress.done(row.error.is_some());
@@ -291,8 +288,8 @@ impl Worker<'_> {
     }
 
     fn limit(&self, scene: u64) -> Result<(Results, Option<RunFile>)> {
-        let report = LimitReport::new(&self.study.scene(scene)?, Some(&[]))?;
-        Ok((self.schema.results(Some(&report)), None))
+        let form = ClosedForm::new(&self.study.scene(scene)?)?;
+        Ok((readings::LIMIT.iter().map(|it| (it.of)(&form)).collect(), None))
     }
 
     /// None if a signal came first.
@@ -315,7 +312,7 @@ impl Worker<'_> {
             return Ok(None);
         }
         let kept = self.study.snapshots().contain(number).then_some(file);
-        Ok(Some((self.schema.results(Some(&RunReport::new(&result))), kept)))
+        Ok(Some((readings::RUN.iter().map(|it| (it.of)(&result)).collect(), kept)))
     }
 }
 
@@ -329,7 +326,7 @@ struct Collector<'a> {
 }
 
 struct Waiting {
-    rows: Vec<Row>,
+    rows: Vec<SceneResult>,
     /// How many of them have a run.
     runs: usize,
     saved: Instant,
@@ -344,7 +341,7 @@ impl<'a> Collector<'a> {
         Self { study, folder, schema, interval, waiting }
     }
 
-    fn add(&self, row: Row) -> Result<()> {
+    fn add(&self, row: SceneResult) -> Result<()> {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.done += 1;
         waiting.failed += u64::from(row.error.is_some());
@@ -361,7 +358,7 @@ impl<'a> Collector<'a> {
         self.write(rows)
     }
 
-    fn write(&self, rows: Vec<Row>) -> Result<()> {
+    fn write(&self, rows: Vec<SceneResult>) -> Result<()> {
         if rows.is_empty() {
             return Ok(());
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
-use crate::report::LimitReport;
+use crate::run::readings::ClosedForm;
 use crate::run::{Run, Shared, memory_figure};
 use crate::scene::{Study, Task};
 
@@ -104,7 +104,7 @@ fn spread(count: u64, most: u64) -> Vec<u64> {
 fn measure(study: &Study, scene: u64, shared: &Shared) -> MeasuredScene {
     let begun = Instant::now();
     let outcome = match study.task() {
-        Task::Limit => study.scene(scene).and_then(|it| LimitReport::new(&it, Some(&[]))).map(drop),
+        Task::Limit => study.scene(scene).and_then(|it| ClosedForm::new(&it)).map(drop),
         Task::Run => study
             .scene(scene)
             .and_then(|it| {
