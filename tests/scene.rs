@@ -175,7 +175,12 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
         (GRADING, "grading = -1", "grading = -1", &["half_space.grading = -1 is outside (-1, 1)"]),
         (POISSON, "poisson_ratio = 0.6", "= 0.6", &["half_space.poisson_ratio = 0.6 is outside (-1, 0.5]"]),
         (POISSON, "poisson_ratio = \"alike\"", "alike", &["half_space.poisson_ratio", "\"similar\""]),
-        (POISSON, "reference_depth = 0", "reference_depth", &["half_space.reference_depth = 0 is outside"]),
+        (
+            "reference_depth = \"1 m\"",
+            "reference_depth = 0",
+            "reference_depth",
+            &["half_space.reference_depth = 0 is outside"],
+        ),
         (FRICTION, "coefficient = 0", "coefficient = 0", &["friction.coulomb.coefficient = 0 is outside"]),
         (WEAR, "coefficient = -1e-14", "-1e-14", &["wear.archard.coefficient = -1e-14 is outside"]),
         (FORCE, "initial_force = \"0 N\"", "0 N", &["loading.initial_force = \"0 N\" is outside (0, inf)"]),
