@@ -1,6 +1,5 @@
 //! A run as a dataset, and back.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use hdf5::Group;
@@ -9,7 +8,7 @@ use super::dataset::{Attribute, Dataset, Number, Variable, WRITE_AGAIN, text};
 use super::layout::*;
 use super::reader::{OpenFile, Wanted};
 use super::seal::ResultPath;
-use super::{Checkpoint, Format, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
+use super::{Checkpoint, Format, LimitCurves, RunHeader, Snapshot, StopReason};
 use crate::contact::indenter::TabulatedProfile;
 use crate::contact::stick_slip::Regime;
 use crate::error::Result;
@@ -52,7 +51,7 @@ impl RunFile {
         Self { header, snapshots, checkpoint, stop_reason, complete, program_version, scene_hash }
     }
 
-    /// Reads a file that [`RunWriter`] wrote.
+    /// Reads a file that [`RunWriter`](super::RunWriter) wrote.
     ///
     /// # Errors
     /// [`Error::File`](crate::Error::File) names the file, the dataset or attribute that cannot be used, and the cure.
@@ -81,21 +80,6 @@ impl RunFile {
             return Err(open.damaged("its scene", &why));
         }
         Ok(Self { header, snapshots, checkpoint, stop_reason, complete, program_version, scene_hash })
-    }
-
-    /// A writer that goes on after the snapshots of this file and replaces `path` at its first save.
-    ///
-    /// # Errors
-    /// [`Error::File`](crate::Error::File) if `path` cannot be written.
-    pub fn into_writer(self, path: &Path) -> Result<RunWriter> {
-        RunWriter::with_snapshots(path, self.header, self.snapshots, true)
-    }
-
-    /// As [`RunFile::into_writer`], without a look at `path` before the first save.
-    pub fn into_deferred_writer(self, path: &Path) -> RunWriter {
-        let mut writer = RunWriter::deferred(path, self.header);
-        self.snapshots.into_iter().for_each(|snapshot| writer.push(snapshot));
-        writer
     }
 }
 

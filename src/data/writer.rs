@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::atomic::AtomicFile;
 use super::dataset::Dataset;
 use super::labelled::{laid_out, put_dataset};
-use super::run_file::Run;
+use super::run_file::{Run, RunFile};
 use super::seal::sealed;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
 use crate::error::Result;
@@ -167,5 +167,22 @@ impl RunWriter {
             Target::Ready(file) => file.write(&bytes),
             Target::Later(_) => unreachable!("made ready above"),
         }
+    }
+}
+
+impl RunFile {
+    /// A writer that goes on after the snapshots of this file and replaces `path` at its first save.
+    ///
+    /// # Errors
+    /// [`Error::File`](crate::Error::File) if `path` cannot be written.
+    pub fn into_writer(self, path: &Path) -> Result<RunWriter> {
+        RunWriter::with_snapshots(path, self.header, self.snapshots, true)
+    }
+
+    /// As [`RunFile::into_writer`], without a look at `path` before the first save.
+    pub fn into_deferred_writer(self, path: &Path) -> RunWriter {
+        let mut writer = RunWriter::deferred(path, self.header);
+        self.snapshots.into_iter().for_each(|snapshot| writer.push(snapshot));
+        writer
     }
 }

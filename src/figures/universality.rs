@@ -31,11 +31,11 @@ pub(super) fn figure(file: &Dataset) -> Result<Figure> {
     let [depth, limit] = ["profile_wear_depth", "profile_limit"].map(|name| file.numbers(name, &shape));
     let (depth, limit) = (depth?, limit?);
     let (mut inside, mut controls) = (vec![], vec![]);
-    for case in 0..count {
+    for (case, &distance) in distances.iter().enumerate() {
         let part = case * positions..(case + 1) * positions;
         let curve = points(&limit[part.clone()], &depth[part]);
         let group = if predicted.get(case) == "within" { &mut inside } else { &mut controls };
-        group.push(Case { name: names.get(case), distance: distances[case], curve });
+        group.push(Case { name: names.get(case), distance, curve });
     }
     let by_distance = |one: &Case, other: &Case| one.distance.total_cmp(&other.distance);
     inside.sort_by(by_distance);
