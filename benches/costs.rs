@@ -10,7 +10,7 @@ use fretwear::contact::half_space::Poisson;
 use fretwear::contact::spring::{Shakedown, SpringCycle, steady_cycle, stick_compression};
 use fretwear::contact::transforms::Transforms;
 use fretwear::laws::conditions::Conditions;
-use fretwear::laws::friction::{Coulomb, FrictionLaw};
+use fretwear::laws::friction::{Coulomb, FrictionLaw, LoadDependent, StaticKinetic};
 use fretwear::laws::loading::Mode;
 use fretwear::laws::path::SampledPath;
 use fretwear::numerics::abel::AbelOperators;
@@ -122,27 +122,28 @@ fn closed_form(criterion: &mut Criterion) {
 fn springs(criterion: &mut Criterion) {
     let normal = Mode::NormalOscillation { amplitude: 0.2, frequency_ratio: [1, 1], phase: 0.9 };
     let orbit = Mode::Orbit { transverse_amplitude: 1.5, phase: 0.0, centre: [0.0; 2] };
-    let coulomb = FrictionLaw::Coulomb(Coulomb { coefficient: 0.5 });
-    let kinetic = FrictionLaw::StaticKinetic { static_coefficient: 0.6, kinetic_coefficient: 0.5 };
-    let load = FrictionLaw::LoadDependent { coefficient: 0.5, exponent: -0.2, reference: 1.0 };
-    for (name, mode, law) in [
-        ("tangential", &Mode::Tangential, coulomb),
-        ("normal oscillation", &normal, coulomb),
-        ("normal oscillation, load-dependent", &normal, load),
-        ("tangential, static and kinetic", &Mode::Tangential, kinetic),
-        ("orbit", &orbit, coulomb),
-    ] {
+    let coulomb = Coulomb { coefficient: 0.5 };
+    let kinetic = StaticKinetic { static_coefficient: 0.6, kinetic_coefficient: 0.5 };
+    let load = LoadDependent { coefficient: 0.5, exponent: -0.2, reference: 1.0 };
+    let cases: [(&str, &Mode, &dyn FrictionLaw); 5] = [
+        ("tangential", &Mode::Tangential, &coulomb),
+        ("normal oscillation", &normal, &coulomb),
+        ("normal oscillation, load-dependent", &normal, &load),
+        ("tangential, static and kinetic", &Mode::Tangential, &kinetic),
+        ("orbit", &orbit, &coulomb),
+    ];
+    for (name, mode, law) in cases {
         for substeps in [2, 128] {
             let path = SampledPath::new(mode, 2.0, 2.0, substeps).path;
             let mut cycle = SpringCycle::default();
             let shakedown = Shakedown::default();
             let case = format!("{name}/{} substeps", path.points.len());
             criterion.bench_function(&format!("spring: {case}"), |bench| {
-                bench.iter(|| steady_cycle(&path, &law, 1.0, black_box(1.5), &shakedown, &mut cycle));
+                bench.iter(|| steady_cycle(&path, law, 1.0, black_box(1.5), &shakedown, &mut cycle));
             });
             println!("    periods of shakedown: {}", cycle.periods);
             criterion.bench_function(&format!("stick compression: {case}"), |bench| {
-                bench.iter(|| stick_compression(black_box(&path), &law, 1.0));
+                bench.iter(|| stick_compression(black_box(&path), law, 1.0));
             });
         }
     }

@@ -15,6 +15,7 @@ use crate::data::{
     scene_hash,
 };
 use crate::error::{Error, Result};
+use crate::laws::history::History;
 use crate::laws::loading::{self, Mode, cycles_at, has_come};
 use crate::scene::{Cycle, Numerics, Output, Scene, Stepper as StepperChoice};
 use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
@@ -429,7 +430,8 @@ impl Parts {
         check_regime(scene, &contact)?;
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
         let model = mesh::model(&contact, &schedule, numerics, wanted, store)?;
-        let unlimited = model.slides() || scene.conditions().holds_normal_force;
+        let by_energy = *model.schedule().friction_along_energy() != History::Constant;
+        let unlimited = model.slides() || scene.conditions().holds_normal_force || by_energy;
         let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
         check_stepper(numerics.stepper, &model)?;
         let tolerance = numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy));

@@ -272,7 +272,7 @@ impl Scene {
     }
 
     /// Coulomb's law that stands for the law of friction in the unworn contact, the closed form and the dimensionless time
-    /// ([`FrictionLaw::reference`](crate::laws::friction::FrictionLaw::reference)).
+    /// ([`FrictionLaw::reference_coefficient`](crate::laws::friction::FrictionLaw::reference_coefficient)).
     pub fn friction(&self) -> &Coulomb {
         &self.friction
     }

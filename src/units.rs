@@ -4,6 +4,7 @@ mod dimension;
 mod key;
 mod quantity;
 mod range;
+mod shown;
 mod unit;
 
 pub use dimension::Dimension;
@@ -12,4 +13,5 @@ pub use key::{Form, Key, Kind, Rule, Table};
 pub use quantity::parse;
 pub(crate) use quantity::split_number;
 pub use range::Range;
+pub(crate) use shown::{Scale, number};
 pub(crate) use unit::Unit;

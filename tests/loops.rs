@@ -5,7 +5,7 @@ mod support;
 use std::sync::Arc;
 
 use fretwear::laws::conditions::Conditions;
-use fretwear::laws::friction::FrictionLaw;
+use fretwear::laws::friction::{FrictionLaw, LoadDependent, StaticKinetic};
 use fretwear::laws::loading::{Mode, RecordedPath, TangentialControl};
 use fretwear::numerics::grid::Clustering;
 use fretwear::numerics::quadrature::Rule;
@@ -128,7 +128,7 @@ fn modes() -> Vec<(&'static str, Conditions)> {
     let contact = case.contact();
     let (d, amplitude) = (contact.indentation(), contact.amplitude());
     let plain = Conditions::plain(*contact.friction(), *contact.wear());
-    let with_friction = |friction| Conditions { friction, ..plain.clone() };
+    let with_friction = |friction: Arc<dyn FrictionLaw>| Conditions { friction, ..plain.clone() };
     let with_mode = |mode| Conditions { mode, ..plain.clone() };
     let control = |tangential_control| Conditions { tangential_control, ..plain.clone() };
     let rows = vec![0.0, amplitude, 0.3 * amplitude, -0.4 * amplitude];
@@ -139,11 +139,11 @@ fn modes() -> Vec<(&'static str, Conditions)> {
         ("plain", plain.clone()),
         (
             "load-dependent",
-            with_friction(FrictionLaw::LoadDependent { coefficient: 1.0, exponent: -0.3, reference: d }),
+            with_friction(Arc::new(LoadDependent { coefficient: 1.0, exponent: -0.3, reference: d })),
         ),
         (
             "static and kinetic",
-            with_friction(FrictionLaw::StaticKinetic { static_coefficient: 1.0, kinetic_coefficient: 0.8 }),
+            with_friction(Arc::new(StaticKinetic { static_coefficient: 1.0, kinetic_coefficient: 0.8 })),
         ),
         ("force", control(TangentialControl::Force)),
         ("rig", control(TangentialControl::Rig { stiffness: 5.0 })),

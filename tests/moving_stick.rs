@@ -4,6 +4,7 @@ mod support;
 
 use std::f64::consts::PI;
 use std::fs;
+use std::sync::Arc;
 
 use fretwear::contact::InitialContact;
 use fretwear::contact::closed_form::LimitingShape;
@@ -357,7 +358,7 @@ fn distance_from_limit(simulation: &Simulation) -> f64 {
     distance(&simulation.wear_depth(), &limit) / shape.wear_depth_max()
 }
 
-fn inward_laws(contact: &InitialContact) -> Vec<(&'static str, WearLaw)> {
+fn inward_laws(contact: &InitialContact) -> Vec<(&'static str, Arc<dyn WearLaw>)> {
     let all = laws::wear_laws(contact);
     all.into_iter().filter(|(name, _)| ["Archard", "energy", "p^1.5"].contains(name)).collect()
 }

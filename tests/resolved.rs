@@ -3,6 +3,8 @@
 mod support;
 
 use faer::Mat;
+use std::sync::Arc;
+
 use fretwear::contact::spring::{Response, Shakedown, SpringCycle, steady_cycle};
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::path::SampledPath;
@@ -43,7 +45,7 @@ fn a_resolved_tangential_cycle_is_the_closed_form_for_any_number_of_substeps() {
             let states = states(&laws::model(&case, &closed, None), &[0.5, 3.0, 10.0]);
             for substeps in [2, 3, 5, 16, 64, 200] {
                 for (wear_name, law) in &wear {
-                    let conditions = Conditions { wear: *law, ..closed.clone() };
+                    let conditions = Conditions { wear: Arc::clone(law), ..closed.clone() };
                     let [one, other] =
                         [None, Some(substeps)].map(|substeps| laws::model(&case, &conditions, substeps));
                     for state in &states {
@@ -86,7 +88,12 @@ fn all_conditions(case: &Case) -> Vec<(String, Conditions)> {
             let wear = laws::wear_laws(&contact).into_iter().chain(laws::other_wear_laws(&contact));
             // Energy is a matter of friction, the rest of wear.
             for (wear_name, wear) in wear.take(if friction_name == "Coulomb" { 8 } else { 2 }) {
-                let conditions = Conditions { mode: mode.clone(), friction, wear, ..laws::plain(&contact) };
+                let conditions = Conditions {
+                    mode: mode.clone(),
+                    friction: Arc::clone(&friction),
+                    wear,
+                    ..laws::plain(&contact)
+                };
                 all.push((format!("{mode_name}, {friction_name}, {wear_name}"), conditions));
             }
         }
@@ -209,16 +216,16 @@ fn every_stepper_wears_alike_with_closed_and_with_resolved_cycles() {
     let plain = laws::plain(&contact);
     let conditions = [
         ("Archard", plain.clone(), 80.0),
-        ("energy", Conditions { wear: laws::wear_laws(&contact)[1].1, ..plain.clone() }, 80.0),
+        ("energy", Conditions { wear: laws::wear_laws(&contact).remove(1).1, ..plain.clone() }, 80.0),
         ("s^0.5", Conditions { wear: laws::power(&contact, 1.0, 0.5), ..plain.clone() }, 80.0),
         (
             "static and kinetic",
-            Conditions { friction: laws::friction_laws(&contact)[1].1, ..plain.clone() },
+            Conditions { friction: laws::friction_laws(&contact).remove(1).1, ..plain.clone() },
             80.0,
         ),
         (
             "load-dependent 0.3",
-            Conditions { friction: laws::friction_laws(&contact)[3].1, ..plain.clone() },
+            Conditions { friction: laws::friction_laws(&contact).remove(3).1, ..plain.clone() },
             80.0,
         ),
     ];
@@ -276,7 +283,7 @@ fn the_table_of_an_orbit_is_that_of_its_springs() {
         let table = Response::new(&path).unwrap();
         let built = start.elapsed();
         assert!(Response::new(&path).unwrap() == table, "{name}: another table");
-        let law = fretwear::laws::friction::FrictionLaw::Coulomb(*contact.friction());
+        let law = *contact.friction();
         let mut cycle = SpringCycle::default();
         let mut slip = vec![0.0; 2 * path.points.len()];
         let free: f64 = path.length();

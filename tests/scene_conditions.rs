@@ -2,13 +2,14 @@
 
 use std::fs;
 use std::process::Command;
+use std::sync::Arc;
 
 use fretwear::contact::InitialContact;
 use fretwear::laws::conditions::Conditions;
-use fretwear::laws::friction::{Coulomb, FrictionLaw};
+use fretwear::laws::friction::{Coulomb, FrictionLaw, LoadDependent, StaticKinetic};
 use fretwear::laws::history::History;
 use fretwear::laws::loading::{Amplitude, Block, Clock, Mode, TangentialControl};
-use fretwear::laws::wear::{Archard, WearLaw};
+use fretwear::laws::wear::{Archard, DissipatedEnergy, NonLocal, PowerLaw, Threshold, WearLaw};
 use fretwear::report::{CheckReport, json};
 use fretwear::scene::{Scene, Study};
 use proptest::prelude::*;
@@ -33,6 +34,14 @@ fn with_friction(friction: &str) -> Conditions {
     read(&scene(friction, WEAR, LOADING)).conditions().clone()
 }
 
+fn wear(law: impl WearLaw + 'static) -> Arc<dyn WearLaw> {
+    Arc::new(law)
+}
+
+fn friction(law: impl FrictionLaw + 'static) -> Arc<dyn FrictionLaw> {
+    Arc::new(law)
+}
+
 fn with_wear(wear: &str) -> Conditions {
     read(&scene(FRICTION, wear, LOADING)).conditions().clone()
 }
@@ -50,7 +59,7 @@ fn a_scene_without_any_of_it_is_plain_and_without_a_warning() {
     );
     assert!(plain.conditions().is_plain() && plain.warnings().is_empty());
     let energy = read(&scene(FRICTION, "[wear.dissipated-energy]\ncoefficient = 2e-14", LOADING));
-    assert_eq!(energy.conditions().wear, WearLaw::DissipatedEnergy { coefficient: 2e-14 });
+    assert_eq!(*energy.conditions().wear, *wear(DissipatedEnergy { coefficient: 2e-14 }));
     assert_eq!(energy.wear().coefficient, 2e-14 * 0.6);
     assert!(energy.conditions().is_plain() && energy.warnings().is_empty());
 }
@@ -59,17 +68,17 @@ fn a_scene_without_any_of_it_is_plain_and_without_a_warning() {
 fn every_law_of_friction_is_read() {
     let law = with_friction("[friction.static-kinetic]\nstatic_coefficient = 0.7\nkinetic_coefficient = 0.5")
         .friction;
-    assert_eq!(law, FrictionLaw::StaticKinetic { static_coefficient: 0.7, kinetic_coefficient: 0.5 });
+    assert_eq!(*law, *friction(StaticKinetic { static_coefficient: 0.7, kinetic_coefficient: 0.5 }));
     let load_dependent = "[friction.load-dependent]\ncoefficient = 0.5\nexponent = -0.25\n";
-    let expected = |reference| FrictionLaw::LoadDependent { coefficient: 0.5, exponent: -0.25, reference };
+    let expected = |reference| friction(LoadDependent { coefficient: 0.5, exponent: -0.25, reference });
     let given = with_friction(&format!("{load_dependent}reference_compression = \"3 um\"")).friction;
-    assert_eq!(given, expected(3e-6));
+    assert_eq!(*given, *expected(3e-6));
     // Without it the indentation of the first cycle, as given or under the force given.
-    assert_eq!(with_friction(load_dependent).friction, expected(2e-6));
+    assert_eq!(*with_friction(load_dependent).friction, *expected(2e-6));
     let pressed =
         read(&scene(load_dependent, WEAR, &LOADING.replace("indentation = \"2 um\"", "normal_force = 50")));
     let indentation = pressed.contact().expect("a contact").indentation();
-    assert_eq!(pressed.conditions().friction, expected(indentation));
+    assert_eq!(*pressed.conditions().friction, *expected(indentation));
     assert!(indentation > 0.0 && indentation != 2e-6);
     // What stands for them in the closed form.
     let static_kinetic = "[friction.static-kinetic]\nstatic_coefficient = 0.7\nkinetic_coefficient = 0.7";
@@ -81,13 +90,13 @@ fn every_law_of_friction_is_read() {
 fn every_law_of_wear_is_read() {
     let power = "[wear.power-law]\ncoefficient = 1e-13\npressure_exponent = 0.5\nslip_exponent = 2";
     assert_eq!(
-        with_wear(power).wear,
-        WearLaw::PowerLaw { coefficient: 1e-13, pressure_exponent: 0.5, slip_exponent: 2.0 }
+        *with_wear(power).wear,
+        *wear(PowerLaw { coefficient: 1e-13, pressure_exponent: 0.5, slip_exponent: 2.0 })
     );
     let threshold = "[wear.threshold]\ncoefficient = \"1e-5 mm^3/(N m)\"\npressure = \"50 MPa\"";
-    assert_eq!(with_wear(threshold).wear, WearLaw::Threshold { coefficient: 1e-14, pressure: 5e7 });
+    assert_eq!(*with_wear(threshold).wear, *wear(Threshold { coefficient: 1e-14, pressure: 5e7 }));
     let non_local = "[wear.non-local]\ncoefficient = 1e-14\nlength = \"5 um\"";
-    assert_eq!(with_wear(non_local).wear, WearLaw::NonLocal { coefficient: 1e-14, length: 5e-6 });
+    assert_eq!(*with_wear(non_local).wear, *wear(NonLocal { coefficient: 1e-14, length: 5e-6 }));
     for text in [threshold, non_local] {
         assert_eq!(read(&scene(FRICTION, text, LOADING)).wear().coefficient, 1e-14);
     }
@@ -601,12 +610,12 @@ fn what_is_not_plain_is_warned_about_and_shown() {
 fn the_reference_of_every_law_is_that_of_its_scene() {
     let contact: InitialContact = read(&scene(FRICTION, WEAR, LOADING)).contact().expect("a contact");
     for (law, expected) in [
-        (WearLaw::Archard(Archard { coefficient: 3.0 }), 3.0),
-        (WearLaw::DissipatedEnergy { coefficient: 3.0 }, 3.0 * 0.6),
-        (WearLaw::Threshold { coefficient: 3.0, pressure: 1.0 }, 3.0),
-        (WearLaw::NonLocal { coefficient: 3.0, length: 1.0 }, 3.0),
+        (wear(Archard { coefficient: 3.0 }), 3.0),
+        (wear(DissipatedEnergy { coefficient: 3.0 }), 3.0 * 0.6),
+        (wear(Threshold { coefficient: 3.0, pressure: 1.0 }), 3.0),
+        (wear(NonLocal { coefficient: 3.0, length: 1.0 }), 3.0),
     ] {
-        assert_eq!(contact.reference_wear(&law).coefficient, expected, "{law:?}");
+        assert_eq!(contact.reference_wear(&*law).coefficient, expected, "{law:?}");
     }
 }
 

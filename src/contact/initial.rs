@@ -10,7 +10,7 @@ use crate::contact::stick_slip::{
 use crate::error::{Error, Result};
 use crate::laws::friction::Coulomb;
 use crate::laws::loading::{Amplitude, Load, Loading};
-use crate::laws::wear::{Archard, WearLaw};
+use crate::laws::wear::{Archard, Scales, WearLaw};
 
 /// The contact before any wear; every quantity is finite.
 ///
@@ -240,31 +240,14 @@ impl InitialContact {
     }
 
     /// Archard's law that stands for a law of wear in the closed form and the dimensionless time.
-    ///
-    /// For a power law it is the one under which the time of one cycle is the natural one of that law:
-    ///
-    /// ```text
-    /// k_w = k P^(α-1) L^(β-1),     P = c_N a0^(k-1) d,     L = 4 μ_f d/M     →     k P^α L^β/d = 4 k_w c_N a0^(k-1) μ_f d/M = τ/N
-    /// ```
-    ///
-    /// Numbers each allowed may give one too large or too small for a double.
-    pub fn reference_wear(&self, law: &WearLaw) -> Archard {
-        match *law {
-            WearLaw::Archard(law) => law,
-            WearLaw::DissipatedEnergy { coefficient } => {
-                Archard::from_dissipated_energy(coefficient, &self.friction)
-            }
-            WearLaw::Threshold { coefficient, .. } | WearLaw::NonLocal { coefficient, .. } => {
-                Archard { coefficient }
-            }
-            WearLaw::PowerLaw { coefficient, pressure_exponent, slip_exponent } => {
-                let radial = self.contact_radius.powf(self.half_space.grading() - 1.0);
-                let pressure = self.half_space.normal_stiffness() * (radial * self.indentation);
-                let path = 4.0 * self.amplitude_full_sliding();
-                let factor = pressure.powf(pressure_exponent - 1.0) * path.powf(slip_exponent - 1.0);
-                Archard { coefficient: coefficient * factor }
-            }
-        }
+    pub fn reference_wear(&self, law: &dyn WearLaw) -> Archard {
+        let radial = self.contact_radius.powf(self.half_space.grading() - 1.0);
+        let scales = Scales {
+            pressure: self.half_space.normal_stiffness() * (radial * self.indentation),
+            path: 4.0 * self.amplitude_full_sliding(),
+            friction: self.friction.coefficient,
+        };
+        Archard { coefficient: law.reference(&scales) }
     }
 
     /// Dimensionless time `τ` of one cycle.

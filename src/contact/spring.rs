@@ -130,13 +130,13 @@ impl SpringCycle {
 /// * `out` -- overwritten; its memory is used again
 ///
 /// ```
-/// use fretwear::laws::friction::{Coulomb, FrictionLaw};
+/// use fretwear::laws::friction::Coulomb;
 /// use fretwear::laws::loading::Mode;
 /// use fretwear::laws::path::SampledPath;
 /// use fretwear::contact::spring::{Shakedown, SpringCycle, steady_cycle};
 ///
 /// let path = SampledPath::new(&Mode::Tangential, 3.0, 1.0, 2).path;
-/// let law = FrictionLaw::Coulomb(Coulomb { coefficient: 0.5 });
+/// let law = Coulomb { coefficient: 0.5 };
 /// let mut cycle = SpringCycle::default();
 /// steady_cycle(&path, &law, 1.0, 4.0, &Shakedown::default(), &mut cycle);
 /// assert_eq!(cycle.slip_path, 4.0 * (3.0 - 0.5 * 4.0)); // 4 (U - μ_f q/M)
@@ -144,7 +144,7 @@ impl SpringCycle {
 /// ```
 pub fn steady_cycle(
     path: &Path,
-    law: &FrictionLaw,
+    law: &dyn FrictionLaw,
     stiffness_ratio: f64,
     compression: f64,
     shakedown: &Shakedown,
@@ -156,7 +156,7 @@ pub fn steady_cycle(
 /// [`steady_cycle`]; by Newton's method for a spring that is known to slip for ever (`slips`), for one on its way to rest must take that way.
 fn periodic(
     path: &Path,
-    law: &FrictionLaw,
+    law: &dyn FrictionLaw,
     stiffness_ratio: f64,
     compression: f64,
     shakedown: &Shakedown,

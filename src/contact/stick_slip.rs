@@ -135,15 +135,15 @@ pub fn stick_logarithm(
 /// * `compression` -- `q`, m; without contact the slip is `U`
 ///
 /// ```
-/// use fretwear::laws::friction::{Coulomb, FrictionLaw};
+/// use fretwear::laws::friction::Coulomb;
 /// use fretwear::contact::stick_slip::slip_amplitude_of_spring;
 ///
-/// let law = FrictionLaw::Coulomb(Coulomb { coefficient: 0.5 });
+/// let law = Coulomb { coefficient: 0.5 };
 /// assert_eq!(slip_amplitude_of_spring(&law, 2.0, 3.0, 4.0), (2.0, -0.25));
 /// assert_eq!(slip_amplitude_of_spring(&law, 2.0, 3.0, 12.0), (0.0, 0.0));
 /// ```
 pub fn slip_amplitude_of_spring(
-    law: &FrictionLaw,
+    law: &dyn FrictionLaw,
     stiffness_ratio: f64,
     amplitude: f64,
     compression: f64,

@@ -1,6 +1,8 @@
 //! Everything that may differ from plain tangential oscillation under the laws of Coulomb and Archard.
 
-use serde::Serialize;
+use std::sync::Arc;
+
+use serde::{Serialize, Serializer};
 
 use crate::laws::friction::{Coulomb, FrictionLaw};
 use crate::laws::history::History;
@@ -8,14 +10,16 @@ use crate::laws::loading::{Block, Clock, Mode, TangentialControl};
 use crate::laws::wear::{Archard, WearLaw};
 
 /// Laws, mode, blocks and control of a run, beside its contact.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Conditions {
     /// The law of friction at the start.
-    pub friction: FrictionLaw,
+    #[serde(serialize_with = "law")]
+    pub friction: Arc<dyn FrictionLaw>,
     /// Factor on its coefficients along the cycles.
     pub friction_history: History,
     /// The law of wear at the start.
-    pub wear: WearLaw,
+    #[serde(serialize_with = "law")]
+    pub wear: Arc<dyn WearLaw>,
     /// Factor on its coefficient along the cycles.
     pub wear_history: History,
     /// Unit of the times of histories and blocks.
@@ -30,15 +34,52 @@ pub struct Conditions {
     pub tangential_control: TangentialControl,
     /// Whether the normal force is held instead of the indentation.
     pub holds_normal_force: bool,
+    /// Cycles per second, Hz, where the scene tells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<f64>,
+}
+
+/// A law itself, whoever else holds it.
+fn law<L: Serialize + ?Sized, S: Serializer>(law: &Arc<L>, serializer: S) -> Result<S::Ok, S::Error> {
+    law.as_ref().serialize(serializer)
+}
+
+impl PartialEq for Conditions {
+    fn eq(&self, other: &Self) -> bool {
+        let Self {
+            friction,
+            friction_history,
+            wear,
+            wear_history,
+            clock,
+            mode,
+            blocks,
+            repeat,
+            tangential_control,
+            holds_normal_force,
+            frequency,
+        } = self;
+        **friction == *other.friction
+            && *friction_history == other.friction_history
+            && **wear == *other.wear
+            && *wear_history == other.wear_history
+            && *clock == other.clock
+            && *mode == other.mode
+            && *blocks == other.blocks
+            && *repeat == other.repeat
+            && *tangential_control == other.tangential_control
+            && *holds_normal_force == other.holds_normal_force
+            && *frequency == other.frequency
+    }
 }
 
 impl Conditions {
     /// Plain tangential oscillation under Coulomb's and Archard's laws.
     pub fn plain(friction: Coulomb, wear: Archard) -> Self {
         Self {
-            friction: FrictionLaw::Coulomb(friction),
+            friction: Arc::new(friction),
             friction_history: History::default(),
-            wear: WearLaw::Archard(wear),
+            wear: Arc::new(wear),
             wear_history: History::default(),
             clock: Clock::default(),
             mode: Mode::default(),
@@ -46,6 +87,7 @@ impl Conditions {
             repeat: false,
             tangential_control: TangentialControl::default(),
             holds_normal_force: false,
+            frequency: None,
         }
     }
 
@@ -62,18 +104,6 @@ impl Conditions {
     /// assert_eq!(conditions.departures(), ["a held normal force"]);
     /// ```
     pub fn departures(&self) -> Vec<&'static str> {
-        let friction = match self.friction {
-            FrictionLaw::Coulomb(_) => None,
-            FrictionLaw::StaticKinetic { .. } => Some("static and kinetic friction"),
-            FrictionLaw::LoadDependent { .. } => Some("friction that depends on the load"),
-        };
-        let wear = match self.wear {
-            // Under Coulomb's law that of the dissipated energy is Archard's.
-            WearLaw::Archard(_) | WearLaw::DissipatedEnergy { .. } => None,
-            WearLaw::PowerLaw { .. } => Some("wear by a power law"),
-            WearLaw::Threshold { .. } => Some("wear above a threshold"),
-            WearLaw::NonLocal { .. } => Some("wear that is not local"),
-        };
         let mode = match self.mode {
             Mode::Tangential => None,
             Mode::NormalOscillation { .. } => Some("a normal oscillation"),
@@ -88,9 +118,9 @@ impl Conditions {
         let given = |it: bool, words: &'static str| it.then_some(words);
         let changes = |history: &History, words| given(*history != History::Constant, words);
         let departures = [
-            friction,
+            self.friction.entry().departure,
             changes(&self.friction_history, "friction that changes along the cycles"),
-            wear,
+            self.wear.entry().departure,
             changes(&self.wear_history, "a wear coefficient that changes along the cycles"),
             mode,
             given(!self.blocks.is_empty(), "blocks"),

@@ -2,10 +2,8 @@
 
 use super::text::{Scale, TextTable, number, recorded_path};
 use crate::laws::conditions::Conditions;
-use crate::laws::friction::{Coulomb, FrictionLaw};
 use crate::laws::history::History;
 use crate::laws::loading::{Block, Clock, Mode, TangentialControl};
-use crate::laws::wear::{Archard, WearLaw};
 
 /// Blocks and times of which all are listed.
 const MOST_LISTED: usize = 6;
@@ -16,10 +14,13 @@ pub(super) fn put(rows: &mut TextTable, conditions: &Conditions) {
         Clock::Cycles => "cycles",
         Clock::Tau => "τ",
     };
-    rows.row("friction law", friction(&conditions.friction));
+    rows.row("friction law", conditions.friction.words());
     changing(rows, "its coefficients", &conditions.friction_history, clock);
-    rows.row("wear law", wear(&conditions.wear));
+    rows.row("wear law", conditions.wear.words());
     changing(rows, "its coefficient", &conditions.wear_history, clock);
+    if let Some(frequency) = conditions.frequency {
+        rows.row("frequency", format!("{} Hz", number(frequency)));
+    }
     rows.row("mode", mode(&conditions.mode));
     let normal = if conditions.holds_normal_force { "normal force" } else { "indentation" };
     let tangential = match conditions.tangential_control {
@@ -54,41 +55,6 @@ fn block(block: &Block, clock: &str) -> String {
         words += &format!(" and {} of the indentation", number(indentation_factor));
     }
     words
-}
-
-fn friction(law: &FrictionLaw) -> String {
-    match *law {
-        FrictionLaw::Coulomb(Coulomb { coefficient }) => format!("Coulomb, {}", number(coefficient)),
-        FrictionLaw::StaticKinetic { static_coefficient, kinetic_coefficient } => {
-            format!("static {}, kinetic {}", number(static_coefficient), number(kinetic_coefficient))
-        }
-        FrictionLaw::LoadDependent { coefficient, exponent, reference } => {
-            format!("{} (q/{})^{}", number(coefficient), Scale::LENGTH.show(reference), number(exponent))
-        }
-    }
-}
-
-fn wear(law: &WearLaw) -> String {
-    match *law {
-        WearLaw::Archard(Archard { coefficient }) => format!("Archard, {} 1/Pa", number(coefficient)),
-        WearLaw::DissipatedEnergy { coefficient } => {
-            format!("dissipated energy, {} m³/J", number(coefficient))
-        }
-        WearLaw::PowerLaw { coefficient, pressure_exponent, slip_exponent } => format!(
-            "power law, {} p^{} s^{} (SI)",
-            number(coefficient),
-            number(pressure_exponent),
-            number(slip_exponent)
-        ),
-        WearLaw::Threshold { coefficient, pressure } => {
-            format!("Archard above {}, {} 1/Pa", Scale::PRESSURE.show(pressure), number(coefficient))
-        }
-        WearLaw::NonLocal { coefficient, length } => format!(
-            "Archard on the pressure averaged over {}, {} 1/Pa",
-            Scale::LENGTH.show(length),
-            number(coefficient)
-        ),
-    }
 }
 
 fn changing(rows: &mut TextTable, what: &str, history: &History, clock: &str) {

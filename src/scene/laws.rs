@@ -1,13 +1,16 @@
 //! The tables `[friction]` and `[wear]`: the laws and how they change along the cycles.
 
+use std::sync::Arc;
+
 use super::document::{Entry, Section};
-use super::keys::MOST_TIMES;
+use super::keys::{self, MOST_TIMES};
 use crate::error::Result;
-use crate::laws::friction::{Coulomb, FrictionLaw};
+use crate::laws::entry::{self as law, Value, Values, Wrong};
+use crate::laws::friction::{self, Coulomb, FrictionLaw};
 use crate::laws::history::History;
 use crate::laws::loading::Clock;
-use crate::laws::wear::{Archard, WearLaw};
-use crate::units::Dimension;
+use crate::laws::wear::{self, WearLaw};
+use crate::units::{Dimension, Key, Kind, Table};
 
 /// The one clock of all times in histories and blocks, and the first key that used it.
 #[derive(Default)]
@@ -40,111 +43,84 @@ pub(super) fn clock_of(key: &str) -> Clock {
 }
 
 /// A law of friction, but for what only the contact tells.
-pub(super) struct Friction {
-    law: FrictionLaw,
-    /// Whether the compression of reference is the indentation.
-    from_indentation: bool,
-}
+pub(super) struct Friction<'a>(Given<'a, dyn FrictionLaw>);
 
-impl Friction {
+impl Friction<'_> {
     /// Coulomb's law that stands for it.
-    pub(super) fn reference(&self) -> Coulomb {
-        self.law.reference()
+    pub(super) fn reference(&self) -> Result<Coulomb> {
+        // Whatever the indentation, it is the same.
+        Ok(Coulomb { coefficient: self.0.build(None, || Ok(1.0))?.reference_coefficient() })
     }
 
     /// The law; the indentation, m, is asked for only if the law was given in terms of it.
-    pub(super) fn finish(self, indentation: impl FnOnce() -> Result<f64>) -> Result<FrictionLaw> {
-        match self.law {
-            FrictionLaw::LoadDependent { coefficient, exponent, .. } if self.from_indentation => {
-                Ok(FrictionLaw::LoadDependent { coefficient, exponent, reference: indentation()? })
-            }
-            law => Ok(law),
-        }
+    pub(super) fn finish(&self, indentation: impl FnOnce() -> Result<f64>) -> Result<Arc<dyn FrictionLaw>> {
+        self.0.build(None, indentation)
     }
 }
 
-pub(super) fn friction(section: &Section) -> Result<Friction> {
-    const LAWS: [&str; 3] = ["coulomb", "static-kinetic", "load-dependent"];
-    section.only(&[&LAWS[..], &["history"]].concat(), &[])?;
-    let (name, entry) = section.one_of(&LAWS)?;
-    let law = entry.section()?;
-    let coefficient = |key: &str| law.required(key, "for example 0.6")?.positive(Dimension::NUMBER);
-    let mut from_indentation = false;
-    let law = match name {
-        "coulomb" => {
-            law.only(&["coefficient"], &[])?;
-            FrictionLaw::Coulomb(Coulomb { coefficient: coefficient("coefficient")? })
-        }
-        "static-kinetic" => {
-            const KEYS: [&str; 2] = ["static_coefficient", "kinetic_coefficient"];
-            law.only(&KEYS, &[])?;
-            let [static_coefficient, kinetic_coefficient] = [coefficient(KEYS[0])?, coefficient(KEYS[1])?];
-            if kinetic_coefficient > static_coefficient {
-                return Err(law.required(KEYS[1], "")?.error(format_args!(
-                    "is above {} = {static_coefficient}; slip must not be held harder than stick",
-                    law.name(KEYS[0])
-                )));
-            }
-            FrictionLaw::StaticKinetic { static_coefficient, kinetic_coefficient }
-        }
-        _ => {
-            law.only(&["coefficient", "exponent", "reference_compression"], &[])?;
-            let range = "(-1, inf); μ_f(q) q must increase with the compression q, or springs would stick inside others that slip";
-            let exponent = law.required("exponent", "0 is Coulomb's law")?.quantity_in(
-                Dimension::NUMBER,
-                range,
-                |exponent| exponent > -1.0,
-            )?;
-            let reference = law.optional("reference_compression");
-            from_indentation = reference.is_none();
-            FrictionLaw::LoadDependent {
-                coefficient: coefficient("coefficient")?,
-                exponent,
-                reference: reference.map_or(Ok(1.0), |entry| entry.positive(Dimension::LENGTH))?,
-            }
-        }
-    };
-    Ok(Friction { law, from_indentation })
+pub(super) fn friction<'a>(section: &Section<'a>) -> Result<Friction<'a>> {
+    given(section, &keys::FRICTION, friction::ENTRIES).map(Friction)
 }
 
-pub(super) fn wear(section: &Section) -> Result<WearLaw> {
-    const LAWS: [&str; 5] = ["archard", "dissipated-energy", "power-law", "threshold", "non-local"];
-    section.only(&[&LAWS[..], &["history"]].concat(), &[])?;
-    let (name, entry) = section.one_of(&LAWS)?;
-    let law = entry.section()?;
-    let positive = |key: &str, dimension, example: &str| law.required(key, example)?.positive(dimension);
-    // Volume per load and distance, and volume per energy, have the same dimension.
-    let coefficient = |example: &str| positive("coefficient", Dimension::INVERSE_PRESSURE, example);
-    let archard = "for example \"1e-14 1/Pa\"";
-    Ok(match name {
-        "archard" => {
-            law.only(&["coefficient"], &[])?;
-            WearLaw::Archard(Archard { coefficient: coefficient(archard)? })
+/// A law of wear, but for what other tables tell.
+pub(super) struct Wear<'a>(Given<'a, dyn WearLaw>);
+
+impl Wear<'_> {
+    /// The law, at a number of cycles per second, Hz, if the scene tells one.
+    pub(super) fn build(&self, frequency: Option<f64>) -> Result<Arc<dyn WearLaw>> {
+        self.0.build(frequency, || unreachable!("no wear law takes the indentation"))
+    }
+}
+
+pub(super) fn wear<'a>(section: &Section<'a>) -> Result<Wear<'a>> {
+    given(section, &keys::WEAR, wear::ENTRIES).map(Wear)
+}
+
+/// A law as a table gives it.
+struct Given<'a, L: ?Sized + 'static> {
+    entry: &'static law::Entry<L>,
+    section: Section<'a>,
+    values: Values,
+}
+
+impl<L: ?Sized> Given<'_, L> {
+    fn build(&self, frequency: Option<f64>, indentation: impl FnOnce() -> Result<f64>) -> Result<Arc<L>> {
+        let mut values = self.values.clone();
+        values.frequency = frequency;
+        if let Some(key) = self.entry.indentation.filter(|key| values.lacks(key)) {
+            values.set(key, indentation()?.into());
         }
-        "dissipated-energy" => {
-            law.only(&["coefficient"], &[])?;
-            WearLaw::DissipatedEnergy { coefficient: coefficient("for example \"2e-5 mm^3/J\"")? }
-        }
-        "power-law" => {
-            law.only(&["coefficient", "pressure_exponent", "slip_exponent"], &[])?;
-            let number = |key: &str, example: &str| positive(key, Dimension::NUMBER, example);
-            WearLaw::PowerLaw {
-                coefficient: number("coefficient", "a plain number, the coefficient in Pa^-α m^(1-β)")?,
-                pressure_exponent: number("pressure_exponent", "1 is Archard's law")?,
-                slip_exponent: number("slip_exponent", "1 is Archard's law")?,
-            }
-        }
-        "threshold" => {
-            law.only(&["coefficient", "pressure"], &[])?;
-            let pressure = positive("pressure", Dimension::PRESSURE, "for example \"50 MPa\"")?;
-            WearLaw::Threshold { coefficient: coefficient(archard)?, pressure }
-        }
-        _ => {
-            law.only(&["coefficient", "length"], &[])?;
-            let length = positive("length", Dimension::LENGTH, "for example \"5 um\"")?;
-            WearLaw::NonLocal { coefficient: coefficient(archard)?, length }
-        }
-    })
+        (self.entry.build)(&values).map_err(|Wrong { key, why }| match self.section.optional(key) {
+            Some(entry) => entry.error(why),
+            None => self.section.error(format_args!("{} {why}", self.section.name(key))),
+        })
+    }
+}
+
+/// The one law of a table, which may have a history beside it.
+fn given<'a, L: ?Sized>(
+    section: &Section<'a>,
+    table: &Table,
+    entries: &'static [&'static law::Entry<L>],
+) -> Result<Given<'a, L>> {
+    section.check(table)?;
+    let found = entries.iter().find_map(|law| Some((*law, section.optional(law.name)?)));
+    let (law, entry) = found.expect("the table has exactly one");
+    let section = entry.section()?;
+    section.check(&law.table())?;
+    let values = law.keys.iter().map(|key| value(&section, key)).collect::<Result<_>>()?;
+    Ok(Given { entry: law, section, values: Values::new(law.keys, values) })
+}
+
+/// The value of a key, or what is taken where it is left out.
+fn value(section: &Section, key: &'static Key) -> Result<Value> {
+    if !key.required && key.default.is_none() && section.optional(key.name).is_none() {
+        return Ok(Value::Missing);
+    }
+    match key.kind {
+        Kind::Word(words) => section.read(key).map(|place: usize| Value::Word(words[place])),
+        _ => section.read(key).map(Value::Number),
+    }
 }
 
 /// The table `history` beside a law.

@@ -18,7 +18,7 @@ const LOADS: [&str; 3] = ["indentation", "initial_force", "normal_force"];
 const AMPLITUDES: [&str; 3] = ["amplitude", "amplitude_ratio", "stick_ratio"];
 const DURATIONS: [&str; 3] = ["cycles", "tau", "until_rate"];
 const MODES: [&str; 3] = ["normal_oscillation", "orbit", "path"];
-const OTHERS: [&str; 4] = ["rig_stiffness", "tangential_control", "blocks", "repeat"];
+const OTHERS: [&str; 5] = ["rig_stiffness", "tangential_control", "blocks", "repeat", "frequency"];
 
 /// What the table says without a look at the contact.
 pub(super) struct Motion {
@@ -26,6 +26,8 @@ pub(super) struct Motion {
     pub control: TangentialControl,
     pub blocks: Vec<Block>,
     pub repeat: bool,
+    /// Cycles per second, Hz.
+    pub frequency: Option<f64>,
     path: Option<Arc<RecordedPath>>,
 }
 
@@ -75,7 +77,9 @@ pub(super) fn motion(section: &Section, rows: &Rows, clock: &mut OneClock) -> Re
         Some(entry) => entry.boolean()?,
         None => false,
     };
-    Ok(Motion { loading: Loading { load, amplitude, duration }, control, blocks, repeat, path })
+    let frequency =
+        section.optional("frequency").map(|entry| entry.positive(Dimension::FREQUENCY)).transpose()?;
+    Ok(Motion { loading: Loading { load, amplitude, duration }, control, blocks, repeat, frequency, path })
 }
 
 fn amplitude(section: &Section) -> Result<Amplitude> {
@@ -275,7 +279,7 @@ fn orbit(section: &Section, amplitude: f64) -> Result<Mode> {
 }
 
 /// Refuses what does not go together.
-pub(super) fn check(section: &Section, motion: &Motion, friction: &FrictionLaw) -> Result<()> {
+pub(super) fn check(section: &Section, motion: &Motion, friction: &dyn FrictionLaw) -> Result<()> {
     let mode = section.at_most_one_of(&MODES)?.0;
     if motion.holds_normal_force() {
         let cure = "give loading.initial_force or loading.indentation instead";
@@ -310,9 +314,10 @@ pub(super) fn check(section: &Section, motion: &Motion, friction: &FrictionLaw) 
             control.path()
         )));
     }
-    if matches!(friction, FrictionLaw::StaticKinetic { .. }) {
+    if friction.remembers_slip() {
         return Err(control.misplaced(format_args!(
-            "asks for {name}, which does not go together with friction.static-kinetic; remove one of the two"
+            "asks for {name}, which does not go together with friction.{}; remove one of the two",
+            friction.entry().name
         )));
     }
     Ok(())

@@ -13,8 +13,9 @@ use crate::contact::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
 use crate::contact::indenter::{Indenter, TabulatedProfile};
 use crate::error::{Error, Result};
 use crate::laws::conditions::Conditions;
+use crate::laws::friction::Coulomb;
 use crate::laws::loading::{Duration, Loading, Mode};
-use crate::laws::wear::{Archard, WearLaw};
+use crate::laws::wear::Archard;
 use crate::units::{Dimension, Table};
 
 /// Reads the whole document; the text is kept as it is.
@@ -26,7 +27,7 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     let indenter = indenter(&shape, rows, &mut warnings)?;
     let half_space = contact(root, &mut warnings)?;
     let Physics { loading, wear, conditions } = physics(root, &indenter, &half_space, rows)?;
-    let friction = conditions.friction.reference();
+    let friction = Coulomb { coefficient: conditions.friction.reference_coefficient() };
     let numerics = match root.optional("numerics") {
         Some(entry) => {
             let section = entry.section()?;
@@ -73,9 +74,10 @@ fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &R
     let wear_history = laws::history(&wear_table, true, &mut clock)?;
     let section = table(root, &keys::LOADING)?;
     let motion = motion::motion(&section, rows, &mut clock)?;
+    let wear = wear.build(motion.frequency)?;
 
     // Formed only where something refers to it. Whatever the wear coefficient, it is the same contact.
-    let coulomb = friction.reference();
+    let coulomb = friction.reference()?;
     let provisional = Archard { coefficient: half_space.normal_stiffness().recip() };
     let formed = OnceCell::new();
     let contact = || {
@@ -87,11 +89,10 @@ fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &R
     };
     let mode = motion::mode(&section, &motion, contact)?;
     let friction = friction.finish(|| contact().map(InitialContact::indentation))?;
-    motion::check(&section, &motion, &friction)?;
-    let reference_wear = match wear {
-        WearLaw::Archard(law) => law,
-        WearLaw::DissipatedEnergy { coefficient } => Archard::from_dissipated_energy(coefficient, &coulomb),
-        _ => contact()?.reference_wear(&wear),
+    motion::check(&section, &motion, &*friction)?;
+    let reference_wear = match wear.archard_coefficient(Some(coulomb.coefficient)) {
+        Some(coefficient) => Archard { coefficient },
+        None => contact()?.reference_wear(&*wear),
     };
     if !reference_wear.coefficient.is_normal() {
         return Err(wear_table.error(format_args!(
@@ -108,6 +109,7 @@ fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &R
         clock: clock.clock(),
         mode,
         holds_normal_force: motion.holds_normal_force(),
+        frequency: motion.frequency,
         blocks: motion.blocks,
         repeat: motion.repeat,
         tangential_control: motion.control,

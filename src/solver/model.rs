@@ -22,6 +22,7 @@ mod operators;
 mod output;
 mod past;
 mod schedule;
+mod spreading;
 mod stage;
 
 use std::f64::consts::PI;

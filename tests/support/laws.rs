@@ -1,11 +1,13 @@
 //! Laws and modes in the units of the cases, and runs under them.
 
+use std::sync::Arc;
+
 use fretwear::contact::InitialContact;
 use fretwear::contact::closed_form::LimitingShape;
 use fretwear::laws::conditions::Conditions;
-use fretwear::laws::friction::FrictionLaw;
+use fretwear::laws::friction::{FrictionLaw, LoadDependent, StaticKinetic};
 use fretwear::laws::loading::{Block, Mode};
-use fretwear::laws::wear::WearLaw;
+use fretwear::laws::wear::{DissipatedEnergy, NonLocal, PowerLaw, Threshold, WearLaw};
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Outcome, Plan, Simulation};
 use fretwear::solver::stepper::Sdirk;
@@ -17,19 +19,19 @@ pub fn plain(contact: &InitialContact) -> Conditions {
 }
 
 /// `p^α s^β` that wears as Archard's law does under the mean pressure and a slip of `0.3 d`.
-pub fn power(contact: &InitialContact, pressure_exponent: f64, slip_exponent: f64) -> WearLaw {
+pub fn power(contact: &InitialContact, pressure_exponent: f64, slip_exponent: f64) -> Arc<dyn WearLaw> {
     let pressure = contact.mean_pressure().powf(1.0 - pressure_exponent);
     let path = (4.0 * 0.3 * contact.indentation()).powf(1.0 - slip_exponent);
     let coefficient = contact.wear().coefficient * pressure * path;
-    WearLaw::PowerLaw { coefficient, pressure_exponent, slip_exponent }
+    Arc::new(PowerLaw { coefficient, pressure_exponent, slip_exponent })
 }
 
 /// Laws of wear that are local, without threshold.
-pub fn wear_laws(contact: &InitialContact) -> Vec<(&'static str, WearLaw)> {
+pub fn wear_laws(contact: &InitialContact) -> Vec<(&'static str, Arc<dyn WearLaw>)> {
     let coefficient = contact.wear().coefficient;
     vec![
-        ("Archard", WearLaw::Archard(*contact.wear())),
-        ("energy", WearLaw::DissipatedEnergy { coefficient }),
+        ("Archard", Arc::new(*contact.wear())),
+        ("energy", Arc::new(DissipatedEnergy { coefficient })),
         ("p^1.5", power(contact, 1.5, 1.0)),
         ("p^0.7", power(contact, 0.7, 1.0)),
         ("s^0.5", power(contact, 1.0, 0.5)),
@@ -38,24 +40,22 @@ pub fn wear_laws(contact: &InitialContact) -> Vec<(&'static str, WearLaw)> {
 }
 
 /// Those that leave the limit.
-pub fn other_wear_laws(contact: &InitialContact) -> Vec<(&'static str, WearLaw)> {
+pub fn other_wear_laws(contact: &InitialContact) -> Vec<(&'static str, Arc<dyn WearLaw>)> {
     let coefficient = contact.wear().coefficient;
     vec![
-        ("threshold", WearLaw::Threshold { coefficient, pressure: 0.1 * contact.mean_pressure() }),
-        ("non-local", WearLaw::NonLocal { coefficient, length: 0.1 }),
+        ("threshold", Arc::new(Threshold { coefficient, pressure: 0.1 * contact.mean_pressure() })),
+        ("non-local", Arc::new(NonLocal { coefficient, length: 0.1 })),
     ]
 }
 
-pub fn friction_laws(contact: &InitialContact) -> Vec<(&'static str, FrictionLaw)> {
-    let load = |exponent: f64| FrictionLaw::LoadDependent {
-        coefficient: 1.0,
-        exponent,
-        reference: contact.indentation(),
+pub fn friction_laws(contact: &InitialContact) -> Vec<(&'static str, Arc<dyn FrictionLaw>)> {
+    let load = |exponent: f64| {
+        Arc::new(LoadDependent { coefficient: 1.0, exponent, reference: contact.indentation() })
     };
-    let kinetic = FrictionLaw::StaticKinetic { static_coefficient: 1.0, kinetic_coefficient: 0.8 };
+    let kinetic = StaticKinetic { static_coefficient: 1.0, kinetic_coefficient: 0.8 };
     vec![
-        ("Coulomb", FrictionLaw::Coulomb(*contact.friction())),
-        ("static and kinetic", kinetic),
+        ("Coulomb", Arc::new(*contact.friction())),
+        ("static and kinetic", Arc::new(kinetic)),
         ("load-dependent -0.3", load(-0.3)),
         ("load-dependent 0.3", load(0.3)),
     ]

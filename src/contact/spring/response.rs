@@ -2,7 +2,7 @@
 
 use super::enclosing::{Circle, smallest_enclosing};
 use super::{Shakedown, SpringCycle, periodic};
-use crate::laws::friction::{Coulomb, FrictionLaw};
+use crate::laws::friction::Coulomb;
 use crate::laws::path::Path;
 
 /// Cells between no limit and the one that sticks.
@@ -54,7 +54,7 @@ impl Response {
         let circles: Vec<Circle> =
             level.points.iter().map(|point| Circle { centre: point.tangential, radius: 0.0 }).collect();
         let largest = smallest_enclosing(&circles).radius;
-        let law = FrictionLaw::Coulomb(Coulomb { coefficient: 1.0 });
+        let law = Coulomb { coefficient: 1.0 };
         let mut cycle = SpringCycle::default();
         let mut values = Vec::with_capacity((cells + 1) * width);
         for node in 0..cells {

@@ -2,7 +2,7 @@
 
 use super::enclosing::{Circle, smallest_enclosing};
 use super::{Shakedown, SpringCycle, steady_cycle};
-use crate::laws::friction::{Coulomb, FrictionLaw};
+use crate::laws::friction::FrictionLaw;
 use crate::laws::path::{Path, PathPoint};
 use crate::numerics::roots::bracketed;
 
@@ -38,26 +38,26 @@ const JUST_LIFTED: f64 = 1e-6;
 /// * `stiffness_ratio` -- `M`
 ///
 /// ```
-/// use fretwear::laws::friction::{Coulomb, FrictionLaw};
+/// use fretwear::laws::friction::Coulomb;
 /// use fretwear::laws::loading::Mode;
 /// use fretwear::laws::path::SampledPath;
 /// use fretwear::contact::spring::stick_compression;
 ///
-/// let law = FrictionLaw::Coulomb(Coulomb { coefficient: 0.5 });
+/// let law = Coulomb { coefficient: 0.5 };
 /// let path = SampledPath::new(&Mode::Tangential, 3.0, 1.0, 2).path;
 /// assert_eq!(stick_compression(&path, &law, 1.0), 6.0); // M U/μ_f
 /// ```
-pub fn stick_compression(path: &Path, law: &FrictionLaw, stiffness_ratio: f64) -> f64 {
+pub fn stick_compression(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> f64 {
     let lifted = path.largest_lift();
-    let loaded_always = match *law {
-        FrictionLaw::Coulomb(Coulomb { coefficient }) => {
+    if law.remembers_slip() {
+        return observed(path, law, stiffness_ratio, never_slips(path, law, stiffness_ratio));
+    }
+    let loaded_always = match law.coefficient() {
+        Some(coefficient) => {
             let factor = coefficient / stiffness_ratio;
             smallest_circle(path, |lift| factor * lift).radius / factor
         }
-        FrictionLaw::LoadDependent { .. } => load_dependent(path, law, stiffness_ratio, lifted),
-        FrictionLaw::StaticKinetic { .. } => {
-            return observed(path, law, stiffness_ratio, never_slips(path, law, stiffness_ratio));
-        }
+        None => load_dependent(path, law, stiffness_ratio, lifted),
     };
     let returns_as_it_came = lifted > 0.0
         && loaded_always <= lifted * (1.0 + 1e-12)
@@ -72,7 +72,7 @@ fn smallest_circle(path: &Path, radius: impl Fn(f64) -> f64) -> Circle {
 }
 
 /// The circles of radius `S(q - lift)/M` about the points have one point in common at `q*`: their excess falls as `q` grows.
-fn load_dependent(path: &Path, law: &FrictionLaw, stiffness_ratio: f64, lifted: f64) -> f64 {
+fn load_dependent(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64, lifted: f64) -> f64 {
     if lifted == 0.0 {
         return law.compression_at(stiffness_ratio * smallest_circle(path, |_| 0.0).radius);
     }
@@ -87,7 +87,7 @@ fn load_dependent(path: &Path, law: &FrictionLaw, stiffness_ratio: f64, lifted: 
 }
 
 /// A compression, m, that bears the whole path from where the spring was pressed on.
-fn never_slips(path: &Path, law: &FrictionLaw, stiffness_ratio: f64) -> f64 {
+fn never_slips(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> f64 {
     let least = |point: &PathPoint| {
         let [x, y] = point.tangential;
         law.compression_at(stiffness_ratio * x.hypot(y)) + point.lift
@@ -97,7 +97,7 @@ fn never_slips(path: &Path, law: &FrictionLaw, stiffness_ratio: f64) -> f64 {
 
 fn slips(
     path: &Path,
-    law: &FrictionLaw,
+    law: &dyn FrictionLaw,
     stiffness_ratio: f64,
     compression: f64,
     cycle: &mut SpringCycle,
@@ -107,7 +107,7 @@ fn slips(
 }
 
 /// Largest compression, m, of a spring that slips in the end, as far as levels tell; `high` sticks.
-fn observed(path: &Path, law: &FrictionLaw, stiffness_ratio: f64, mut high: f64) -> f64 {
+fn observed(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64, mut high: f64) -> f64 {
     let mut cycle = SpringCycle::default();
     let top = high;
     // Springs that are not compressed slip freely, which says nothing of those that are.

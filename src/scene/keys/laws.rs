@@ -1,6 +1,8 @@
 //! The indenter, friction and wear.
 
 use super::loading::MOST_TIMES;
+use crate::laws::entry::Entry;
+use crate::laws::{friction, wear};
 use crate::units::{Dimension, Form, Key, Kind, Range, Rule, Table};
 
 const fn positive(name: &'static str, about: &'static str) -> Key {
@@ -79,99 +81,55 @@ pub(in crate::scene) const INDENTER: Table = Table::new(
 )
 .rules(&[Rule::OneOf(SHAPES)]);
 
-const COULOMB: Table = Table::new(
-    "coulomb",
-    "Coulomb's law.",
-    &[positive("coefficient", "Friction coefficient.").example("0.6")],
-);
-const STATIC_KINETIC: Table = Table::new(
-    "static-kinetic",
-    "Springs are held harder while they stick than while they slip.",
-    &[
-        positive("static_coefficient", "Coefficient while a spring sticks.").example("0.7"),
-        positive("kinetic_coefficient", "Coefficient while it slips, not above the static one.")
-            .example("0.6"),
-    ],
-);
-const LOAD_DEPENDENT: Table = Table::new(
-    "load-dependent",
-    "Coefficient (q/reference)^exponent of the compression q of a spring.",
-    &[
-        positive("coefficient", "Coefficient at the reference compression.").example("0.6"),
-        Key::number("exponent", "Exponent; 0 is Coulomb's law.").range(Range::above(-1.0)).example("-0.1"),
-        length("reference_compression", "Compression of reference, m; by default the indentation.")
-            .example("1 um")
-            .optional(),
-    ],
-);
+/// Tables of laws.
+const fn tables<L: ?Sized, const N: usize>(laws: &'static [&'static Entry<L>]) -> [Table; N] {
+    let mut tables = [Table::new("", "", &[]); N];
+    let mut place = 0;
+    while place < N {
+        tables[place] = laws[place].table();
+        place += 1;
+    }
+    tables
+}
 
-pub(in crate::scene) const FRICTION: Table = Table::new(
-    "friction",
-    "Law of friction, exactly one, and how it changes.",
-    &[
-        Key::table(&COULOMB).optional(),
-        Key::table(&STATIC_KINETIC).optional(),
-        Key::table(&LOAD_DEPENDENT).optional(),
-        Key::table(&FRICTION_HISTORY).optional(),
-    ],
-)
-.rules(&[Rule::OneOf(&["coulomb", "static-kinetic", "load-dependent"])]);
+/// Their names.
+const fn names<const N: usize>(tables: &'static [Table]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut place = 0;
+    while place < N {
+        names[place] = tables[place].name;
+        place += 1;
+    }
+    names
+}
 
-const COEFFICIENT: Key = Key::quantity(
-    "coefficient",
-    Dimension::INVERSE_PRESSURE,
-    "Depth per sliding distance and pressure, 1/Pa or m³/(N m).",
-)
-.range(Range::POSITIVE)
-.example("1e-8 1/MPa");
+/// The keys of a table with one of some laws, and their history.
+const fn keys<const N: usize>(tables: &'static [Table], history: &'static Table) -> [Key; N] {
+    let mut keys = [Key::table(history).optional(); N];
+    let mut place = 0;
+    while place < tables.len() {
+        keys[place] = Key::table(&tables[place]).optional();
+        place += 1;
+    }
+    keys
+}
 
-const ARCHARD: Table = Table::new("archard", "Archard's law.", &[COEFFICIENT]);
-const DISSIPATED_ENERGY: Table = Table::new(
-    "dissipated-energy",
-    "Volume by the energy that friction dissipates.",
-    &[Key::quantity("coefficient", Dimension::INVERSE_PRESSURE, "Volume per energy, m³/J.")
-        .unit("m3 J-1")
-        .range(Range::POSITIVE)
-        .example("2e-5 mm^3/J")],
-);
-const POWER_LAW: Table = Table::new(
-    "power-law",
-    "Depth per cycle as pressure^α slip^β.",
-    &[
-        positive("coefficient", "Coefficient in Pa^-α m^(1-β), a plain number.").example("1e-14"),
-        positive("pressure_exponent", "Exponent α; 1 is Archard's law.").example("1"),
-        positive("slip_exponent", "Exponent β; 1 is Archard's law.").example("1"),
-    ],
-);
-const THRESHOLD: Table = Table::new(
-    "threshold",
-    "Archard's law above a pressure.",
-    &[
-        COEFFICIENT,
-        Key::quantity("pressure", Dimension::PRESSURE, "Pressure below which nothing wears, Pa.")
-            .range(Range::POSITIVE)
-            .example("50 MPa"),
-    ],
-);
-const NON_LOCAL: Table = Table::new(
-    "non-local",
-    "Archard's law, spread over a length.",
-    &[COEFFICIENT, length("length", "Length over which wear spreads, m.").example("5 um")],
-);
+const FRICTION_LAWS: usize = friction::ENTRIES.len();
+static FRICTION_TABLES: [Table; FRICTION_LAWS] = tables(friction::ENTRIES);
+static FRICTION_NAMES: [&str; FRICTION_LAWS] = names(&FRICTION_TABLES);
+static FRICTION_RULES: [Rule; 1] = [Rule::OneOf(&FRICTION_NAMES)];
+static FRICTION_KEYS: [Key; FRICTION_LAWS + 1] = keys(&FRICTION_TABLES, &FRICTION_HISTORY);
+pub(in crate::scene) const FRICTION: Table =
+    Table::new("friction", "Law of friction, exactly one, and how it changes.", &FRICTION_KEYS)
+        .rules(&FRICTION_RULES);
 
-pub(in crate::scene) const WEAR: Table = Table::new(
-    "wear",
-    "Law of wear, exactly one, and how it changes.",
-    &[
-        Key::table(&ARCHARD).optional(),
-        Key::table(&DISSIPATED_ENERGY).optional(),
-        Key::table(&POWER_LAW).optional(),
-        Key::table(&THRESHOLD).optional(),
-        Key::table(&NON_LOCAL).optional(),
-        Key::table(&WEAR_HISTORY).optional(),
-    ],
-)
-.rules(&[Rule::OneOf(&["archard", "dissipated-energy", "power-law", "threshold", "non-local"])]);
+const WEAR_LAWS: usize = wear::ENTRIES.len();
+static WEAR_TABLES: [Table; WEAR_LAWS] = tables(wear::ENTRIES);
+static WEAR_NAMES: [&str; WEAR_LAWS] = names(&WEAR_TABLES);
+static WEAR_RULES: [Rule; 1] = [Rule::OneOf(&WEAR_NAMES)];
+static WEAR_KEYS: [Key; WEAR_LAWS + 1] = keys(&WEAR_TABLES, &WEAR_HISTORY);
+pub(in crate::scene) const WEAR: Table =
+    Table::new("wear", "Law of wear, exactly one, and how it changes.", &WEAR_KEYS).rules(&WEAR_RULES);
 
 const ABOUT_HISTORY: &str = "A factor on the coefficients along the cycles.";
 const FINAL_FACTOR: Key =

@@ -29,6 +29,7 @@ pub(in crate::scene) const LOADING: Table = Table::new(
         .example("[[loading.blocks]] with cycles and amplitude_factor")
         .optional(),
         REPEAT,
+        FREQUENCY,
         Key::table(&NORMAL_OSCILLATION).optional(),
         Key::table(&ORBIT).optional(),
         Key::table(&PATH).optional(),
@@ -106,6 +107,15 @@ pub(in crate::scene) const RIG_STIFFNESS: Key = Key::quantity(
 .optional();
 pub(in crate::scene) const REPEAT: Key =
     Key::new("repeat", Kind::Switch, "After the last block the first one again.").default("false");
+
+pub(in crate::scene) const FREQUENCY: Key = Key::quantity(
+    "frequency",
+    Dimension::FREQUENCY,
+    "Cycles per second, Hz; laws of the friction power need it.",
+)
+.range(Range::POSITIVE)
+.example("10 Hz")
+.optional();
 
 pub(in crate::scene) const BLOCK: Table = Table::new(
     "blocks",

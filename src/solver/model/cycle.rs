@@ -3,30 +3,19 @@
 //! Eq. (20) carries the slip of the springs in each step of the period to the surface, Eq. (21) their compressions, and the law of wear
 //! makes of both the depth `W` worn in the cycle. The slip depth `S` of the model grows by `W`, its logarithm by `W/S`.
 
+use std::f64::consts::PI;
+
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
 use super::motion::{Energies, Motion};
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
-use crate::laws::friction::{Coulomb, FrictionLaw};
-use crate::laws::wear::{Archard, WearLaw};
+use crate::laws::wear::Rubbing;
 use crate::numerics::linear::dot;
 
 /// Change of the edge, relative, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
-
-/// Pressure, relative to the mean one of the unworn contact, below which a power law of it goes on in proportion: else wear by `p^α` with
-/// `α < 1` would end at an instant, in a root.
-const LEAST_PRESSURE: f64 = 1e-9;
-
-/// Depth of the gap, over the compression at the edge of stick, that debris of a law that is not local still fills. A choice: without an
-/// end, ground that has lost contact would go on wearing for as long as anything nearby is pressed on, and the gap would deepen until no
-/// contact is left. With it the run ends, with springs between no compression and that gap, by their history.
-const DEBRIS_LAYER: f64 = 0.1;
-
-/// Pressure, over the mean one of the unworn contact, from which on debris passes it on whole: without a kink at none.
-const LEAST_DEBRIS: f64 = 1e-3;
 
 /// Columns of a dense matrix that are formed at a time where only what follows from them is kept.
 const BLOCK: usize = 128;
@@ -87,12 +76,27 @@ struct Surface {
 impl Model {
     /// What a cycle does to the contact whose fields are given.
     pub fn cycle(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> CycleFields {
+        let mut cycle = self.local_cycle(loading, compression, fields);
+        if let Some(factor) = self.factor_at_contact(loading, fields, &cycle) {
+            cycle.growth.iter_mut().for_each(|growth| *growth *= factor);
+            cycle.volume *= factor;
+        }
+        cycle
+    }
+
+    /// Factor on all wear of a law that goes by what the contact as a whole dissipates.
+    fn factor_at_contact(&self, loading: &CycleLoading, fields: &Fields, cycle: &CycleFields) -> Option<f64> {
+        loading.wear.at_contact(cycle.dissipation / (PI * (fields.stick_zone.stick_area + fields.slip_area)))
+    }
+
+    /// What a cycle does by what happens at each place.
+    fn local_cycle(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> CycleFields {
         if let Some(cycle) = self.plain_cycle(loading, compression, fields) {
             return cycle;
         }
         let motion = self.motion(loading, compression, fields, false);
         let surface = self.surface(loading, &motion, compression, fields);
-        let worn = self.worn(&loading.wear, &surface, false);
+        let worn = self.worn(loading, &surface, false);
         let per_cycle = loading.cycles_per_period.recip();
         let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
         let energy = |part: fn(&Energies) -> f64| {
@@ -129,8 +133,7 @@ impl Model {
     ) -> Option<CycleFields> {
         let factor = self.slip_per_depth(loading, fields)?;
         let per_pressure = 4.0 * factor * self.archard(loading)?;
-        let FrictionLaw::Coulomb(Coulomb { coefficient }) = loading.friction else { return None };
-        let changed = coefficient / self.contact.friction().coefficient;
+        let changed = loading.friction.coefficient()? / self.contact.friction().coefficient;
         let dissipation = changed * changed * self.dissipation(fields, compression);
         Some(CycleFields {
             growth: fields.pressure.iter().map(|p| per_pressure * p).collect(),
@@ -146,7 +149,7 @@ impl Model {
 
     /// Slip over slip depth, `μ_f/M`, if the amplitude is that for which the mesh was made and the law is Coulomb's.
     pub(super) fn slip_per_depth(&self, loading: &CycleLoading, fields: &Fields) -> Option<f64> {
-        let FrictionLaw::Coulomb(Coulomb { coefficient }) = loading.friction else { return None };
+        let coefficient = loading.friction.coefficient()?;
         let ratio = self.contact.half_space().stiffness_ratio();
         let compression = ratio * loading.amplitude / coefficient;
         let same = (compression / fields.stick_zone.slip_compression - 1.0).abs() < SAME;
@@ -159,24 +162,12 @@ impl Model {
 
     /// `k_w` where wear is in proportion to pressure and slip.
     fn archard(&self, loading: &CycleLoading) -> Option<f64> {
-        match (loading.wear, loading.friction) {
-            (WearLaw::Archard(Archard { coefficient }), _) => Some(coefficient),
-            (WearLaw::DissipatedEnergy { coefficient }, FrictionLaw::Coulomb(friction)) => {
-                Some(coefficient * friction.coefficient)
-            }
-            _ => None,
-        }
+        loading.wear.archard_coefficient(loading.friction.coefficient())
     }
 
     /// Worn volume over dissipated energy, 1/Pa, where they are in proportion.
     pub(super) fn volume_per_energy(&self, loading: &CycleLoading) -> Option<f64> {
-        match (loading.wear, loading.friction) {
-            (WearLaw::DissipatedEnergy { coefficient }, _) => Some(coefficient),
-            (WearLaw::Archard(Archard { coefficient }), FrictionLaw::Coulomb(friction)) => {
-                Some(coefficient / friction.coefficient)
-            }
-            _ => None,
-        }
+        loading.wear.volume_per_energy(loading.friction.coefficient())
     }
 
     /// Pressures and slip on the surface in each step of the period.
@@ -193,13 +184,14 @@ impl Model {
         let mut pressure = Mat::zeros(n, motion.load.ncols());
         let pressure_scale = self.pressure_scale(fields);
         self.pressures(&mut pressure, &motion.load, pressure_scale);
-        if let WearLaw::NonLocal { length, .. } = loading.wear {
+        if let Some(spreading) = loading.wear.spreading() {
             // Debris passes pressure on, not tension, and into gaps that it can fill.
-            let least = LEAST_DEBRIS * self.contact.mean_pressure();
-            let pressed = Mat::from_fn(n, pressure.ncols(), |i, m| pressing(pressure[(i, m)], least).0);
-            product(&mut pressure, self.smearing(fields, length).as_ref(), pressed.as_ref(), 1.0);
+            let mean = self.contact.mean_pressure();
+            let pressed =
+                Mat::from_fn(n, pressure.ncols(), |i, m| spreading.passed_on(pressure[(i, m)], mean).0);
+            product(&mut pressure, self.averages(fields, spreading).as_ref(), pressed.as_ref(), 1.0);
             for i in 0..n {
-                let (filled, _) = self.filled(loading, compression.get(i).copied());
+                let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
                 (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
             }
         }
@@ -244,7 +236,8 @@ impl Model {
     }
 
     /// Depth worn in a period.
-    fn worn(&self, law: &WearLaw, surface: &Surface, slopes: bool) -> Worn {
+    fn worn(&self, loading: &CycleLoading, surface: &Surface, slopes: bool) -> Worn {
+        let law = &*loading.wear;
         let (n, steps) = (surface.path.nrows(), surface.path.ncols());
         let size = if slopes { n } else { 0 };
         let mut worn = Worn {
@@ -252,35 +245,30 @@ impl Model {
             by_pressure: Mat::zeros(size, steps),
             by_path: Mat::zeros(size, steps),
         };
-        let least = LEAST_PRESSURE * self.contact.mean_pressure();
+        let mean_pressure = self.contact.mean_pressure();
         for i in 0..n {
             let total: f64 = (0..steps).map(|m| surface.path[(i, m)]).sum();
             for m in 0..steps {
-                let p = surface.pressure[(i, m.min(surface.pressure.ncols() - 1))];
+                let pressure = surface.pressure[(i, m.min(surface.pressure.ncols() - 1))];
                 let path = surface.path[(i, m)];
-                let (coefficient, value, slope) = match *law {
-                    WearLaw::Archard(Archard { coefficient })
-                    | WearLaw::DissipatedEnergy { coefficient }
-                    | WearLaw::NonLocal { coefficient, .. } => (coefficient, p, 1.0),
-                    WearLaw::Threshold { coefficient, pressure } => {
-                        (coefficient, (p - pressure).max(0.0), if p > pressure { 1.0 } else { 0.0 })
-                    }
-                    WearLaw::PowerLaw { coefficient, pressure_exponent, slip_exponent } => {
-                        let (value, slope) = eased_power(p, pressure_exponent, least);
-                        let lengthened = if total > 0.0 { total.powf(slip_exponent - 1.0) } else { 0.0 };
-                        (coefficient * lengthened, value, slope)
-                    }
-                };
-                worn.depth[i] += coefficient * value * path;
+                let rate = law.rate(&Rubbing { pressure, path: total, mean_pressure });
+                worn.depth[i] += rate.depth * path;
                 if slopes {
-                    worn.by_pressure[(i, m)] = coefficient * slope * path;
-                    worn.by_path[(i, m)] = coefficient * value;
+                    worn.by_pressure[(i, m)] = rate.by_pressure * path;
+                    worn.by_path[(i, m)] = rate.depth;
                 }
             }
-            if let (true, WearLaw::PowerLaw { slip_exponent, .. }) = (slopes && total > 0.0, law) {
-                let shared = (slip_exponent - 1.0) * worn.depth[i] / total;
+            if slopes && total > 0.0 {
+                let shared = law.path_exponent() * worn.depth[i] / total;
                 for m in 0..steps {
                     worn.by_path[(i, m)] += shared;
+                }
+            }
+            if let Some([depth, slope]) = law.of_cycle(worn.depth[i] / loading.cycles_per_period) {
+                worn.depth[i] = depth * loading.cycles_per_period;
+                for m in 0..if slopes { steps } else { 0 } {
+                    worn.by_pressure[(i, m)] *= slope;
+                    worn.by_path[(i, m)] *= slope;
                 }
             }
         }
@@ -295,7 +283,9 @@ impl Model {
         cycle: &CycleFields,
         factor: f64,
     ) -> Option<PlainSlopes> {
-        let per_pressure = factor * 4.0 * self.slip_per_depth(loading, fields)? * self.archard(loading)?;
+        let at_contact = self.factor_at_contact(loading, fields, cycle).unwrap_or(1.0);
+        let per_pressure =
+            at_contact * factor * 4.0 * self.slip_per_depth(loading, fields)? * self.archard(loading)?;
         Some(PlainSlopes {
             by_pressure: per_pressure * self.pressure_scale(fields),
             by_slip_area: cycle
@@ -333,24 +323,21 @@ impl Model {
         }
         let motion = self.motion(loading, compression, fields, true);
         let surface = self.surface(loading, &motion, compression, fields);
-        let worn = self.worn(&loading.wear, &surface, true);
+        let worn = self.worn(loading, &surface, true);
         let (steps, components) = (motion.steps(), motion.components);
         let along = Mat::from_fn(n, steps * components, |i, c| {
             let step = c / components;
             let slips = surface.path[(i, step)] > 0.0;
             if slips { worn.by_path[(i, step)] * surface.direction[(i, c)] } else { 0.0 }
         });
-        let smeared = match loading.wear {
-            WearLaw::NonLocal { length, .. } => {
-                Some(self.smeared_pressure(loading, &motion, compression, fields, length))
-            }
-            _ => None,
-        };
-        let pressure = |i: usize, j: usize| match &smeared {
-            Some(smeared) => smeared[(i, j)],
+        let spreading = loading.wear.spreading();
+        let spread = spreading.map(|it| self.spread_pressure(loading, &motion, compression, fields, it));
+        let pressure = |i: usize, j: usize| match &spread {
+            Some(spread) => spread[(i, j)],
             None => self.operators.abel.pressure(i, j),
         };
-        let per_cycle = factor / loading.cycles_per_period;
+        let at_contact = self.factor_at_contact(loading, fields, cycle).unwrap_or(1.0);
+        let per_cycle = at_contact * factor / loading.cycles_per_period;
         let scale = fields.slip_area.powf(self.mu());
         let profile = self.operators.abel.profile();
         let total: Vec<f64> = (0..n).map(|i| worn.by_pressure.row(i).iter().sum()).collect();
@@ -375,9 +362,9 @@ impl Model {
                 }
             }
         }
-        if let WearLaw::NonLocal { .. } = loading.wear {
+        if let Some(spreading) = spreading {
             for j in 0..inner {
-                let (filled, slope) = self.filled(loading, Some(compression[j]));
+                let (filled, slope) = self.filled(loading, spreading, Some(compression[j]));
                 if filled > 0.0 {
                     matrix[(j, j)] += factor * cycle.growth[j] * slope / filled;
                 }
@@ -399,8 +386,8 @@ impl Model {
         self.evaluate_at(&fields.stick_zone, slip_area, compression, &mut moved);
         let after = if loading.path.is_some() {
             // What springs do is a matter of their compressions alone.
-            let worn = self.worn(&loading.wear, &self.surface(loading, &motion, compression, &moved), false);
-            growth(loading, &worn, &moved)
+            let worn = self.worn(loading, &self.surface(loading, &motion, compression, &moved), false);
+            growth(loading, &worn, &moved).into_iter().map(|growth| at_contact * growth).collect()
         } else {
             self.cycle(loading, compression, &moved).growth
         };
@@ -410,7 +397,7 @@ impl Model {
     }
 
     /// Pressures over `scale`, shape `(springs, steps)`, of loads of the springs inside the edge, shape `(springs - 1, steps)`.
-    fn pressures(&self, to: &mut Mat<f64>, load: &Mat<f64>, scale: f64) {
+    pub(super) fn pressures(&self, to: &mut Mat<f64>, load: &Mat<f64>, scale: f64) {
         let inner = load.nrows();
         let next = |j: usize, m: usize| if j + 1 < inner { load[(j + 1, m)] } else { 0.0 };
         let differences = Mat::from_fn(inner, load.ncols(), |j, m| next(j, m) - load[(j, m)]);
@@ -449,76 +436,8 @@ impl Model {
             * dot(self.operators.abel.spring_sum(), &densities)
     }
 
-    /// How far debris fills the gap under a spring of some compression at the largest indentation, and the derivative.
-    ///
-    /// ```text
-    /// 1 in contact,    (1 - (q/h)²)² for -h < q < 0,    0 beyond
-    /// ```
-    fn filled(&self, loading: &CycleLoading, compression: Option<f64>) -> (f64, f64) {
-        let Some(compression) = compression else { return (1.0, 0.0) };
-        let layer = DEBRIS_LAYER * self.contact.slip_compression();
-        let part = ((compression - loading.lift) / layer).clamp(-1.0, 0.0);
-        let left = 1.0 - part * part;
-        (left * left, -4.0 * left * part / layer)
-    }
-
-    /// How the pressure that debris passes on follows the compressions, over the factor of Eq. (21).
-    fn smeared_pressure(
-        &self,
-        loading: &CycleLoading,
-        motion: &Motion,
-        compression: &[f64],
-        fields: &Fields,
-        length: f64,
-    ) -> Mat<f64> {
-        let (n, inner) = (self.springs(), self.springs() - 1);
-        let steps = motion.load.ncols();
-        let mut pressed = Mat::zeros(n, steps);
-        self.pressures(&mut pressed, &motion.load, self.pressure_scale(fields));
-        let least = LEAST_DEBRIS * self.contact.mean_pressure();
-        let mean = |i: usize| pressed.row(i).iter().sum::<f64>() / steps as f64;
-        let slopes: Vec<f64> = (0..n).map(|i| pressing(mean(i), least).1).collect();
-        let touching = Mat::from_fn(n, inner, |i, j| slopes[i] * self.operators.abel.pressure(i, j));
-        let mut smeared = Mat::zeros(n, inner);
-        product(&mut smeared, self.smearing(fields, length).as_ref(), touching.as_ref(), 1.0);
-        for i in 0..n {
-            let (filled, _) = self.filled(loading, compression.get(i).copied());
-            (0..inner).for_each(|j| smeared[(i, j)] *= filled);
-        }
-        smeared
-    }
-
-    /// Averages over a Gaussian weight along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well
-    /// inside and to nothing there: else ground would wear where no pressure is at all.
-    ///
-    /// ```text
-    /// sum of row r = 1 - exp(-(a - r)/length)
-    /// ```
-    fn smearing(&self, fields: &Fields, length: f64) -> Mat<f64> {
-        let radii: Vec<f64> = self.spring_radii(fields);
-        let n = radii.len();
-        let inside = fields.stick_zone.stick_area.sqrt();
-        let width = |j: usize| {
-            let before = if j == 0 { inside } else { radii[j - 1] };
-            0.5 * (radii[(j + 1).min(n - 1)] - before)
-        };
-        let widths: Vec<f64> = (0..n).map(width).collect();
-        let mut weights = Mat::from_fn(n, n, |i, j| {
-            let distance = (radii[i] - radii[j]) / length;
-            widths[j] * (-0.5 * distance * distance).exp()
-        });
-        for i in 0..n {
-            let sum: f64 = weights.row(i).iter().sum();
-            let kept = -(-(radii[n - 1] - radii[i]) / length).exp_m1();
-            for j in 0..n {
-                weights[(i, j)] *= kept / sum;
-            }
-        }
-        weights
-    }
-
     /// Radii of the springs, m.
-    fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
+    pub(super) fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
         let squared = |x: &f64| fields.stick_zone.stick_area + fields.slip_area * x;
         self.operators.abel.nodes()[1..].iter().map(|x| squared(x).sqrt()).collect()
     }
@@ -543,7 +462,7 @@ fn growth(loading: &CycleLoading, worn: &Worn, fields: &Fields) -> Vec<f64> {
 }
 
 /// `to = scale · left · right`.
-fn product(to: &mut Mat<f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>, scale: f64) {
+pub(super) fn product(to: &mut Mat<f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>, scale: f64) {
     matmul(to.as_mut(), Accum::Replace, left, right, scale, Par::Seq);
 }
 
@@ -572,25 +491,4 @@ fn normalise(vectors: &mut Mat<f64>, components: usize) {
             }
         }
     }
-}
-
-/// Pressure that debris passes on, and its slope: none of tension, and from `least` on all but half of that.
-fn pressing(p: f64, least: f64) -> (f64, f64) {
-    if p <= 0.0 {
-        (0.0, 0.0)
-    } else if p < least {
-        (0.5 * p * p / least, p / least)
-    } else {
-        (p - 0.5 * least, 1.0)
-    }
-}
-
-/// `p^α` and its slope, odd in `p`, in proportion to `p` well below `least`.
-fn eased_power(p: f64, exponent: f64, least: f64) -> (f64, f64) {
-    if exponent == 1.0 {
-        return (p, 1.0);
-    }
-    let squared = p * p + least * least;
-    let power = squared.powf(0.5 * (exponent - 1.0));
-    (p * power, power * (1.0 + (exponent - 1.0) * p * p / squared))
 }

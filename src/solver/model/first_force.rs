@@ -15,7 +15,7 @@ const NODES: usize = 100;
 /// ```
 pub(super) fn first_force(
     contact: &InitialContact,
-    friction: &FrictionLaw,
+    friction: &dyn FrictionLaw,
     amplitude: f64,
     depth: f64,
 ) -> Result<f64> {

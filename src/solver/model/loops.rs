@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use super::schedule::CycleLoading;
 use super::{CycleFields, Fields, Model};
 use crate::contact::spring::{Shakedown, SpringCycle, steady_cycle};
-use crate::laws::friction::FrictionLaw;
 use crate::laws::loading::Mode;
 use crate::laws::path::{Path, PathPoint};
 use crate::numerics::quadrature::Rule;
@@ -73,8 +72,8 @@ impl Model {
         fields: &Fields,
         steps: usize,
     ) -> FrettingLoop {
-        let first = FrictionLaw::Coulomb(*self.contact.friction());
-        let unchanged = loading.friction == first && loading.amplitude == self.contact.amplitude();
+        let unchanged = loading.friction.coefficient() == Some(self.contact.friction().coefficient)
+            && loading.amplitude == self.contact.amplitude();
         if unchanged && self.slip_per_depth(loading, fields).is_some() {
             let displacement = to_and_fro(self.contact.amplitude(), steps);
             let force = self.fretting_loop(fields, compression, &displacement);
@@ -115,7 +114,7 @@ impl Model {
         let mut work = 0.0;
         let mut spring = SpringCycle::default();
         let mut add = |stiffness: f64, compression: f64| {
-            steady_cycle(path, &loading.friction, ratio, compression, &Shakedown::default(), &mut spring);
+            steady_cycle(path, &*loading.friction, ratio, compression, &Shakedown::default(), &mut spring);
             work += stiffness * spring.work;
             for (axis, force) in force.iter_mut().enumerate() {
                 for (total, deflection) in force[1..].iter_mut().zip(&spring.deflection) {

@@ -6,8 +6,8 @@ use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
 use crate::contact::spring::{Response, Shakedown, SpringCycle, steady_cycle};
 use crate::contact::stick_slip::slip_amplitude_of_spring;
+use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
-use crate::laws::wear::WearLaw;
 use crate::numerics::linear::dot;
 use crate::numerics::roots::bracketed;
 
@@ -90,7 +90,7 @@ impl Model {
         let amplitude = self.amplitude(loading, &lifted, fields);
         let slip: Vec<(f64, f64)> = lifted
             .iter()
-            .map(|q| slip_amplitude_of_spring(&loading.friction, ratio, amplitude, *q))
+            .map(|q| slip_amplitude_of_spring(&*loading.friction, ratio, amplitude, *q))
             .collect();
         let energies = |(q, slip): (&f64, &(f64, f64))| -> Energies {
             if slip.0 == 0.0 {
@@ -108,6 +108,7 @@ impl Model {
             }
         };
         let inner = compression.len();
+        let bearing = Bearing::new(loading);
         let amplitude_slope = (slopes && loading.control != AmplitudeControl::Displacement)
             .then(|| self.amplitude_slope(loading, &lifted, &slip, fields));
         let rows = if slopes { inner } else { 0 };
@@ -116,11 +117,11 @@ impl Model {
             slip: Mat::from_fn(inner, 1, |j, _| 4.0 * slip[j].0),
             free: vec![4.0 * amplitude],
             components: 1,
-            load: Mat::from_fn(inner, 1, |j, _| bearing(loading, compression[j], loading.lift)),
+            load: Mat::from_fn(inner, 1, |j, _| bearing.of(compression[j], loading.lift)),
             energies: lifted.iter().zip(&slip).map(energies).collect(),
             slip_slope: Mat::from_fn(rows, 1, |j, _| 4.0 * slip[j].1),
             load_slope: Mat::from_fn(rows, 1, |j, _| {
-                self.slope(|q| bearing(loading, q, loading.lift), compression[j])
+                self.slope(|q| bearing.of(q, loading.lift), compression[j])
             }),
             amplitude_slope,
         }
@@ -172,9 +173,9 @@ impl Model {
         }
         let count = path.points.len();
         let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
+        let bearing = Bearing::new(loading);
         let different = if path.is_level() { 1 } else { steps };
-        let mean =
-            |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing(loading, q, lift)).iter().sum::<f64>();
+        let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing.of(q, lift)).iter().sum::<f64>();
         motion.load = Mat::from_fn(inner, different, |j, m| mean(compression[j], m));
         motion.load_slope = Mat::from_fn(if slopes { inner } else { 0 }, different, |j, m| {
             self.slope(|q| mean(q, m), compression[j])
@@ -313,7 +314,7 @@ impl PathSprings<'_> {
         let cycle = &mut self.cycle;
         steady_cycle(
             self.path,
-            &self.loading.friction,
+            &*self.loading.friction,
             self.ratio,
             compression,
             &Shakedown::default(),
@@ -345,18 +346,30 @@ impl PathSprings<'_> {
     }
 }
 
-/// What the law of wear takes for the load of a spring of this compression at the largest indentation, lifted by `lift`, m: its
-/// compression, or what resists its slip where wear goes by energy.
-fn bearing(loading: &CycleLoading, compression: f64, lift: f64) -> f64 {
-    let lifted = compression - lift;
-    // A spring that is never lifted loses contact by round-off only, about zero in the limit; that is better left as it is, for it wears
-    // back. Else springs may lose contact.
-    let by_round_off = lift == 0.0 && lifted < 0.0;
-    match loading.wear {
-        WearLaw::DissipatedEnergy { .. } if by_round_off => -loading.friction.kinetic_strength(-lifted),
-        WearLaw::DissipatedEnergy { .. } => loading.friction.kinetic_strength(lifted),
-        WearLaw::NonLocal { .. } => lifted.max(0.0),
-        _ if by_round_off => lifted,
-        _ => lifted.max(0.0),
+/// What the law of wear takes for the load of a spring.
+struct Bearing<'a> {
+    /// The law that says what resists slip, where wear takes the traction.
+    traction: Option<&'a dyn FrictionLaw>,
+    spreads: bool,
+}
+
+impl<'a> Bearing<'a> {
+    fn new(loading: &'a CycleLoading) -> Self {
+        let traction = loading.wear.takes_traction().then_some(&*loading.friction);
+        Self { traction, spreads: loading.wear.spreading().is_some() }
+    }
+
+    /// Of a spring of this compression at the largest indentation, lifted by `lift`, m: its compression, or what resists its slip.
+    fn of(&self, compression: f64, lift: f64) -> f64 {
+        let lifted = compression - lift;
+        // A spring that is never lifted loses contact by round-off only, about zero in the limit; that is better left as it is, for it wears
+        // back. Else springs may lose contact.
+        let by_round_off = lift == 0.0 && lifted < 0.0;
+        match self.traction {
+            Some(law) if by_round_off => -law.kinetic_strength(-lifted),
+            Some(law) => law.kinetic_strength(lifted),
+            None if by_round_off && !self.spreads => lifted,
+            None => lifted.max(0.0),
+        }
     }
 }

@@ -101,6 +101,9 @@ impl MovingStick {
     /// differ by their amplitudes alone.
     pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
         let conditions = schedule.conditions();
+        if *schedule.friction_along_energy() != History::Constant {
+            check_along_energy(schedule, slides)?;
+        }
         if slides {
             let sliding = conditions.holds_normal_force && conditions.blocks.is_empty();
             let cause = Cause::Sliding(contact.normal_force());
@@ -110,7 +113,7 @@ impl MovingStick {
             (true, TangentialControl::Displacement) => Some(Cause::NormalForce(contact.normal_force())),
             (true, _) => unreachable!("no schedule holds both forces"),
             (false, TangentialControl::Displacement) => {
-                let changes = conditions.friction_history != History::Constant;
+                let changes = *schedule.friction_change() != History::Constant;
                 match &conditions.blocks[..] {
                     [] => changes.then_some(Cause::Friction),
                     blocks => {
@@ -142,7 +145,7 @@ impl MovingStick {
                     .into(),
             });
         }
-        let [falls, rises] = directions(&conditions.friction_history);
+        let [falls, rises] = directions(schedule.friction_change());
         let outwards = match cause {
             Cause::NormalForce(_) if falls || !conditions.blocks.is_empty() => {
                 return Err(Error::Inconsistent {
@@ -316,6 +319,36 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
 }
 
+/// Refuses what is not followed while friction changes with the energy that it dissipates.
+fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
+    let conditions = schedule.conditions();
+    let beside = [
+        (conditions.friction_history != History::Constant, "friction.history", "leave it out"),
+        (!conditions.blocks.is_empty(), "loading.blocks", "leave them out"),
+        (
+            conditions.holds_normal_force,
+            "loading.normal_force",
+            "give loading.initial_force or loading.indentation",
+        ),
+        (
+            conditions.tangential_control != TangentialControl::Displacement,
+            "a held tangential force or a rig",
+            "give the amplitude of the contact",
+        ),
+        (schedule.lifts(), "an indentation that changes within a period", "leave out the normal oscillation"),
+        (slides, "an amplitude at which the contact slides as a whole", "reduce the amplitude"),
+    ];
+    match beside.iter().find(|(is_there, ..)| *is_there) {
+        None => Ok(()),
+        Some((_, what, cure)) => Err(Error::Inconsistent {
+            what: "friction",
+            why: format!(
+                "changes with the energy that it dissipates, and so does the edge of stick; that is not followed beside {what}; {cure}"
+            ),
+        }),
+    }
+}
+
 /// `∫_0^c x^k q dx` of unworn ground, m^(2+k).
 fn unworn_load(profile: &EquivalentProfile, radius: f64, slip_compression: f64) -> f64 {
     let exponent = 1.0 + profile.grading();
@@ -367,7 +400,18 @@ impl Model {
         let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
         match &state.stick {
             Some(stick) if tangential => self.displaced(loading, self.contact.indentation() - stick.depth),
-            _ => loading,
+            _ => self.after_energy(loading, state.dissipated_energy),
+        }
+    }
+
+    /// What acts when friction has dissipated some energy, J.
+    pub fn after_energy(&self, loading: CycleLoading, energy: f64) -> CycleLoading {
+        match self.schedule.friction_along_energy() {
+            History::Constant => loading,
+            history => {
+                let area = PI * self.contact.contact_radius().powi(2);
+                CycleLoading { friction: loading.friction.scaled(history.at(energy / area)), ..loading }
+            }
         }
     }
 
@@ -427,7 +471,7 @@ impl Model {
         let largest = self.contact.slip_compression();
         let excess = |compression: f64| {
             let amplitude = loading.friction.static_strength(compression) / ratio;
-            let force = super::first_force::first_force(&self.contact, &loading.friction, amplitude, depth)
+            let force = super::first_force::first_force(&self.contact, &*loading.friction, amplitude, depth)
                 .unwrap_or(f64::NAN);
             loading.excess(force, amplitude)
         };

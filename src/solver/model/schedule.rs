@@ -39,9 +39,9 @@ impl AmplitudeControl {
 #[derive(Debug, Clone)]
 pub struct CycleLoading {
     /// Law of friction.
-    pub friction: FrictionLaw,
+    pub friction: Arc<dyn FrictionLaw>,
     /// Law of wear.
-    pub wear: WearLaw,
+    pub wear: Arc<dyn WearLaw>,
     /// Tangential amplitude `U`, m, as given: of the contact in the first cycle, or of the far end of a rig.
     pub amplitude: f64,
     /// What decides the amplitude of the contact.
@@ -65,7 +65,7 @@ impl CycleLoading {
     /// Compression at the largest indentation below which springs slip in this cycle, m, at the amplitude given.
     pub fn slip_compression(&self, stiffness_ratio: f64) -> f64 {
         match &self.path {
-            Some(path) => stick_compression(path, &self.friction, stiffness_ratio),
+            Some(path) => stick_compression(path, &*self.friction, stiffness_ratio),
             None => self.friction.compression_at(stiffness_ratio * self.amplitude) + self.lift,
         }
     }
@@ -100,6 +100,8 @@ pub struct Schedule {
     ends: Vec<f64>,
     /// At the start of the histories, one per block, at least one.
     loadings: Vec<CycleLoading>,
+    /// Factor on friction along the energy dissipated, J/m².
+    friction_along_energy: History,
     largest_indentation: f64,
 }
 
@@ -124,21 +126,21 @@ impl Schedule {
         let ends: Vec<f64> = ends.collect();
         let resolved = resolution.resolved || conditions.mode != Mode::Tangential;
         let friction = conditions.friction.scaled(conditions.friction_history.at(0.0));
-        let driven = driven_amplitude(contact, conditions, &friction)?;
+        let driven = driven_amplitude(contact, conditions, &*friction)?;
         let mut loadings = Vec::with_capacity(blocks.len());
         let mut depths = Vec::with_capacity(blocks.len());
         for block in &blocks {
             let (amplitude, indentation) =
                 (driven * block.amplitude_factor, contact.indentation() * block.indentation_factor);
             let mut loading = CycleLoading {
-                friction: conditions.friction,
-                wear: conditions.wear,
+                friction: Arc::clone(&conditions.friction),
+                wear: Arc::clone(&conditions.wear),
                 amplitude,
                 control: match conditions.tangential_control {
                     TangentialControl::Displacement => AmplitudeControl::Displacement,
                     TangentialControl::Rig { stiffness } => AmplitudeControl::Rig(stiffness),
                     TangentialControl::Force => {
-                        AmplitudeControl::Force(first_force(contact, &friction, amplitude, indentation)?)
+                        AmplitudeControl::Force(first_force(contact, &*friction, amplitude, indentation)?)
                     }
                 },
                 lift: 0.0,
@@ -154,7 +156,7 @@ impl Schedule {
                     SampledPath::new(&mode, amplitude, indentation, resolution.substeps.unwrap_or(fewest));
                 depth = sampled.largest_indentation;
                 loading.cycles_per_period = f64::from(sampled.oscillations);
-                loading.response = response(&sampled.path, &loading.friction, &loadings);
+                loading.response = response(&sampled.path, &*loading.friction, &loadings);
                 loading.path = Some(Arc::new(sampled.path));
             }
             loadings.push(loading);
@@ -168,7 +170,9 @@ impl Schedule {
                 None => loading.lift = lift,
             }
         }
-        Ok(Self { conditions: conditions.clone(), clock_rate, ends, loadings, largest_indentation })
+        let friction_along_energy = conditions.friction.along_energy();
+        let conditions = conditions.clone();
+        Ok(Self { conditions, clock_rate, ends, loadings, friction_along_energy, largest_indentation })
     }
 
     /// Largest indentation of the run at which cycles begin, m.
@@ -194,6 +198,19 @@ impl Schedule {
         loading
     }
 
+    /// How friction changes along the cycles, or along the energy dissipated: never along both.
+    pub fn friction_change(&self) -> &History {
+        match self.friction_along_energy {
+            History::Constant => &self.conditions.friction_history,
+            _ => &self.friction_along_energy,
+        }
+    }
+
+    /// Factor on friction along the energy dissipated per area of the first contact, J/m².
+    pub fn friction_along_energy(&self) -> &History {
+        &self.friction_along_energy
+    }
+
     /// The first cycle of each block, with the laws as they are at the start.
     pub fn first_cycles(&self) -> impl Iterator<Item = CycleLoading> {
         let mut start = 0.0;
@@ -215,7 +232,7 @@ impl Schedule {
 
     /// Everything that acts at some time, with friction at its smallest and at its largest.
     pub fn extremes(&self) -> impl Iterator<Item = CycleLoading> {
-        let range = self.conditions.friction_history.range();
+        let range = self.friction_change().range();
         self.loadings.iter().flat_map(move |loading| {
             range.map(|factor| CycleLoading { friction: loading.friction.scaled(factor), ..loading.clone() })
         })
@@ -223,7 +240,7 @@ impl Schedule {
 
     /// Everything that acts in the end: the last block, or all of them where they are repeated, with friction as it is then.
     pub fn lasting(&self) -> impl Iterator<Item = CycleLoading> {
-        let factor = self.conditions.friction_history.last();
+        let factor = self.friction_change().last();
         let passed = if self.conditions.repeat { 0 } else { self.loadings.len() - 1 };
         self.loadings[passed..]
             .iter()
@@ -311,16 +328,15 @@ impl Schedule {
         let conditions = &self.conditions;
         conditions.blocks.is_empty()
             && conditions.mode == Mode::Tangential
-            && matches!(conditions.friction, FrictionLaw::Coulomb(_))
-            && conditions.friction_history == History::Constant
+            && conditions.friction.coefficient().is_some()
+            && *self.friction_change() == History::Constant
             && conditions.tangential_control == TangentialControl::Displacement
     }
 
     /// Whether nothing makes a kink in wear along the slip annulus. A resolved cycle does: it takes what is pulled as without contact.
     pub fn wears_smoothly(&self) -> bool {
-        self.is_uniform()
-            && !self.resolves()
-            && matches!(self.conditions.wear, WearLaw::Archard(_) | WearLaw::DissipatedEnergy { .. })
+        let Conditions { wear, friction, .. } = &self.conditions;
+        self.is_uniform() && !self.resolves() && wear.archard_coefficient(friction.coefficient()).is_some()
     }
 }
 
@@ -351,7 +367,7 @@ fn check_forces(conditions: &Conditions) -> Result<()> {
 fn driven_amplitude(
     contact: &InitialContact,
     conditions: &Conditions,
-    friction: &FrictionLaw,
+    friction: &dyn FrictionLaw,
 ) -> Result<f64> {
     let amplitude = contact.amplitude();
     match conditions.tangential_control {
@@ -363,7 +379,7 @@ fn driven_amplitude(
 }
 
 /// The table of a path that turns at constant indentation; that of an earlier block with the same path, if there is one.
-fn response(path: &Path, friction: &FrictionLaw, before: &[CycleLoading]) -> Option<Arc<Response>> {
+fn response(path: &Path, friction: &dyn FrictionLaw, before: &[CycleLoading]) -> Option<Arc<Response>> {
     if path.is_straight() || friction.static_factor() != 1.0 {
         return None;
     }

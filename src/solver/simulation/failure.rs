@@ -2,7 +2,6 @@
 
 use super::Simulation;
 use crate::error::Error;
-use crate::laws::wear::WearLaw;
 use crate::solver::model::Model;
 
 /// What of a run does not converge.
@@ -10,30 +9,22 @@ pub(super) const STEPPING: &str = "time stepping";
 
 /// Why a run cannot begin.
 pub(super) fn nothing_wears(model: &Model, finite: bool) -> Error {
-    let (what, why) = match model.schedule().conditions().wear {
-        _ if !finite => (
-            "numerics.springs",
-            format!(
-                "on {} springs slip next to the edge of stick has no digits left; ask for fewer",
-                model.springs()
-            ),
-        ),
-        WearLaw::Threshold { pressure, .. } => (
-            "wear.threshold.pressure",
-            format!(
-                "{pressure:e} Pa is not exceeded where springs slip in the first cycles, so that nothing wears (the mean pressure is {:e} Pa); \
-                 ask for less, or press harder",
-                model.contact().mean_pressure()
-            ),
-        ),
-        _ => (
-            "loading.amplitude",
-            format!(
-                "at an amplitude of {:e} m nothing wears in the first cycles; ask for a larger one",
-                model.contact().amplitude()
-            ),
-        ),
-    };
+    let contact = model.contact();
+    if !finite {
+        let why = format!(
+            "on {} springs slip next to the edge of stick has no digits left; ask for fewer",
+            model.springs()
+        );
+        return Error::Inconsistent { what: "numerics.springs", why };
+    }
+    let by_law = model.schedule().conditions().wear.keeps_from_wearing(contact.mean_pressure());
+    let (what, why) = by_law.unwrap_or_else(|| {
+        let why = format!(
+            "at an amplitude of {:e} m nothing wears in the first cycles; ask for a larger one",
+            contact.amplitude()
+        );
+        ("loading.amplitude", why)
+    });
     Error::Inconsistent { what, why }
 }
 

@@ -9,8 +9,12 @@ use super::resting::{RestingStage, Tried, newton_tolerance};
 use super::tableau::ALEXANDER;
 use crate::numerics::grid::lagrange;
 use crate::solver::model::{
-    Fields, Model, Past, State, StickEdge, StickTarget, StickTrial, Target, Unknowns,
+    Fields, Model, Past, State, StickEdge, StickStage, StickTarget, StickTrial, Target, Unknowns,
 };
+
+/// Corrections of the energy that friction has dissipated, and the change of the coefficient below which there are no more.
+const ENERGY_CORRECTIONS: usize = 30;
+const SAME_FRICTION: f64 = 1e-12;
 
 /// A contact during a step.
 pub(super) trait Stages {
@@ -192,7 +196,8 @@ impl<'a> MovingContact<'a> {
             *gathered[self.model.springs() + 1..].first_chunk().expect("four numbers of the edge of stick");
         let left_behind = self.carried(gathered)[0].to_vec();
         let stick = StickEdge { area, depth, load, left_behind, ..StickEdge::default() };
-        StickTarget { springs, stick, slip_compression }
+        let energy = gathered[gathered.len() - 2];
+        StickTarget { springs, stick, slip_compression, energy }
     }
 
     /// What was left behind, and wear depth, among the quantities.
@@ -200,6 +205,40 @@ impl<'a> MovingContact<'a> {
         let all = &quantities[self.model.springs() + 5..quantities.len() - 2];
         let (left_behind, wear_depth) = all.split_at(self.stick.left_behind.len());
         [left_behind, wear_depth]
+    }
+
+    /// Solves a stage from a guess, or else from where the stage before ended. Friction follows the energy that it has dissipated at the end of
+    /// the stage.
+    fn converged(
+        &mut self,
+        mut target: StickTarget,
+        at: &mut Unknowns,
+        before: Unknowns,
+        evaluations: &mut u64,
+    ) -> Option<StickStage<'a>> {
+        let loading = target.springs.loading.clone();
+        let (mut rate, mut last) = (0.0, f64::NAN);
+        for _ in 0..ENERGY_CORRECTIONS {
+            let energy = target.energy + target.springs.step * rate;
+            target.springs.loading = self.model.after_energy(loading.clone(), energy);
+            let stage = self.model.stick_stage(target.clone())?;
+            let coefficient = target.springs.loading.friction.reference_coefficient();
+            if (coefficient / last - 1.0).abs() <= SAME_FRICTION {
+                return Some(stage);
+            }
+            last = coefficient;
+            let mut stage = MovingStage::new(stage, self.tolerance, self.model, self.trial);
+            if !stage.solve(at, self.newton, evaluations) {
+                // What was before may lead astray.
+                *at = before.clone();
+                self.newton.outdate();
+                if !stage.solve(at, self.newton, evaluations) {
+                    return None;
+                }
+            }
+            rate = self.trial.cycle.dissipation;
+        }
+        None
     }
 
     /// By the polynomial through the start and the stages before; in the first one at the rates of the last step.
@@ -247,19 +286,10 @@ impl Stages for MovingContact<'_> {
         cycles: f64,
         evaluations: &mut u64,
     ) -> Option<Vec<f64>> {
-        let stage = self.model.stick_stage(self.target(index, &gathered, cycles))?;
         let before = self.known.last()?.clone();
         let mut at = self.guess(index, cycles);
-        let mut stage = MovingStage::new(stage, self.tolerance, self.model, self.trial);
-        if !stage.solve(&mut at, self.newton, evaluations) {
-            // What was before may lead astray.
-            at = before;
-            self.newton.outdate();
-            if !stage.solve(&mut at, self.newton, evaluations) {
-                return None;
-            }
-        }
-        let stick = stage.rates(&at);
+        let stage = self.converged(self.target(index, &gathered, cycles), &mut at, before, evaluations)?;
+        let stick = stage.rates(&at, self.trial);
         let (trial, step) = (&*self.trial, ALEXANDER.diagonal * cycles);
         let now = trial.fields.log_slip.iter().chain([&at.slip_area, &trial.stick_zone.slip_compression]);
         let found = slopes(now, &gathered, step)

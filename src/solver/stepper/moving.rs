@@ -3,7 +3,7 @@
 use super::newton::{Correction, Equations, Factorised, Newton};
 use super::resting::{ROUND_OFF, newton_tolerance};
 use crate::numerics::linear::Factors;
-use crate::solver::model::{Model, StickEdge, StickStage, StickTrial, Target, Unknowns};
+use crate::solver::model::{Model, StickStage, StickTrial, Target, Unknowns};
 
 /// Most that Newton's method may leave: the edge of stick takes more digits than the springs.
 const MOST_LEFT: f64 = 1e-8;
@@ -39,11 +39,6 @@ impl<'a> MovingStage<'a> {
         }
         *evaluations += 1;
         newton.solve(self, at, evaluations)
-    }
-
-    /// Slopes, per cycle, of what the edge of stick carries along.
-    pub fn rates(&self, at: &Unknowns) -> StickEdge {
-        self.stage.rates(at, self.trial)
     }
 }
 

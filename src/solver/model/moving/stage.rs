@@ -19,6 +19,8 @@ pub struct StickTarget {
     pub stick: StickEdge,
     /// `q_c`, m.
     pub slip_compression: f64,
+    /// Energy that friction has dissipated, J, without that of this stage.
+    pub energy: f64,
 }
 
 /// What follows from the unknowns tried in a stage.

@@ -1,0 +1,131 @@
+//! What the program asks of a wear law.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use serde::{Serialize, Serializer};
+
+use super::spreading::Spreading;
+use crate::laws::entry::{Entry, Value, serialize};
+use crate::units::{Dimension, Key, Range};
+
+/// A law of wear: the depth worn per slipped distance at one place of the surface. Every number is positive and finite.
+///
+/// Solvers ask for its properties, never for its name.
+pub trait WearLaw: Debug + Send + Sync {
+    /// Its entry in the table of wear laws.
+    fn entry(&self) -> &'static Entry<dyn WearLaw>;
+
+    /// Values of the keys of the entry, in their order.
+    fn values(&self) -> Vec<Value>;
+
+    /// The law with its coefficient times `factor`.
+    fn scaled(&self, factor: f64) -> Arc<dyn WearLaw>;
+
+    /// The law and its numbers, as reports say it.
+    fn words(&self) -> String;
+
+    /// Depth worn per slipped distance.
+    fn rate(&self, at: &Rubbing) -> Rate;
+
+    /// Coefficient `k_w`, 1/Pa, of Archard's law that stands for this one in the closed form and the dimensionless time.
+    fn reference(&self, contact: &Scales) -> f64;
+
+    /// `k_w`, 1/Pa, where wear is in proportion to pressure and slip.
+    ///
+    /// # Arguments
+    /// * `friction` -- the coefficient of friction, where there is one whatever the load and the slip
+    fn archard_coefficient(&self, _friction: Option<f64>) -> Option<f64> {
+        None
+    }
+
+    /// Worn volume over dissipated energy, 1/Pa, where they are in proportion.
+    ///
+    /// # Arguments
+    /// * `friction` -- as in [`WearLaw::archard_coefficient`]
+    fn volume_per_energy(&self, _friction: Option<f64>) -> Option<f64> {
+        None
+    }
+
+    /// What a cycle wears where the rates along its slip come to `depth`, and the derivative by that; none where it is just that.
+    fn of_cycle(&self, _depth: f64) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// Factor on all wear at an energy, J/m², that friction dissipates per cycle and area of contact; none where it is one.
+    fn at_contact(&self, _energy: f64) -> Option<f64> {
+        None
+    }
+
+    /// `∂ ln(rate)/∂ ln(path)` by the slip path of the cycle.
+    fn path_exponent(&self) -> f64 {
+        0.0
+    }
+
+    /// Whether the law takes the frictional traction in place of the pressure.
+    fn takes_traction(&self) -> bool {
+        false
+    }
+
+    /// How the pressure is spread over the surface before the law takes it; none for a local law.
+    fn spreading(&self) -> Option<Spreading> {
+        None
+    }
+
+    /// Key of the scene and reason, where the law itself may keep everything from wearing at this mean pressure, Pa.
+    fn keeps_from_wearing(&self, _mean_pressure: f64) -> Option<(&'static str, String)> {
+        None
+    }
+}
+
+/// One place of the surface in one step of a cycle.
+#[derive(Debug, Clone, Copy)]
+pub struct Rubbing {
+    /// What presses, Pa: pressure, or the frictional traction for a law that takes it. Round-off may make it negative.
+    pub pressure: f64,
+    /// Slip path of the whole cycle, m.
+    pub path: f64,
+    /// Mean pressure of the unworn contact, Pa.
+    pub mean_pressure: f64,
+}
+
+/// Depth worn per slipped distance.
+#[derive(Debug, Clone, Copy)]
+pub struct Rate {
+    /// The depth over the distance.
+    pub depth: f64,
+    /// Its derivative by the pressure, 1/Pa.
+    pub by_pressure: f64,
+}
+
+/// Natural pressure, slip path and friction of a contact.
+#[derive(Debug, Clone, Copy)]
+pub struct Scales {
+    /// `c_N a0^(k-1) d`, Pa.
+    pub pressure: f64,
+    /// `4 μ_f d/M`, m.
+    pub path: f64,
+    /// Coefficient of friction `μ_f`.
+    pub friction: f64,
+}
+
+/// The coefficient of Archard's law and of laws that are his in part.
+pub(super) const COEFFICIENT: Key = Key::quantity(
+    "coefficient",
+    Dimension::INVERSE_PRESSURE,
+    "Depth per sliding distance and pressure, 1/Pa or m³/(N m).",
+)
+.range(Range::POSITIVE)
+.example("1e-8 1/MPa");
+
+impl PartialEq for dyn WearLaw {
+    fn eq(&self, other: &Self) -> bool {
+        self.entry().name == other.entry().name && self.values() == other.values()
+    }
+}
+
+impl Serialize for dyn WearLaw {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serialize(self.entry(), &self.values(), serializer)
+    }
+}

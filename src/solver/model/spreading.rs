@@ -1,0 +1,72 @@
+//! Pressure that debris spreads over the surface, where the law of wear is not local.
+
+use faer::Mat;
+
+use super::cycle::product;
+use super::motion::Motion;
+use super::schedule::CycleLoading;
+use super::{Fields, Model};
+use crate::laws::wear::Spreading;
+
+impl Model {
+    /// How far debris fills the gap under a spring of some compression at the largest indentation, and the derivative; whole at the contact
+    /// edge, for which there is no compression.
+    pub(super) fn filled(
+        &self,
+        loading: &CycleLoading,
+        spreading: Spreading,
+        compression: Option<f64>,
+    ) -> (f64, f64) {
+        compression.map_or((1.0, 0.0), |compression| {
+            spreading.filled(compression - loading.lift, self.contact.slip_compression())
+        })
+    }
+
+    /// How the pressure that debris passes on follows the compressions, over the factor of Eq. (21).
+    pub(super) fn spread_pressure(
+        &self,
+        loading: &CycleLoading,
+        motion: &Motion,
+        compression: &[f64],
+        fields: &Fields,
+        spreading: Spreading,
+    ) -> Mat<f64> {
+        let (n, inner) = (self.springs(), self.springs() - 1);
+        let steps = motion.load.ncols();
+        let mut pressed = Mat::zeros(n, steps);
+        self.pressures(&mut pressed, &motion.load, self.pressure_scale(fields));
+        let scale = self.contact.mean_pressure();
+        let mean = |i: usize| pressed.row(i).iter().sum::<f64>() / steps as f64;
+        let slopes: Vec<f64> = (0..n).map(|i| spreading.passed_on(mean(i), scale).1).collect();
+        let touching = Mat::from_fn(n, inner, |i, j| slopes[i] * self.operators.abel.pressure(i, j));
+        let mut spread = Mat::zeros(n, inner);
+        product(&mut spread, self.averages(fields, spreading).as_ref(), touching.as_ref(), 1.0);
+        for i in 0..n {
+            let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
+            (0..inner).for_each(|j| spread[(i, j)] *= filled);
+        }
+        spread
+    }
+
+    /// Averages along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well inside and to nothing
+    /// there: else ground would wear where no pressure is at all.
+    pub(super) fn averages(&self, fields: &Fields, spreading: Spreading) -> Mat<f64> {
+        let radii: Vec<f64> = self.spring_radii(fields);
+        let n = radii.len();
+        let inside = fields.stick_zone.stick_area.sqrt();
+        let width = |j: usize| {
+            let before = if j == 0 { inside } else { radii[j - 1] };
+            0.5 * (radii[(j + 1).min(n - 1)] - before)
+        };
+        let widths: Vec<f64> = (0..n).map(width).collect();
+        let mut weights = Mat::from_fn(n, n, |i, j| widths[j] * spreading.weight(radii[i] - radii[j]));
+        for i in 0..n {
+            let sum: f64 = weights.row(i).iter().sum();
+            let kept = spreading.kept(radii[n - 1] - radii[i]);
+            for j in 0..n {
+                weights[(i, j)] *= kept / sum;
+            }
+        }
+        weights
+    }
+}
