@@ -118,7 +118,11 @@ fn every_table() -> Vec<(FileKind, String)> {
         )
     };
     let loading = "initial_force = 50\namplitude = 1e-6\ncycles = 1e6\n";
+    let power = "[wear.friction-power]\nscope = \"global\"\ncoefficient = 1e-14\nexponent = 0";
+    let timed =
+        BASE.replace("[wear.archard]\ncoefficient = \"1e-14 1/Pa\"", power) + "frequency = \"1 Hz\"\n";
     let mut all = vec![
+        (FileKind::Scene, timed),
         scene("indenter", "[indenter.sphere]\nradius = 0.01"),
         scene("indenter", "[indenter.cone]\nslope = 0.01"),
         scene("indenter", "[indenter.power-law]\ncoefficient = 50\nexponent = 2"),
@@ -132,6 +136,7 @@ fn every_table() -> Vec<(FileKind, String)> {
         scene("wear", "[wear.dissipated-energy]\ncoefficient = 1e-14"),
         scene("wear", "[wear.power-law]\ncoefficient = 1e-14\npressure_exponent = 1\nslip_exponent = 1"),
         scene("wear", "[wear.threshold]\ncoefficient = 1e-14\npressure = 1e6"),
+        scene("friction", "[friction.wear-dependent]\nfirst_coefficient = 0.3\nlast_coefficient = 0.6\nenergy_density = 1e6"),
         scene("wear", "[wear.non-local]\ncoefficient = 1e-14\nlength = 1e-6"),
         scene("wear", "[wear]\narchard.coefficient = 1e-14\nhistory = { factors = [1, 2], at_tau = [0, 3] }"),
         scene("loading", &format!("[loading]\n{loading}[[loading.blocks]]\ntau = 1")),
