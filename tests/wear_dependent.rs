@@ -14,7 +14,7 @@ use fretwear::numerics::grid::Clustering;
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
-use fretwear::solver::stepper::{Implicit, MovingStickImplicit, Stepper};
+use fretwear::solver::stepper::Sdirk;
 use support::{Case, laws};
 
 const TOLERANCE: f64 = 1e-6;
@@ -31,7 +31,7 @@ impl Observer for Seen {
         // With the ground that an edge of stick moving outwards leaves behind.
         let depths = simulation.wear_depth();
         let sum: f64 = model.operators().depth_sum().iter().zip(&depths).map(|(w, depth)| w * depth).sum();
-        let volume = PI * model.unworn().limit_edge() * sum;
+        let volume = PI * model.unworn().limit_slip_area() * sum;
         self.0.push([state.cycles, within, state.dissipated_energy / area, volume]);
         Ok(())
     }
@@ -42,10 +42,7 @@ fn seen(contact: &InitialContact, springs: usize, conditions: &Conditions, outpu
     let model =
         Model::under(contact, schedule, springs, Clustering::Cubic, &OperatorStore::default()).unwrap();
     let plan = Plan { outputs: outputs.to_vec(), end: End::Cycles(outputs[outputs.len() - 1]) };
-    let stepper: Box<dyn Stepper + Send> = match model.moving() {
-        Some(_) => Box::new(MovingStickImplicit::new(TOLERANCE)),
-        None => Box::new(Implicit::new(TOLERANCE)),
-    };
+    let stepper = Box::new(Sdirk::new(TOLERANCE));
     let mut simulation = Simulation::new(model, stepper, TOLERANCE, plan).unwrap();
     let mut seen = Seen::default();
     simulation.run(&mut [&mut seen]).unwrap();
