@@ -155,8 +155,8 @@ fn what_is_ill_posed_or_incomplete_is_refused_with_the_reason() {
         ),
         (format!("{cylinder}scope = \"global\""), "", "give loading.frequency"),
         (cylinder.to_owned(), frequency, "wear.friction-power.scope is missing"),
-        (format!("{cylinder}{power}scope = \"local\""), frequency, "has no meaning beside"),
-        ("scope = \"local\"".to_owned(), frequency, "or else"),
+        (format!("{cylinder}{power}scope = \"local\""), frequency, "exclude each other"),
+        ("scope = \"local\"".to_owned(), frequency, "give exactly one of"),
         (power.replace("-0.25", "-1") + "scope = \"local\"", frequency, "is outside (-1, inf); with less"),
     ] {
         let error = read(&law, loading).expect_err("refused");

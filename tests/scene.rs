@@ -250,7 +250,7 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "[friction.coulomb]",
             "[friction.stribeck]",
             "stribeck",
-            &["friction.stribeck", "offers coulomb, static-kinetic, load-dependent or history"],
+            &["friction.stribeck", "offers coulomb, static-kinetic, load-dependent, wear-dependent or history"],
         ),
         ("[wear.archard]", "[wear.power]", "[wear.power]", &["wear.power", "did you mean power-law?"]),
         (FRICTION, "coeficient = 0.6", "coeficient", &["friction.coulomb.coeficient", "coefficient"]),

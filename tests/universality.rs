@@ -200,7 +200,7 @@ fn what_contradicts_itself_is_refused_by_name() {
         (level("wear", "a", "") + &level("modes", "a", ""), "modes[0].name = \"a\" is given twice"),
         (level("waer", "a", ""), "waer is not a key of a universality study; did you mean wear?"),
         ("[[cases]]\nname = \"a\"\n".into(), "cases[0].predicted is missing"),
-        ("[[cases]]\nname = \"a\"\npredicted = \"perhaps\"\n".into(), "is none of the words it may be"),
+        ("[[cases]]\nname = \"a\"\npredicted = \"perhaps\"\n".into(), "is not allowed here"),
         (String::new(), "has no case; give levels"),
         (
             level("wear", "a", "") + "[[without]]\nlevels = [\"a\", \"b\"]\n",

@@ -428,9 +428,7 @@ impl<'a> Entry<'a> {
     pub(super) fn word(&self, words: &[&str]) -> Result<usize> {
         let word = self.string()?;
         let found = words.iter().position(|known| *known == word);
-        found.ok_or_else(|| {
-            self.error(format_args!("is none of the words it may be; {}", suggestion(word, words)))
-        })
+        found.ok_or_else(|| self.error(format_args!("is not allowed here; {}", suggestion(word, words))))
     }
 
     /// The value as a whole number; None for one that is negative or too large.
