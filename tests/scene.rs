@@ -250,7 +250,10 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "[friction.coulomb]",
             "[friction.stribeck]",
             "stribeck",
-            &["friction.stribeck", "offers coulomb, static-kinetic, load-dependent, wear-dependent or history"],
+            &[
+                "friction.stribeck",
+                "offers coulomb, static-kinetic, load-dependent, wear-dependent or history",
+            ],
         ),
         ("[wear.archard]", "[wear.power]", "[wear.power]", &["wear.power", "did you mean power-law?"]),
         (FRICTION, "coeficient = 0.6", "coeficient", &["friction.coulomb.coeficient", "coefficient"]),
@@ -275,7 +278,7 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "[indenter.cone]",
             &["indenter.paraboloid and indenter.cone exclude"],
         ),
-        (MODULUS, "", "[half_space]", &["half_space.modulus or half_space.normal_stiffness", "exactly one"]),
+        (MODULUS, "", "[half_space]", &["half_space.modulus is missing", "210 GPa"]),
         (
             MODULUS,
             "modulus = 1\nnormal_stiffness = 1",
@@ -285,8 +288,8 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
         (
             MODULUS,
             "normal_stiffness = 1",
-            "poisson_ratio",
-            &["half_space.poisson_ratio", "beside half_space.normal_stiffness"],
+            "reference_depth",
+            &["half_space.reference_depth", "beside half_space.normal_stiffness"],
         ),
         (
             MODULUS,
