@@ -6,35 +6,63 @@
 //! A file is laid out in memory, written to a temporary beside it, synchronised and renamed, so a run killed at
 //! any moment leaves either the previous save or the new one, never a torn file.
 
+#[cfg(feature = "hdf5")]
 mod arrays;
+#[cfg(feature = "hdf5")]
 mod atomic;
+#[cfg(feature = "hdf5")]
 mod encode;
 mod fingerprint;
+#[cfg(feature = "hdf5")]
 mod folder;
+#[cfg(feature = "hdf5")]
 mod format;
+#[cfg(feature = "hdf5")]
 mod labelled;
 pub mod layout;
+#[cfg(feature = "hdf5")]
 mod reader;
+#[cfg(feature = "hdf5")]
 mod scratch;
+#[cfg(feature = "hdf5")]
 mod seal;
+#[cfg(feature = "hdf5")]
 mod shard;
+#[cfg(feature = "hdf5")]
 mod stored;
+#[cfg(feature = "hdf5")]
 mod surface;
+#[cfg(feature = "hdf5")]
 mod tables;
+#[cfg(feature = "hdf5")]
+mod target;
 mod writer;
 
+#[cfg(feature = "hdf5")]
 pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray, TextColumn};
+#[cfg(feature = "hdf5")]
 pub(crate) use atomic::{AtomicFile, failure, remove_abandoned};
+#[cfg(feature = "hdf5")]
 pub(crate) use fingerprint::{Fingerprint, scene_hash};
+#[cfg(feature = "hdf5")]
 pub use folder::{Mark, check_distinct, check_own, make_folder};
+#[cfg(feature = "hdf5")]
 pub(crate) use folder::{cell, check_can_be_made, check_folder, quoted, table};
+#[cfg(feature = "hdf5")]
 pub use format::Format;
+#[cfg(feature = "hdf5")]
 pub use reader::RunFile;
+#[cfg(feature = "hdf5")]
 pub(crate) use scratch::Scratch;
+#[cfg(feature = "hdf5")]
 pub use seal::ResultPath;
+#[cfg(feature = "hdf5")]
 pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
+#[cfg(feature = "hdf5")]
 pub use stored::{StoredArray, StoredArrays, format_of};
+#[cfg(feature = "hdf5")]
 pub use surface::SurfaceSeries;
+#[cfg(feature = "hdf5")]
 pub use tables::{ResultTables, TableSummary};
 pub use writer::RunWriter;
 

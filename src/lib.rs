@@ -7,51 +7,19 @@
 //!
 //! # A run in memory
 //!
-//! A scene flows one way: text → [`scene::Scene`] → [`contact::InitialContact`] → [`solver::model::Model`] → [`solver::simulation::Simulation`]. The worn
-//! volume of a homogeneous half-space (`k = 0`) under a paraboloid with the stick ratio `c/a0 = 0.7` at the dimensionless time `τ = 1` is
-//! known from three-dimensional solvers to be `0.026873 a0² d`:
-//!
 //! ```
-//! use fretwear::numerics::grid::Clustering;
-//! use fretwear::solver::model::Model;
-//! use fretwear::scene::Scene;
-//! use fretwear::solver::simulation::{End, Plan, Simulation};
-//! use fretwear::solver::stepper::Implicit;
+//! # std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"))?;
+//! use fretwear::Scene;
 //!
-//! // Units in which a0 = 1 and d = 2.
-//! let scene = Scene::from_toml(
-//!     r#"
-//!     [indenter.power-law]
-//!     coefficient = 1
-//!     exponent = 2
-//!     [half_space]
-//!     grading = 0
-//!     normal_stiffness = 1
-//!     stiffness_ratio = 1
-//!     [friction.coulomb]
-//!     coefficient = 1
-//!     [wear.archard]
-//!     coefficient = 1
-//!     [loading]
-//!     indentation = 2
-//!     stick_ratio = 0.7
-//!     tau = 1
-//!     "#,
-//!     "example.toml",
-//! )?;
-//! let contact = scene.contact()?;
-//! let model = Model::new(&contact, scene.conditions(), 60, Clustering::Smooth)?;
-//! let cycles = 1.0 / contact.tau_per_cycle();
-//! let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
-//! let tolerance = 1e-5;
-//! let mut simulation = Simulation::new(model, Box::new(Implicit::new(tolerance)), tolerance, plan)?;
-//! simulation.run(&mut [])?;
-//! let volume = simulation.model().wear_volume(simulation.fields());
-//! assert!((volume / 2.0 / 0.026873 - 1.0).abs() < 3e-3);
-//! # Ok::<(), fretwear::Error>(())
+//! let results = Scene::from_path("paraboloid.toml")?.simulate()?;
+//! let worn_volume = results.worn_volume(); // m³, one for each snapshot
+//! assert!(results.distance().unwrap().distance_relative.unwrap() < 1e-3);
+//! println!("{}", results.summary());
+//! # assert!(worn_volume.is_sorted());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`run::Run`] does the same with a result file, checkpoints and signals.
+//! [`Simulation`] does the same with callbacks and a token that stops it, [`Run`] with a result file and checkpoints.
 //!
 //! # Equations and functions
 //!
@@ -102,17 +70,49 @@
 //!
 //! SI units everywhere, nothing is scaled behind the scenes; the library neither prints nor exits.
 
+//! # Features
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `hdf5` | result files, and the studies that write them; needs the HDF5 library |
+//! | `figures` | pictures and pages made from result files |
+//! | `cli` | the program `fretwear` |
+//!
+//! All are on by default. Without them the library simulates in memory, and needs neither a C library nor signals.
+
+#![warn(missing_docs)]
+
+// The inside: open to the tests and benches of the package, and no interface, so that it changes without notice.
+#[doc(hidden)]
 pub mod contact;
+#[doc(hidden)]
 pub mod data;
+#[doc(hidden)]
 pub mod error;
+#[cfg(feature = "figures")]
+#[doc(hidden)]
 pub mod figures;
+#[doc(hidden)]
 pub mod laws;
+#[doc(hidden)]
 pub mod numerics;
+#[doc(hidden)]
 pub mod report;
+#[doc(hidden)]
 pub mod run;
+#[doc(hidden)]
 pub mod scene;
+#[doc(hidden)]
 pub mod solver;
+#[cfg(feature = "hdf5")]
+#[doc(hidden)]
 pub mod study;
+#[doc(hidden)]
 pub mod units;
 
-pub use error::{Error, Result};
+pub use data::{LimitCurves, LimitDistance, Snapshot, StopReason};
+pub use error::{Domain, Error, Result};
+pub use run::{Expected, Results, Simulation, Stop};
+#[cfg(feature = "hdf5")]
+pub use run::{Resumed, Run};
+pub use scene::{Scene, SceneBuilder};

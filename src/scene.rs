@@ -40,6 +40,7 @@ use crate::laws::friction::Coulomb;
 use crate::laws::loading::{Loading, Mode, RecordedPath};
 use crate::laws::wear::Archard;
 
+mod builder;
 mod columns;
 mod document;
 pub(crate) mod input;
@@ -56,6 +57,7 @@ mod spacing;
 mod study;
 mod universality;
 
+pub use builder::SceneBuilder;
 use input::{Pipes, Unread};
 pub use map::MapScene;
 pub use study::{Input, KeptSnapshots, MOST_SCENES, Study, Task};

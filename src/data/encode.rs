@@ -2,22 +2,14 @@
 
 use hdf5::{Group, Result};
 
+use super::Format;
 use super::labelled::{
     Dimension, create_group, put_array, put_integer, put_integers, put_missing, put_real, put_text,
 };
 use super::layout::*;
-use super::{Checkpoint, Format, RunHeader, Snapshot, StopReason};
+use super::writer::Run;
 use crate::contact::stick_slip::Regime;
 use crate::solver::model::Past;
-
-/// Everything that one save stores.
-pub(super) struct Run<'a> {
-    pub header: &'a RunHeader,
-    pub snapshots: &'a [Snapshot],
-    pub checkpoint: &'a Checkpoint,
-    pub stop_reason: StopReason,
-    pub complete: bool,
-}
 
 impl Run<'_> {
     /// Writes the run into a group, for the root of a file of its own or one of many in a file. The same run gives the same bytes: no times

@@ -45,7 +45,7 @@ pub fn check_own(path: &Path, mark: Mark) -> Result<()> {
         false => Ok(()),
         true => Err(Error::File {
             path: path.to_owned(),
-            why: "exists and was not written by fretwear, which --force does not replace unless it is named; move it away, or choose another output"
+            why: "exists and was not written by fretwear, so that it is replaced only where it is named; move it away, or choose another output"
                 .into(),
         }),
     }

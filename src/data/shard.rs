@@ -8,11 +8,11 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{File, Group};
 
 use super::atomic::AtomicFile;
-use super::encode::Run;
 use super::labelled::{Dimension, create_group, file_on_disk, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader::{self, Source};
 use super::seal::{ResultPath, seal};
+use super::writer::Run;
 use super::{Format, RunFile, StopReason};
 use crate::error::{Error, Result};
 

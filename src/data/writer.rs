@@ -1,15 +1,11 @@
-//! Writing the file of a run.
+//! The snapshots of a run while it goes on, and the file that they are saved to.
 
-use std::path::{Path, PathBuf};
-
-use super::atomic::AtomicFile;
-use super::encode::Run;
-use super::labelled::laid_out;
-use super::seal::sealed;
+#[cfg(feature = "hdf5")]
+use super::target::Target;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
 use crate::error::Result;
 
-/// Collects the snapshots of a run and saves them, each time as one whole file.
+/// Collects the snapshots of a run and saves them, each time as one whole file, where there is one.
 ///
 /// ```
 /// use fretwear::data::{Checkpoint, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
@@ -27,18 +23,21 @@ use crate::error::Result;
 /// ```
 #[derive(Debug)]
 pub struct RunWriter {
-    file: Target,
-    header: RunHeader,
-    snapshots: Vec<Snapshot>,
+    pub(super) file: Option<Target>,
+    pub(super) header: RunHeader,
+    pub(super) snapshots: Vec<Snapshot>,
 }
 
-/// The file that is written.
+/// There is no file without HDF5.
+#[cfg(not(feature = "hdf5"))]
 #[derive(Debug)]
-enum Target {
-    /// One that was seen to be writable.
-    Ready(AtomicFile),
-    /// One that is looked at when it is first written.
-    Later(PathBuf),
+enum Target {}
+
+#[cfg(not(feature = "hdf5"))]
+impl Target {
+    fn save(&mut self, _: &Run) -> Result<()> {
+        match *self {}
+    }
 }
 
 impl RunHeader {
@@ -51,42 +50,19 @@ impl RunHeader {
 }
 
 impl RunWriter {
-    /// A writer of a new file. Checks that the file can be written; creates nothing before the first save.
-    ///
-    /// # Arguments
-    /// * `path` -- the file, in a directory that exists
-    /// * `header` -- what does not change during the run
-    /// * `overwrite` -- whether a file that exists may be replaced (at the first save, not before)
-    ///
-    /// # Errors
-    /// [`Error::File`](crate::Error::File) if the file exists and may not be replaced, or its directory is missing or cannot be written.
+    /// Keeps the snapshots and has no file.
     ///
     /// # Panics
     /// If there are no nodes, or a curve of the limit does not have one value per node.
-    pub fn create(path: &Path, header: RunHeader, overwrite: bool) -> Result<Self> {
-        Self::with_snapshots(path, header, Vec::new(), overwrite)
-    }
-
-    /// A writer that goes on after `snapshots`; see [`RunFile::into_writer`](super::RunFile::into_writer).
-    pub(super) fn with_snapshots(
-        path: &Path,
-        header: RunHeader,
-        snapshots: Vec<Snapshot>,
-        overwrite: bool,
-    ) -> Result<Self> {
+    pub fn in_memory(header: RunHeader) -> Self {
         header.check();
-        Ok(Self { file: Target::Ready(AtomicFile::new(path, overwrite)?), header, snapshots })
-    }
-
-    /// A writer that does not look at its file before the first save, which replaces what is there.
-    pub fn deferred(path: &Path, header: RunHeader) -> Self {
-        Self { file: Target::Later(path.to_owned()), header, snapshots: Vec::new() }
+        Self { file: None, header, snapshots: Vec::new() }
     }
 
     /// Forgets the snapshots so far, for a run that is made anew; what was saved stays until the next save.
     ///
     /// # Panics
-    /// As [`RunWriter::create`].
+    /// As [`RunWriter::in_memory`].
     pub fn restart(&mut self, header: RunHeader) {
         header.check();
         self.header = header;
@@ -125,15 +101,7 @@ impl RunWriter {
         &self.snapshots
     }
 
-    /// The file that is written.
-    pub fn path(&self) -> &Path {
-        match &self.file {
-            Target::Ready(file) => file.path(),
-            Target::Later(path) => path,
-        }
-    }
-
-    /// Replaces the file by one with all snapshots so far, and returns when it is safe on the disk.
+    /// Replaces the file by one with all snapshots so far, and returns when it is safe on the disk; without a file nothing is done.
     ///
     /// # Arguments
     /// * `checkpoint` -- what a restart needs
@@ -144,13 +112,16 @@ impl RunWriter {
     /// [`Error::File`](crate::Error::File) names the file and the cure; the previous save is then still there.
     pub fn save(&mut self, checkpoint: &Checkpoint, stop_reason: StopReason, complete: bool) -> Result<()> {
         let run = Run { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
-        let bytes = sealed(laid_out(self.path(), |file| run.put_into(file))?);
-        if let Target::Later(path) = &self.file {
-            self.file = Target::Ready(AtomicFile::new(path, true)?);
-        }
-        match &mut self.file {
-            Target::Ready(file) => file.write(&bytes),
-            Target::Later(_) => unreachable!("made ready above"),
-        }
+        self.file.as_mut().map_or(Ok(()), |file| file.save(&run))
     }
+}
+
+/// Everything that one save stores.
+pub(super) struct Run<'a> {
+    pub header: &'a RunHeader,
+    pub snapshots: &'a [Snapshot],
+    pub checkpoint: &'a Checkpoint,
+    pub stop_reason: StopReason,
+    /// Whether it reached its end.
+    pub complete: bool,
 }

@@ -1,12 +1,14 @@
 //! `fretwear run`: what a run came to.
 
+use std::path::Path;
+
 use serde::Serialize;
 
 use super::text::{Rows, Scale, indenter, number};
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::indenter::Indenter;
 use crate::contact::stick_slip::Regime;
-use crate::run::RunResult;
+use crate::run::Results;
 
 /// The outcome of a run in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -59,11 +61,15 @@ pub struct RunReport {
 
 impl RunReport {
     /// Describes what a run came to.
-    pub fn new(result: &RunResult) -> Self {
-        let RunResult { last, checkpoint, limit, distance, .. } = result;
+    ///
+    /// # Arguments
+    /// * `output` -- the result file
+    pub fn new(result: &Results, output: &Path) -> Self {
+        let (last, checkpoint, limit) = (result.last(), result.checkpoint(), result.limit());
+        let distance = result.distance();
         Self {
-            output: result.output.display().to_string(),
-            stop_reason: result.stop_reason.name(),
+            output: output.display().to_string(),
+            stop_reason: result.stop_reason().name(),
             error_estimate: checkpoint.error_estimate,
             accuracy_met: result.accuracy_met(),
             cycles: last.cycles,
@@ -77,18 +83,28 @@ impl RunReport {
             contact_radius: last.contact_radius,
             stick_radius: last.stick_radius,
             wear_volume: last.wear_volume,
-            wear_volume_limit: limit.as_ref().map(LimitingShape::wear_volume),
+            wear_volume_limit: limit.map(LimitingShape::wear_volume),
             limit_distance: distance.map(|it| it.distance),
             limit_distance_relative: distance.and_then(|it| it.distance_relative),
             dissipated_energy: last.dissipated_energy,
             regime: last.regime,
-            contact_radius_limit: limit.as_ref().map(LimitingShape::contact_radius_limit),
-            table: matches!(result.indenter, Indenter::Table(_)).then(|| indenter(&result.indenter)),
+            contact_radius_limit: limit.map(LimitingShape::contact_radius_limit),
+            table: matches!(result.indenter(), Indenter::Table(_)).then(|| indenter(result.indenter())),
         }
     }
 
     /// A table for people.
     pub fn text(&self) -> String {
+        let mut rows = self.rows(&format!("by a signal; go on with fretwear run --resume {}", self.output));
+        rows.row("written to", &self.output);
+        rows.finish()
+    }
+
+    /// All but the file.
+    ///
+    /// # Arguments
+    /// * `interrupted` -- what is said of a run that was stopped
+    fn rows(&self, interrupted: &str) -> Rows {
         let mut rows = Rows::default();
         if let Some(table) = &self.table {
             rows.row("indenter", table);
@@ -98,7 +114,7 @@ impl RunReport {
             "rate" => "when the rate of worn volume had fallen as asked".to_owned(),
             "unending" => "because the rate of worn volume asked for is never reached".to_owned(),
             "worn-out" => "with no pressure left outside the stick zone".to_owned(),
-            _ => format!("by a signal; go on with fretwear run --resume {}", self.output),
+            _ => interrupted.to_owned(),
         };
         rows.row("stopped", stopped);
         rows.row("cycles", number(self.cycles));
@@ -143,7 +159,13 @@ impl RunReport {
                 Scale::TIME.show(self.wall_seconds)
             ),
         );
-        rows.row("written to", &self.output);
-        rows.finish()
+        rows
+    }
+}
+
+impl Results {
+    /// What the run came to, a table for people.
+    pub fn summary(&self) -> String {
+        RunReport::new(self, Path::new("")).rows("before its end").finish()
     }
 }

@@ -7,9 +7,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::Parts;
 use super::ladder::{Shares, UNKNOWN};
 use super::mesh::MOST_RAISED;
+use super::parts::Parts;
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::data::{Snapshot, same_cycles};

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{Parts, resolution};
+use super::parts::{Parts, resolution};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::data::{Snapshot, same_cycles};

@@ -103,9 +103,7 @@ pub(super) fn check(paths: &Paths, engine: Engine, overwrite: bool) -> Result<()
     for (name, _) in scripts(engine) {
         let path = folder.join(name);
         if path.exists() && !overwrite {
-            let why =
-                "exists already; `bash submit.sh` beside it hands in what is there, --force writes it anew";
-            return Err(Error::File { path, why: why.into() });
+            return Err(Error::Exists { path });
         }
         AtomicFile::new(&path, true)?;
         check_own(&path, MARK)?;
@@ -169,11 +167,8 @@ fn values(
 /// The lines of #SBATCH that not every cluster needs.
 fn slurm_lines(options: &Options, memory: Option<String>) -> String {
     let memory = options.memory.clone().or(memory);
-    let named = [
-        ("--mem", memory),
-        ("--partition", options.partition.clone()),
-        ("--account", options.account.clone()),
-    ];
+    let named =
+        [("--mem", memory), ("partition", options.partition.clone()), ("account", options.account.clone())];
     let named = named.into_iter().filter_map(|(name, value)| value.map(|value| format!("{name}={value}")));
     let lines = named.chain(options.engine_options.iter().cloned()).map(|it| format!("#SBATCH {it}"));
     lines.collect::<Vec<_>>().join("\n")

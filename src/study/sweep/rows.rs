@@ -163,17 +163,19 @@ fn column(name: &str, units: &str, long_name: &str, values: Values) -> Column {
 mod tests {
     use super::*;
     use crate::report::{LimitReport, RunReport};
-    use crate::run::{Run, Shared};
     use crate::scene::Scene;
     use std::path::Path;
 
     #[test]
     fn every_key_of_the_reports_has_a_column() {
         let scene = Scene::read(Path::new("data/scenes/paraboloid.toml")).unwrap();
-        let run = Run::one_of_many(&scene, Path::new("never-written.h5"), &Shared::default()).unwrap();
-        let (result, _) = run.execute_keeping(None).unwrap();
+        let results = scene.simulate().unwrap();
         let reports = [
-            (serde_json::to_value(RunReport::new(&result)).unwrap(), &RUN_TEXTS[..], &RUN_NUMBERS[..]),
+            (
+                serde_json::to_value(RunReport::new(&results, Path::new(""))).unwrap(),
+                &RUN_TEXTS[..],
+                &RUN_NUMBERS[..],
+            ),
             (
                 serde_json::to_value(LimitReport::new(&scene, Some(&[])).unwrap()).unwrap(),
                 &LIMIT_TEXTS[..],
