@@ -22,6 +22,7 @@ mod labelled;
 pub mod layout;
 #[cfg(feature = "hdf5")]
 mod reader;
+mod save;
 #[cfg(feature = "hdf5")]
 mod scratch;
 #[cfg(feature = "hdf5")]
@@ -43,7 +44,8 @@ pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArr
 #[cfg(feature = "hdf5")]
 pub(crate) use atomic::{AtomicFile, failure, remove_abandoned};
 #[cfg(feature = "hdf5")]
-pub(crate) use fingerprint::{Fingerprint, scene_hash};
+pub(crate) use fingerprint::Fingerprint;
+pub(crate) use fingerprint::scene_hash;
 #[cfg(feature = "hdf5")]
 pub use folder::{Mark, check_distinct, check_own, make_folder};
 #[cfg(feature = "hdf5")]

@@ -81,6 +81,8 @@
 //! All are on by default. Without them the library simulates in memory, and needs neither a C library nor signals.
 
 #![warn(missing_docs)]
+// Some helpers serve files and studies alone.
+#![cfg_attr(not(feature = "figures"), allow(dead_code, unused_imports))]
 
 // The inside: open to the tests and benches of the package, and no interface, so that it changes without notice.
 #[doc(hidden)]

@@ -4,40 +4,56 @@
 
 mod check;
 mod conditions;
+#[cfg(feature = "hdf5")]
 pub mod export;
+#[cfg(feature = "hdf5")]
 mod info;
 mod limit;
+#[cfg(feature = "hdf5")]
 mod map;
 mod run;
 mod text;
+#[cfg(feature = "hdf5")]
 mod tradeoff;
+#[cfg(feature = "hdf5")]
 mod universality;
 
 pub use check::CheckReport;
+#[cfg(feature = "hdf5")]
 pub use info::{InfoReport, arrays_text};
 pub use limit::{LimitReport, ProfileTable, parse_radii};
+#[cfg(feature = "hdf5")]
 pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;
+#[cfg(feature = "hdf5")]
 pub(crate) use text::{Rows, Scale, cells, number};
+#[cfg(feature = "hdf5")]
 pub use tradeoff::{CandidateReport, Fronts, OverFront, ReferenceReport, SnapshotReport, TradeoffReport};
+#[cfg(feature = "hdf5")]
 pub use universality::{UniversalityReport, UniversalityRow};
 
+#[cfg(feature = "hdf5")]
 use std::path::Path;
 
 use serde::Serialize;
 
+#[cfg(feature = "hdf5")]
 use crate::data::AtomicFile;
-use crate::error::{Error, Result};
+use crate::error::Error;
+#[cfg(feature = "hdf5")]
+use crate::error::Result;
 
 /// One JSON object, keys in the order of declaration; a number that is not finite is null.
 pub fn json(report: &impl Serialize) -> String {
     serde_json::to_string_pretty(report).expect("reports have string keys and plain values only") + "\n"
 }
 
+#[cfg(feature = "hdf5")]
 /// A table of text that is written as a whole or not at all.
 #[derive(Debug)]
 pub struct TableFile(AtomicFile);
 
+#[cfg(feature = "hdf5")]
 impl TableFile {
     /// Checks that the file can be written; creates nothing.
     ///

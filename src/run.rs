@@ -19,6 +19,7 @@ mod results;
 mod shared;
 mod simulation;
 
+pub use effort::Expected;
 #[cfg(feature = "hdf5")]
 pub use file::{Resumed, Run};
 #[cfg(feature = "hdf5")]
@@ -27,7 +28,6 @@ pub(crate) use file::{hash_of, is_of};
 pub(crate) use memory::memory_figure;
 #[cfg(feature = "hdf5")]
 pub(crate) use mesh::operator_bytes;
-pub use ready::Expected;
 pub use results::Results;
 pub use shared::{Shared, Stop};
 pub use simulation::Simulation;

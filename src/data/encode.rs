@@ -7,11 +7,11 @@ use super::labelled::{
     Dimension, create_group, put_array, put_integer, put_integers, put_missing, put_real, put_text,
 };
 use super::layout::*;
-use super::writer::Run;
+use super::save::Save;
 use crate::contact::stick_slip::Regime;
 use crate::solver::model::Past;
 
-impl Run<'_> {
+impl Save<'_> {
     /// Writes the run into a group, for the root of a file of its own or one of many in a file. The same run gives the same bytes: no times
     /// of creation are stored.
     pub(super) fn put_into(&self, group: &Group) -> Result<()> {

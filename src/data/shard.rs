@@ -11,8 +11,8 @@ use super::atomic::AtomicFile;
 use super::labelled::{Dimension, create_group, file_on_disk, put_array, put_integer, put_text};
 use super::layout::{Label, label};
 use super::reader::{self, Source};
+use super::save::Save;
 use super::seal::{ResultPath, seal};
-use super::writer::Run;
 use super::{Format, RunFile, StopReason};
 use crate::error::{Error, Result};
 
@@ -229,7 +229,7 @@ impl SweepFile {
             for (scene, run) in &self.runs {
                 let RunFile { header, snapshots, checkpoint, stop_reason, complete, .. } = run;
                 let checkpoint = checkpoint.clone().unwrap_or_default();
-                let run = Run {
+                let run = Save {
                     header,
                     snapshots,
                     checkpoint: &checkpoint,

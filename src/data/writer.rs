@@ -1,6 +1,10 @@
 //! The snapshots of a run while it goes on, and the file that they are saved to.
 
 #[cfg(feature = "hdf5")]
+use std::path::Path;
+
+use super::save::Save;
+#[cfg(feature = "hdf5")]
 use super::target::Target;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
 use crate::error::Result;
@@ -23,9 +27,9 @@ use crate::error::Result;
 /// ```
 #[derive(Debug)]
 pub struct RunWriter {
-    pub(super) file: Option<Target>,
-    pub(super) header: RunHeader,
-    pub(super) snapshots: Vec<Snapshot>,
+    file: Option<Target>,
+    header: RunHeader,
+    snapshots: Vec<Snapshot>,
 }
 
 /// There is no file without HDF5.
@@ -35,8 +39,44 @@ enum Target {}
 
 #[cfg(not(feature = "hdf5"))]
 impl Target {
-    fn save(&mut self, _: &Run) -> Result<()> {
+    fn save(&mut self, _: &Save) -> Result<()> {
         match *self {}
+    }
+}
+
+#[cfg(feature = "hdf5")]
+impl RunWriter {
+    /// A writer of a new file. Checks that the file can be written; creates nothing before the first save.
+    ///
+    /// # Arguments
+    /// * `path` -- the file, in a directory that exists
+    /// * `header` -- what does not change during the run
+    /// * `overwrite` -- whether a file that exists may be replaced (at the first save, not before)
+    ///
+    /// # Errors
+    /// [`Error::Exists`](crate::Error::Exists) if the file exists and may not be replaced, [`Error::File`](crate::Error::File) if its directory
+    /// is missing or cannot be written.
+    ///
+    /// # Panics
+    /// As [`RunWriter::in_memory`].
+    pub fn create(path: &Path, header: RunHeader, overwrite: bool) -> Result<Self> {
+        Self::with_snapshots(path, header, Vec::new(), overwrite)
+    }
+
+    /// A writer that goes on after `snapshots`; see [`RunFile::into_writer`](super::RunFile::into_writer).
+    pub(crate) fn with_snapshots(
+        path: &Path,
+        header: RunHeader,
+        snapshots: Vec<Snapshot>,
+        overwrite: bool,
+    ) -> Result<Self> {
+        let file = Some(Target::new(path, overwrite)?);
+        Ok(Self { file, snapshots, ..Self::in_memory(header) })
+    }
+
+    /// A writer that does not look at its file before the first save, which replaces what is there.
+    pub fn deferred(path: &Path, header: RunHeader) -> Self {
+        Self { file: Some(Target::Later(path.to_owned())), ..Self::in_memory(header) }
     }
 }
 
@@ -111,17 +151,8 @@ impl RunWriter {
     /// # Errors
     /// [`Error::File`](crate::Error::File) names the file and the cure; the previous save is then still there.
     pub fn save(&mut self, checkpoint: &Checkpoint, stop_reason: StopReason, complete: bool) -> Result<()> {
-        let run = Run { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
-        self.file.as_mut().map_or(Ok(()), |file| file.save(&run))
+        let save =
+            Save { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
+        self.file.as_mut().map_or(Ok(()), |file| file.save(&save))
     }
-}
-
-/// Everything that one save stores.
-pub(super) struct Run<'a> {
-    pub header: &'a RunHeader,
-    pub snapshots: &'a [Snapshot],
-    pub checkpoint: &'a Checkpoint,
-    pub stop_reason: StopReason,
-    /// Whether it reached its end.
-    pub complete: bool,
 }

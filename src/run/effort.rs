@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use super::Expected;
 use crate::error::{Error, Result};
 use crate::scene::Stepper as Choice;
 use crate::solver::model::{Model, State};
@@ -84,6 +83,15 @@ fn implicit(steps: f64, simulation: &mut Simulation) -> Expected {
             model.springs()
         )
     })
+}
+
+/// What a run will take, where that is long.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Expected {
+    /// Wall time, s, in order of size; none where it is short.
+    pub seconds: Option<f64>,
+    /// The same in a sentence, with its cause.
+    pub warning: Option<String>,
 }
 
 impl Expected {

@@ -1,6 +1,6 @@
 //! What a run comes to before its first step. What it refuses is refused here, for `run` and for `check`.
 
-use super::effort;
+use super::effort::{self, Expected};
 use super::parts::Parts;
 use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
@@ -14,15 +14,6 @@ pub(super) struct Ready {
     pub simulation: Simulation,
     pub limit: Option<LimitingShape>,
     pub expected: Expected,
-}
-
-/// What a run will take, where that is long.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Expected {
-    /// Wall time, s, in order of size; none where it is short.
-    pub seconds: Option<f64>,
-    /// The same in a sentence, with its cause.
-    pub warning: Option<String>,
 }
 
 impl Ready {

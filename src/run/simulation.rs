@@ -1,8 +1,9 @@
 //! A scene simulated in memory: no file, no signal, nothing printed.
 
+use super::effort::Expected;
 use super::limit::{distance, header};
 use super::parts::Parts;
-use super::ready::{Expected, Ready};
+use super::ready::Ready;
 use super::recorder::{Recorder, snapshot};
 use super::{Results, Shared, Stop, knob};
 use crate::contact::closed_form::LimitingShape;
