@@ -77,6 +77,6 @@ fn unsigned_zero(value: f64) -> f64 {
     value + 0.0
 }
 
-fn bad_option(what: &'static str, why: String) -> Error {
-    Error::Inconsistent { what, why }
+fn bad_option(name: &'static str, why: String) -> Error {
+    Error::Option { name, why }
 }
