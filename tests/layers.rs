@@ -10,7 +10,7 @@ const LAYERS: [&str; 15] = [
 ];
 
 /// Circles that are still to be untied.
-const KNOWN: [&str; 29] = [
+const KNOWN: [&str; 27] = [
     "contact::indenter::equivalent -> contact::indenter::table_equivalent",
     "contact::indenter::table -> contact::indenter::table_equivalent",
     "contact::indenter::table_equivalent -> contact::indenter::equivalent",
@@ -27,10 +27,8 @@ const KNOWN: [&str; 29] = [
     "figures::run -> figures::pressure",
     "figures::run -> figures::profile",
     "report -> study",
-    "run::effort -> run::ready",
     "run::knob -> run::mesh",
     "run::mesh -> run::knob",
-    "run::ready -> run::effort",
     "scene::schema -> scene::study",
     "scene::schema -> scene::universality",
     "scene::study -> scene::schema",

@@ -133,7 +133,7 @@ fn shards_so_far(folder: &Path, study: &Study, asked: Option<u64>) -> Result<Opt
         (Some(there), Some(asked)) if there != asked => Err(Error::File {
             path: folder.to_owned(),
             why: format!(
-                "holds results of {there} shards, and --shards {asked} is asked for; leave it out, or use another directory"
+                "holds results of {there} shards, and {asked} are asked for; ask for no number of shards, or use another directory"
             ),
         }),
         (there, asked) => Ok(there.or(asked)),

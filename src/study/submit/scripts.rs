@@ -167,8 +167,11 @@ fn values(
 /// The lines of #SBATCH that not every cluster needs.
 fn slurm_lines(options: &Options, memory: Option<String>) -> String {
     let memory = options.memory.clone().or(memory);
-    let named =
-        [("--mem", memory), ("partition", options.partition.clone()), ("account", options.account.clone())];
+    let named = [
+        ("--mem", memory),
+        ("--partition", options.partition.clone()),
+        ("--account", options.account.clone()),
+    ];
     let named = named.into_iter().filter_map(|(name, value)| value.map(|value| format!("{name}={value}")));
     let lines = named.chain(options.engine_options.iter().cloned()).map(|it| format!("#SBATCH {it}"));
     lines.collect::<Vec<_>>().join("\n")
