@@ -17,7 +17,7 @@ use fretwear::laws::wear::Archard;
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::Model;
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
-use fretwear::solver::stepper::{Implicit, Multistep, Stepper};
+use fretwear::solver::stepper::{Bdf, Sdirk, Stepper};
 
 /// Exponent of the indenter, grading, stick ratio.
 const SCENES: [(f64, f64, f64); 12] = [
@@ -54,8 +54,8 @@ struct Shown {
 type Method = fn(f64) -> Box<dyn Stepper + Send>;
 
 const METHODS: [(&str, Method); 2] = [
-    ("Runge-Kutta", |tolerance| Box::new(Implicit::new(tolerance))),
-    ("backward differentiation", |tolerance| Box::new(Multistep::new(tolerance))),
+    ("Runge-Kutta", |tolerance| Box::new(Sdirk::new(tolerance))),
+    ("backward differentiation", |tolerance| Box::new(Bdf::new(tolerance))),
 ];
 
 impl Observer for Shown {
@@ -64,7 +64,11 @@ impl Observer for Shown {
         self.volume.push(model.wear_volume(simulation.fields()));
         self.volume_by_energy.push(simulation.state().dissipated_energy);
         let depth = |part: f64| {
-            model.wear_depth_at(simulation.state(), simulation.fields(), part * model.unworn().limit_edge())
+            model.wear_depth_at(
+                simulation.state(),
+                simulation.fields(),
+                part * model.unworn().limit_slip_area(),
+            )
         };
         // From 1e-4 of the annulus on, evenly in the logarithm, then evenly.
         let near = (0..40).map(|i| 10f64.powf(-4.0 + 0.1 * f64::from(i)));

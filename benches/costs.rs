@@ -19,7 +19,7 @@ use fretwear::run::{Run, Stop};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Fields, Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Plan, Simulation};
-use fretwear::solver::stepper::{Implicit, Stepper};
+use fretwear::solver::stepper::{Sdirk, Stepper};
 use fretwear::study::wear_map::{Control, Medium, OptimumCurve, WearMap};
 
 const SPRINGS: [usize; 5] = [50, 100, 200, 400, 800];
@@ -43,7 +43,7 @@ fn midway(contact: &InitialContact, springs: usize) -> Simulation {
     let cycles = 3.0 / contact.tau_per_cycle();
     let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
     let loose = 1e-2;
-    let stepper = Box::new(Implicit::new(loose));
+    let stepper = Box::new(Sdirk::new(loose));
     let mut simulation =
         Simulation::new(model(contact, springs), stepper, loose, plan).expect("an edge is found");
     simulation.run(&mut []).expect("steps are found");
@@ -64,12 +64,12 @@ fn parts(criterion: &mut Criterion) {
         let (model, state) = (simulation.model(), simulation.state());
         let mut fields = Fields::default();
         criterion.bench_function(&format!("evaluate/{springs}"), |bench| {
-            bench.iter(|| model.evaluate(state.edge, black_box(&state.compression), &mut fields));
+            bench.iter(|| model.evaluate(state.slip_area, black_box(&state.compression), &mut fields));
         });
         criterion.bench_function(&format!("explicit rates/{springs}"), |bench| {
             bench.iter(|| model.rates(black_box(&fields), simulation.cycle()));
         });
-        let mut stepper = Implicit::new(TOLERANCE);
+        let mut stepper = Sdirk::new(TOLERANCE);
         let cycles = 0.1 / contact.tau_per_cycle();
         let trial = stepper.step(model, state, cycles).expect("a step");
         assert!(trial.state.is_some(), "the step at {springs} springs finds no state");
@@ -166,9 +166,9 @@ fn resolved_cycles(criterion: &mut Criterion) {
             let model =
                 Model::under(&contact, schedule, springs, Clustering::Cubic, &store).expect("it slips");
             let state = model.initial_state().expect("an edge is found");
-            let (fields, drive) = (model.fields(&state), model.schedule().drive(0.0, 0.0));
+            let (fields, loading) = (model.fields(&state), model.schedule().loading(0.0, 0.0));
             criterion.bench_function(&format!("cycle: {name}/{springs} springs"), |bench| {
-                bench.iter(|| model.cycle(&drive, black_box(&state.compression), &fields));
+                bench.iter(|| model.cycle(&loading, black_box(&state.compression), &fields));
             });
         };
         measure("closed form", &Mode::Tangential, None);

@@ -83,18 +83,18 @@ fn model(n: usize) -> [f64; 5] {
     let state = model.initial_state().expect("a state");
     let set_up = begin.elapsed().as_secs_f64();
     let mut fields = model.fields(&state);
-    let drive = model.schedule().drive(0.0, 0.0);
-    let mut cycle = model.cycle(&drive, &state.compression, &fields);
+    let loading = model.schedule().loading(0.0, 0.0);
+    let mut cycle = model.cycle(&loading, &state.compression, &fields);
     let evaluation = least(|| {
-        model.evaluate(state.edge, &state.compression, &mut fields);
-        cycle = model.cycle(&drive, &state.compression, &fields);
+        model.evaluate(state.slip_area, &state.compression, &mut fields);
+        cycle = model.cycle(&loading, &state.compression, &fields);
     });
-    let by_edge = model.log_slip_by_edge(&fields);
+    let by_slip_area = model.log_slip_by_slip_area(&fields);
     let step = 0.1 / contact.tau_per_cycle();
     let mut factors = None;
     let factorise = least(|| {
-        let slopes = model.plain_growth_slopes(&drive, &fields, &cycle, -step).expect("a plain cycle");
-        factors = model.stage_factors(&fields, 1e-3, slopes, &by_edge, factors.take());
+        let slopes = model.plain_growth_slopes(&loading, &fields, &cycle, -step).expect("a plain cycle");
+        factors = model.stage_factors(&fields, 1e-3, slopes, &by_slip_area, factors.take());
     });
     let Some(factors) = factors else { return [evaluation, 0.0, 0.0, 0.0, set_up] };
     let mut rhs: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();

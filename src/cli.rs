@@ -4,7 +4,7 @@ use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 use fretwear::data::ResultPath;
 use fretwear::study::most_threads;
 use fretwear::{Error, Result, Scene};
@@ -76,6 +76,13 @@ enum Command {
     Man(completions::Man),
 }
 
+#[derive(Args, Default)]
+struct Settings {
+    /// Give a key of the scene another value, with its unit: loading.amplitude="2 um"; what excludes the key is left out
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
+}
+
 /// Does what the arguments of the process ask for.
 pub fn main() -> ExitCode {
     signals::outlive_full_files();
@@ -134,15 +141,16 @@ fn result_file(path: &Path, unchecked: bool) -> Result<ResultPath<'_>> {
 }
 
 /// Reads a scene and passes its warnings on.
-fn read(path: &Path) -> Result<Scene> {
-    let scene = Scene::read(path)?;
+fn read(path: &Path, set: &Settings) -> Result<Scene> {
+    let scene = Scene::read_with(path, &set.settings)?;
     scene.warnings().iter().for_each(|warning| complain("warning", warning));
     Ok(scene)
 }
 
 /// Shows an error at its line of the scene.
-fn at<'a>(scene: &'a Scene, path: &'a Path) -> impl Fn(Error) -> Error + 'a {
-    move |error| scene.locate(error, &path.display().to_string())
+fn at<'a>(scene: &'a Scene, path: &Path, set: &Settings) -> impl Fn(Error) -> Error + 'a {
+    let name = Scene::name_with(path, &set.settings);
+    move |error| scene.locate(error, &name)
 }
 
 /// Says something on stderr.

@@ -7,21 +7,21 @@
 //! any moment leaves either the previous save or the new one, never a torn file.
 
 #[cfg(feature = "hdf5")]
-mod arrays;
-#[cfg(feature = "hdf5")]
 mod atomic;
-#[cfg(feature = "hdf5")]
-mod encode;
+mod cells;
+mod dataset;
 mod fingerprint;
 #[cfg(feature = "hdf5")]
 mod folder;
-#[cfg(feature = "hdf5")]
 mod format;
 #[cfg(feature = "hdf5")]
 mod labelled;
 pub mod layout;
+pub mod quantity;
 #[cfg(feature = "hdf5")]
 mod reader;
+#[cfg(feature = "hdf5")]
+mod run_file;
 mod save;
 #[cfg(feature = "hdf5")]
 mod scratch;
@@ -29,8 +29,6 @@ mod scratch;
 mod seal;
 #[cfg(feature = "hdf5")]
 mod shard;
-#[cfg(feature = "hdf5")]
-mod stored;
 #[cfg(feature = "hdf5")]
 mod surface;
 #[cfg(feature = "hdf5")]
@@ -40,32 +38,33 @@ mod target;
 mod writer;
 
 #[cfg(feature = "hdf5")]
-pub use arrays::{Array, ArrayFile, ArrayShape, ArraySummary, Coordinate, TextArray, TextColumn};
-#[cfg(feature = "hdf5")]
 pub(crate) use atomic::{AtomicFile, failure, remove_abandoned};
+#[cfg(feature = "hdf5")]
+pub(crate) use cells::cell;
+pub use dataset::{Attribute, Dataset, Number, Values, Variable, Words};
 #[cfg(feature = "hdf5")]
 pub(crate) use fingerprint::Fingerprint;
 pub(crate) use fingerprint::scene_hash;
 #[cfg(feature = "hdf5")]
 pub use folder::{Mark, check_distinct, check_own, make_folder};
 #[cfg(feature = "hdf5")]
-pub(crate) use folder::{cell, check_can_be_made, check_folder, quoted, table};
-#[cfg(feature = "hdf5")]
+pub(crate) use folder::{check_can_be_made, check_folder};
 pub use format::Format;
+pub use quantity::{Quantity, Reading, Value};
 #[cfg(feature = "hdf5")]
-pub use reader::RunFile;
+pub use reader::format_of;
+#[cfg(feature = "hdf5")]
+pub use run_file::RunFile;
 #[cfg(feature = "hdf5")]
 pub(crate) use scratch::Scratch;
 #[cfg(feature = "hdf5")]
 pub use seal::ResultPath;
 #[cfg(feature = "hdf5")]
-pub use shard::{Column, SweepFile, SweepHeader, Values, Words};
-#[cfg(feature = "hdf5")]
-pub use stored::{StoredArray, StoredArrays, format_of};
+pub use shard::{SweepFile, SweepHeader, column};
 #[cfg(feature = "hdf5")]
 pub use surface::SurfaceSeries;
 #[cfg(feature = "hdf5")]
-pub use tables::{ResultTables, TableSummary};
+pub use tables::{DatasetSummary, ResultTables, TableSummary, VariableSummary};
 pub use writer::RunWriter;
 
 use std::sync::Arc;

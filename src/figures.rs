@@ -43,7 +43,7 @@ mod worn_profiles;
 pub use output::FigureFile;
 pub use run::RunResults;
 
-use crate::data::{Format, ResultPath, RunFile, StoredArrays, SweepFile, format_of};
+use crate::data::{Dataset, Format, ResultPath, RunFile, SweepFile, format_of};
 use crate::error::{Error, Result};
 use crate::figures::drawing::Figure;
 
@@ -116,11 +116,11 @@ pub enum Results {
     /// Of `fretwear sweep` or `merge`.
     Sweep(Box<SweepFile>),
     /// Of `fretwear map`.
-    Map(StoredArrays),
+    Map(Dataset),
     /// Of `fretwear universality`.
-    Universality(StoredArrays),
+    Universality(Dataset),
     /// Of `fretwear tradeoff`.
-    Tradeoff(StoredArrays),
+    Tradeoff(Dataset),
 }
 
 impl Results {
@@ -131,7 +131,7 @@ impl Results {
     pub fn read<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
         let file = file.into().ready()?;
         let format = format_of(file)?;
-        let arrays = |kind: fn(StoredArrays) -> Self| StoredArrays::read(file, format).map(kind);
+        let arrays = |kind: fn(Dataset) -> Self| Dataset::read(file, format).map(kind);
         match format {
             Format::Run => RunResults::new(RunFile::open(file)?, file.path()).map(Box::new).map(Self::Run),
             Format::Map => arrays(Self::Map),
@@ -180,7 +180,7 @@ impl Results {
             return Err(Error::Inconsistent { what: "quantity", why });
         }
         let mut figure = match self {
-            Self::Run(run) => run.figure(kind),
+            Self::Run(run) => of_run(run, kind),
             Self::Sweep(file) => sweep::figure(file, quantity),
             Self::Map(file) if kind == Kind::WornProfiles => worn_profiles::figure(file),
             Self::Map(file) if kind == Kind::Optimum => optimum::figure(file),
@@ -215,4 +215,15 @@ impl Results {
             _ => "",
         }
     }
+}
+
+fn of_run(run: &RunResults, kind: Kind) -> Result<Figure> {
+    let rows = match kind {
+        Kind::Pressure => pressure::rows(run),
+        Kind::History => history::rows(run),
+        Kind::Approach => approach::rows(run),
+        Kind::Loops => loops::rows(run),
+        _ => profile::rows(run),
+    };
+    Ok(Figure { title: run.run.header.title.as_deref().map(drawing::plain), rows, notes: run.notes() })
 }

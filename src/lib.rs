@@ -3,7 +3,7 @@
 //! A rigid axisymmetric indenter is pressed into a half-space with `E(z) = E0 (z/z0)^k` and oscillated tangentially. Its centre sticks, an
 //! annulus around it slips and wears, and in the end the worn profile reaches a shape in which the annulus carries no pressure any more.
 //! That shape has a closed form, given in \[S\] "Effect of elastic grading on fretting wear", Scientific Reports, 2019. This library steps
-//! through the cycles on the way there, by the method of dimensionality reduction, and has the closed form beside it as the judge.
+//! through the cycles on the way there, by the method of dimensionality reduction, and compares with the closed form.
 //!
 //! # A run in memory
 //!

@@ -9,28 +9,15 @@ pub mod export;
 #[cfg(feature = "hdf5")]
 mod info;
 mod limit;
-#[cfg(feature = "hdf5")]
-mod map;
 mod run;
 mod text;
-#[cfg(feature = "hdf5")]
-mod tradeoff;
-#[cfg(feature = "hdf5")]
-mod universality;
 
 pub use check::CheckReport;
 #[cfg(feature = "hdf5")]
 pub use info::{InfoReport, arrays_text};
 pub use limit::{LimitReport, ProfileTable, parse_radii};
-#[cfg(feature = "hdf5")]
-pub use map::{MapReport, OptimumRow};
 pub use run::RunReport;
-#[cfg(feature = "hdf5")]
-pub(crate) use text::{Rows, Scale, cells, number};
-#[cfg(feature = "hdf5")]
-pub use tradeoff::{CandidateReport, Fronts, OverFront, ReferenceReport, SnapshotReport, TradeoffReport};
-#[cfg(feature = "hdf5")]
-pub use universality::{UniversalityReport, UniversalityRow};
+pub(crate) use text::{Scale, TextTable, number};
 
 #[cfg(feature = "hdf5")]
 use std::path::Path;

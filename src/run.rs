@@ -3,23 +3,23 @@
 use crate::data::StopReason;
 use crate::solver::simulation::Outcome;
 
-mod effort;
+mod accuracy;
+mod cost;
 #[cfg(feature = "hdf5")]
 mod file;
-mod knob;
-mod ladder;
 mod limit;
 mod memory;
 mod mesh;
 mod parts;
 mod plan;
+pub mod readings;
 mod ready;
 mod recorder;
 mod results;
 mod shared;
 mod simulation;
 
-pub use effort::Expected;
+pub use cost::Expected;
 #[cfg(feature = "hdf5")]
 pub use file::{Resumed, Run};
 #[cfg(feature = "hdf5")]

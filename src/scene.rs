@@ -44,23 +44,29 @@ mod builder;
 mod columns;
 mod document;
 pub(crate) mod input;
+mod keys;
 mod laws;
 mod map;
 mod motion;
+mod page;
 mod patch;
 mod path_file;
 mod profile_file;
+mod reading;
 pub mod sampling;
 pub mod schema;
 mod sections;
+mod settings;
 mod spacing;
 mod study;
 mod universality;
 
 pub use builder::SceneBuilder;
 use input::{Pipes, Unread};
+pub use keys::MOST_SCENES;
 pub use map::MapScene;
-pub use study::{Input, KeptSnapshots, MOST_SCENES, Study, Task};
+pub use page::page_of_keys;
+pub use study::{Input, KeptSnapshots, Study, Task};
 pub use universality::{
     Case, FACTORS, MOST_COMBINATIONS, Prediction, Tolerances, UniversalityStudy, covering_design,
 };
@@ -90,13 +96,12 @@ impl Stepper {
     /// All methods, in the order of their cost.
     pub const ALL: [Self; 3] = [Self::EveryCycle, Self::CycleJump, Self::Implicit];
 
+    /// Their words in a scene, in the same order.
+    pub const WORDS: [&'static str; 3] = ["every-cycle", "cycle-jump", "implicit"];
+
     /// The word of the scene: `every-cycle`, `cycle-jump` or `implicit`.
     pub fn name(self) -> &'static str {
-        match self {
-            Stepper::EveryCycle => "every-cycle",
-            Stepper::CycleJump => "cycle-jump",
-            Stepper::Implicit => "implicit",
-        }
+        Self::WORDS[self as usize]
     }
 }
 
@@ -110,32 +115,15 @@ pub enum Cycle {
 }
 
 impl Cycle {
+    /// Both ways.
+    pub const ALL: [Self; 2] = [Self::ClosedForm, Self::Resolved];
+
+    /// Their words in a scene, in the same order.
+    pub const WORDS: [&'static str; 2] = ["closed-form", "resolved"];
+
     /// The word of the scene: `closed-form` or `resolved`.
     pub fn name(self) -> &'static str {
-        match self {
-            Cycle::ClosedForm => "closed-form",
-            Cycle::Resolved => "resolved",
-        }
-    }
-}
-
-/// From when on a resolved cycle wears.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum WearFrom {
-    /// From the periodic cycle into which stick and slip settle on a frozen shape.
-    #[default]
-    Shakedown,
-    /// From the first cycle after pressing on.
-    FirstCycle,
-}
-
-impl WearFrom {
-    /// The word of the scene: `shakedown` or `first-cycle`.
-    pub fn name(self) -> &'static str {
-        match self {
-            WearFrom::Shakedown => "shakedown",
-            WearFrom::FirstCycle => "first-cycle",
-        }
+        Self::WORDS[self as usize]
     }
 }
 
@@ -147,7 +135,7 @@ pub const FINEST_ACCURACY: f64 = 1e-10;
 pub struct Numerics {
     /// Accuracy asked for, in [1e-10, 0.1]; it decides what is not given by hand.
     pub accuracy: f64,
-    /// Springs over the slip annulus, at least 3, if given by hand.
+    /// Springs over the slip annulus, at least 8, if given by hand.
     pub springs: Option<usize>,
     /// Method of time stepping.
     pub stepper: Stepper,
@@ -157,8 +145,6 @@ pub struct Numerics {
     pub cycle: Option<Cycle>,
     /// Substeps of one period where it is resolved, from 2 to [`MOST_SUBSTEPS`], if given by hand.
     pub substeps: Option<usize>,
-    /// From when on a resolved cycle wears.
-    pub wear_from: WearFrom,
     /// Wall time between checkpoints, s, in [0, 1e9].
     pub checkpoint_interval: f64,
 }
@@ -167,22 +153,6 @@ impl Numerics {
     /// The accuracy asked for, where the program chooses the springs.
     pub fn accuracy_asked(&self) -> Option<f64> {
         self.springs.is_none().then_some(self.accuracy)
-    }
-}
-
-impl Default for Numerics {
-    /// Accuracy 1e-4, implicit, a checkpoint every 30 s.
-    fn default() -> Self {
-        Self {
-            accuracy: 1e-4,
-            springs: None,
-            stepper: Stepper::default(),
-            tolerance: None,
-            cycle: None,
-            substeps: None,
-            wear_from: WearFrom::default(),
-            checkpoint_interval: 30.0,
-        }
     }
 }
 
@@ -195,13 +165,6 @@ pub enum Output {
     AtCycles(Vec<f64>),
     /// At these dimensionless times, increasing, at least 0.
     AtTau(Vec<f64>),
-}
-
-impl Default for Output {
-    /// 50 snapshots.
-    fn default() -> Self {
-        Self::Snapshots(50)
-    }
 }
 
 /// Where the rows of a measured profile and of a recorded path are.
@@ -396,4 +359,13 @@ fn read_text(path: &Path) -> Result<String> {
         };
         Error::File { path: path.to_path_buf(), why: format!("{unread}{cure}") }
     })
+}
+
+/// The values of a base scene.
+///
+/// # Errors
+/// [`Error::Scene`] shows the line that is not TOML.
+fn base_table(text: &str, path: &Path) -> Result<toml::Table> {
+    let name = path.display().to_string();
+    document::Source { name: &name, text, kind: "a scene" }.values()
 }

@@ -3,11 +3,13 @@
 mod dimension;
 mod key;
 mod quantity;
+mod range;
 mod unit;
 
 pub use dimension::Dimension;
 pub(crate) use dimension::wanted;
-pub use key::{Key, Kind, Range};
+pub use key::{Form, Key, Kind, Rule, Table};
 pub use quantity::parse;
 pub(crate) use quantity::split_number;
+pub use range::Range;
 pub(crate) use unit::Unit;

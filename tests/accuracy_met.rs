@@ -10,7 +10,7 @@ use fretwear::numerics::grid::Clustering;
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Plan, Simulation};
-use fretwear::solver::stepper::{Implicit, MovingStickImplicit};
+use fretwear::solver::stepper::{Bdf, Sdirk};
 use serde_json::Value;
 use support::command::{names, run, text};
 use support::reference::Table;
@@ -171,7 +171,7 @@ fn a_rig_moves_the_contact_so_that_the_first_stick_radius_is_the_one_asked_for()
         // F_x = μ_f [F_N(d) - F_N(d_c)], F_N as the cube of the radius.
         let force = 0.5 * contact.normal_force() * (1.0 - ratio * ratio * ratio);
         let far = contact.amplitude() + force / stiffness;
-        let given = schedule.drive(0.0, 0.0).amplitude;
+        let given = schedule.loading(0.0, 0.0).amplitude;
         assert!((given / far - 1.0).abs() < 1e-6, "{part}, {ratio}: {given:e} instead of {far:e}");
         let run = fretwear::Simulation::new(&scene).expect("a run");
         let first = run.stepping().cycle().stick_radius / contact.contact_radius();
@@ -182,7 +182,7 @@ fn a_rig_moves_the_contact_so_that_the_first_stick_radius_is_the_one_asked_for()
         let contact = scene.contact().expect("a contact");
         let schedule =
             Schedule::new(&contact, scene.conditions(), Resolution::default()).expect("a schedule");
-        assert_eq!(schedule.drive(0.0, 0.0).amplitude.to_bits(), 1e-7_f64.to_bits());
+        assert_eq!(schedule.loading(0.0, 0.0).amplitude.to_bits(), 1e-7_f64.to_bits());
     }
 }
 
@@ -262,8 +262,7 @@ fn a_model_takes_all_conditions_of_its_scene_and_a_stepper_that_follows_them() {
         let model = Model::new(&contact, conditions, 40, Clustering::Cubic).expect("a model");
         let cycles = 1.0 / contact.tau_per_cycle();
         let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
-        let mut simulation =
-            Simulation::new(model, Box::new(Implicit::new(1e-4)), 1e-4, plan).expect("a start");
+        let mut simulation = Simulation::new(model, Box::new(Sdirk::new(1e-4)), 1e-4, plan).expect("a start");
         simulation.run(&mut []).expect("an end");
         simulation.model().wear_volume(simulation.fields())
     };
@@ -274,6 +273,6 @@ fn a_model_takes_all_conditions_of_its_scene_and_a_stepper_that_follows_them() {
     let contact = held.contact().expect("a contact");
     let plan = || Plan { outputs: vec![], end: End::Cycles(1.0) };
     let model = || Model::new(&contact, held.conditions(), 40, Clustering::Cubic).expect("a model");
-    assert!(Simulation::new(model(), Box::new(Implicit::new(1e-4)), 1e-4, plan()).is_err());
-    assert!(Simulation::new(model(), Box::new(MovingStickImplicit::new(1e-4)), 1e-4, plan()).is_ok());
+    assert!(Simulation::new(model(), Box::new(Bdf::new(1e-4)), 1e-4, plan()).is_err());
+    assert!(Simulation::new(model(), Box::new(Sdirk::new(1e-4)), 1e-4, plan()).is_ok());
 }

@@ -9,7 +9,7 @@ use fretwear::laws::history::History;
 use fretwear::laws::loading::Block;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Plan, Simulation};
-use fretwear::solver::stepper::MovingStickImplicit;
+use fretwear::solver::stepper::Sdirk;
 use support::command::{run, text};
 use support::{Case, Record, distance, laws};
 
@@ -26,7 +26,7 @@ fn worn(case: Case, blocks: &Blocks, tolerance: f64, outputs: &[f64]) -> (Vec<f6
     let model = laws::model(&case, &conditions(&case, blocks), None);
     assert!(model.moving().is_some());
     let plan = Plan { outputs: outputs.to_vec(), end: End::Cycles(outputs[outputs.len() - 1]) };
-    let stepper = Box::new(MovingStickImplicit::new(tolerance));
+    let stepper = Box::new(Sdirk::new(tolerance));
     let mut seen = Record::default();
     Simulation::new(model, stepper, tolerance, plan).unwrap().run(&mut [&mut seen]).unwrap();
     let depths = seen.0[seen.0.len() - 1].wear_depth.iter().map(|depth| depth / case.indentation()).collect();

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use fretwear::data::{Column, SweepFile, Values};
+use fretwear::data::{SweepFile, Values, Variable};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -17,6 +17,7 @@ radius = "10 mm"
 [half_space]
 grading = 0.2
 modulus = "210 GPa"
+reference_depth = "1 m"
 poisson_ratio = "similar"
 [friction.coulomb]
 coefficient = 0.6
@@ -198,9 +199,10 @@ fn children_seconds() -> f64 {
 
 /// Bits of all that must not depend on how the scenes were run.
 fn bits(file: &SweepFile) -> Vec<(String, Vec<u64>, Vec<String>)> {
-    let column = |Column { name, values, .. }: &Column| match values {
+    let column = |Variable { name, values, .. }: &Variable| match values {
         Values::Numbers(numbers) => (name.clone(), numbers.iter().map(|it| it.to_bits()).collect(), vec![]),
         Values::Texts(texts) => (name.clone(), vec![], texts.iter().map(str::to_owned).collect()),
+        _ => panic!("{name} holds neither numbers nor words"),
     };
     file.columns.iter().filter(|column| column.name != "wall_seconds").map(column).collect()
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use fretwear::Result;
 use fretwear::data::{
-    ArraySummary, Format, ResultPath, ResultTables, RunFile, StoredArrays, SweepFile, format_of,
+    Dataset, DatasetSummary, Format, ResultPath, ResultTables, RunFile, SweepFile, format_of,
 };
 use support::command::{done, ended, names, program, text};
 
@@ -172,8 +172,8 @@ fn files_of_every_layout_are_refused_where_they_are_damaged() {
         (&part, |path| ResultTables::open(path).map(drop)),
         (&part, |path| ResultTables::csv(path, None).map(drop)),
         (&table, |path| format_of(path).map(drop)),
-        (&table, |path| StoredArrays::read(path, Format::Map).map(drop)),
-        (&table, |path| ArraySummary::read(path).map(drop)),
+        (&table, |path| Dataset::read(path, Format::Map).map(drop)),
+        (&table, |path| DatasetSummary::read(path).map(drop)),
         (&table, |path| fretwear::figures::Results::read(path).map(drop)),
     ];
     let whole = [&part, &table].map(|path| fs::read(path).unwrap());

@@ -8,7 +8,7 @@ use fretwear::laws::history::History;
 use fretwear::laws::loading::{Mode, TangentialControl};
 use fretwear::solver::model::Model;
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
-use fretwear::solver::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
+use fretwear::solver::stepper::{Bdf, CycleJump, EveryCycle, Sdirk, Stepper};
 use support::{Case, laws};
 
 /// Depth, volume and energy at the outputs.
@@ -27,9 +27,9 @@ impl Observer for Seen {
 
 fn stepper(model: &Model) -> Box<dyn Stepper + Send> {
     match model.moving() {
-        Some(_) => Box::new(MovingStickImplicit::new(1e-4)),
-        None if model.wears_smoothly() => Box::new(Multistep::new(1e-4)),
-        None => Box::new(Implicit::new(1e-4)),
+        Some(_) => Box::new(Sdirk::new(1e-4)),
+        None if model.wears_smoothly() => Box::new(Bdf::new(1e-4)),
+        None => Box::new(Sdirk::new(1e-4)),
     }
 }
 

@@ -8,8 +8,9 @@ use std::fs;
 use fretwear::{Error, Results, StopReason};
 
 use fretwear::scene::Scene;
-use fretwear::solver::simulation::{End, Flow, Observer, Plan, Simulation};
-use fretwear::solver::stepper::Implicit;
+use fretwear::solver::model::{Model, State};
+use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
+use fretwear::solver::stepper::{Sdirk, Stepper, Trial};
 use support::{Case, command};
 
 /// The plain scene of a paraboloid, with an amplitude, an end, what more there is of loading and other tables.
@@ -77,7 +78,7 @@ fn a_run_that_cannot_go_on_names_cycle_time_radius_and_what_to_do() {
     // No step is as exact as that.
     let tolerance = 1e-40;
     let plan = Plan { outputs: vec![3.0], end: End::Cycles(3.0) };
-    let error = case.simulation(Box::new(Implicit::new(1e-3)), tolerance, plan).run(&mut []).unwrap_err();
+    let error = case.simulation(Box::new(Sdirk::new(1e-3)), tolerance, plan).run(&mut []).unwrap_err();
     let words = error.to_string();
     assert!(matches!(error, Error::NotConverged { .. }), "{words}");
     let parts = [
@@ -91,6 +92,57 @@ fn a_run_that_cannot_go_on_names_cycle_time_radius_and_what_to_do() {
         assert!(words.contains(part), "{words:?} does not contain {part:?}");
     }
     assert!(!words.contains("too small"), "{words}");
+}
+
+/// Steps of one length without wear, of which some in a period are off by too much.
+struct Rejected {
+    length: f64,
+    rejects: &'static [bool],
+    tried: usize,
+}
+
+impl Stepper for Rejected {
+    fn step(&mut self, _: &Model, state: &State, cycles: f64) -> fretwear::Result<Trial> {
+        self.tried += 1;
+        let rejected = self.rejects[self.tried % self.rejects.len()];
+        Ok(Trial {
+            state: Some(State { cycles: state.cycles + cycles, ..state.clone() }),
+            fields: None,
+            error: if rejected { 2.0 } else { 0.0 },
+            rate_evaluations: 1,
+            next_step: Some(self.length),
+        })
+    }
+
+    fn estimate_order(&self) -> f64 {
+        1.0
+    }
+}
+
+#[test]
+fn a_run_is_given_up_after_four_thousand_rejected_steps_only_if_they_are_more_than_half_of_the_accepted() {
+    let case = Case::new(2.0, 0.0, 0.7, 10);
+    let after = |steps: f64, rejects: &'static [bool]| {
+        let probe =
+            case.simulation(Box::new(Sdirk::new(1e-3)), 1.0, Plan { outputs: vec![], end: End::Cycles(1.0) });
+        let length = probe.progress().next_step;
+        let plan = Plan { outputs: vec![], end: End::Cycles(steps * length) };
+        let mut simulation = case.simulation(Box::new(Rejected { length, rejects, tried: 0 }), 1.0, plan);
+        let outcome = simulation.run(&mut []);
+        (outcome, *simulation.progress())
+    };
+    // Half a step and a whole one in turn.
+    let (outcome, progress) = after(1e6, &[false, true]);
+    let error = outcome.expect_err("half of the steps are rejected");
+    assert!(
+        matches!(error, Error::NotConverged { .. }) && error.to_string().contains("most are rejected"),
+        "{error}"
+    );
+    assert_eq!(progress.rejected_steps, 4001, "given up after {} accepted steps", progress.steps);
+
+    let (outcome, progress) = after(12_000.0, &[false, true, false, false]);
+    assert_eq!(outcome.expect("a quarter of the steps is rejected"), Outcome::End);
+    assert!(progress.rejected_steps > 4001, "{} of {}", progress.rejected_steps, progress.steps);
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn tables_of_every_kind_hold_every_digit_under_heads_with_units() {
     let folder = folder.path();
     let files = every_kind(folder);
     for file in &files {
-        let tables = ResultTables::open(file).unwrap().summaries();
+        let tables = ResultTables::open(file).unwrap().summaries().unwrap();
         assert!(tables.iter().any(|table| table.name == ResultTables::open(file).unwrap().usual()));
         for table in tables {
             let csv = ResultTables::csv(file, Some(&table.name)).unwrap();

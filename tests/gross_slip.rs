@@ -14,7 +14,7 @@ use fretwear::laws::wear::Archard;
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Outcome, Plan, Simulation};
-use fretwear::solver::stepper::{CycleJump, Implicit, MovingStickImplicit};
+use fretwear::solver::stepper::{CycleJump, Sdirk};
 use support::laws::plain;
 use support::{Record, distance};
 
@@ -65,14 +65,14 @@ fn the_first_rate_of_gross_slip_is_that_of_the_closed_form() {
                 assert!(model.slides());
                 let state = model.initial_state().unwrap();
                 let fields = model.fields(&state);
-                let cycle = model.cycle(&model.schedule().drive(0.0, 0.0), &state.compression, &fields);
+                let cycle = model.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields);
                 let expected = first_rate(&contact, exponent, grading);
                 let of_surface: f64 = model
                     .operators()
                     .depth_sum()
                     .iter()
                     .zip(cycle.growth.iter().zip(&fields.slip_depth))
-                    .map(|(weight, (growth, depth))| PI * fields.edge * weight * growth * depth)
+                    .map(|(weight, (growth, depth))| PI * fields.slip_area * weight * growth * depth)
                     .sum();
                 let off = [cycle.volume, of_surface].map(|rate| (rate / expected - 1.0).abs());
                 println!("k {grading} n {exponent} U {over}: energy and surface off by {off:?}");
@@ -98,7 +98,7 @@ fn gross_slip_runs_for_every_indenter_and_amplitude() {
                     let plan = Plan { outputs: vec![0.01, 0.1, 1.0], end: End::Cycles(1.0) };
                     let mut seen = Record::default();
                     let mut simulation =
-                        Simulation::new(model, Box::new(Implicit::new(1e-3)), 1e-3, plan).unwrap();
+                        Simulation::new(model, Box::new(Sdirk::new(1e-3)), 1e-3, plan).unwrap();
                     let outcome = simulation.run(&mut [&mut seen]);
                     let place = format!("k {grading} n {exponent} U {over} on {springs} springs");
                     let outcome = outcome.unwrap_or_else(|error| panic!("{place}: {error}"));
@@ -135,7 +135,7 @@ fn gross_slip_under_normal_oscillation_wears_from_the_first_cycle() {
         let model = model(&contact, &conditions, 60).unwrap();
         assert!(model.slides());
         let plan = Plan { outputs: vec![0.1], end: End::Cycles(0.1) };
-        let mut simulation = Simulation::new(model, Box::new(Implicit::new(1e-3)), 1e-3, plan).unwrap();
+        let mut simulation = Simulation::new(model, Box::new(Sdirk::new(1e-3)), 1e-3, plan).unwrap();
         let first = simulation.progress().first_rate;
         assert_eq!(simulation.run(&mut []).unwrap(), Outcome::End);
         let (state, fields) = (simulation.state(), simulation.fields());
@@ -156,7 +156,7 @@ fn explicit_steps_and_a_held_force_serve_gross_slip_on_a_flat_indenter() {
     let at = |implicit: bool| {
         let model = model(&contact, &plain(&contact), 60).unwrap();
         let mut simulation = if implicit {
-            Simulation::new(model, Box::new(Implicit::new(1e-4)), 1e-4, plan.clone()).unwrap()
+            Simulation::new(model, Box::new(Sdirk::new(1e-4)), 1e-4, plan.clone()).unwrap()
         } else {
             Simulation::new(model, Box::new(CycleJump::default()), 1e-4, plan.clone()).unwrap()
         };
@@ -168,7 +168,7 @@ fn explicit_steps_and_a_held_force_serve_gross_slip_on_a_flat_indenter() {
     assert!((implicit / explicit - 1.0).abs() < 1e-3, "{implicit} {explicit}");
     let held = Conditions { holds_normal_force: true, ..plain(&contact) };
     let model = model(&contact, &held, 60).unwrap();
-    let stepper = Box::new(MovingStickImplicit::new(1e-4));
+    let stepper = Box::new(Sdirk::new(1e-4));
     let mut simulation = Simulation::new(model, stepper, 1e-4, plan.clone()).unwrap();
     simulation.run(&mut []).unwrap();
     let volume = simulation.model().wear_volume(simulation.fields());

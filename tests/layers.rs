@@ -10,40 +10,11 @@ const LAYERS: [&str; 15] = [
 ];
 
 /// Circles that are still to be untied.
-const KNOWN: [&str; 33] = [
+const KNOWN: [&str; 4] = [
     "contact::indenter::equivalent -> contact::indenter::table_equivalent",
     "contact::indenter::table -> contact::indenter::table_equivalent",
     "contact::indenter::table_equivalent -> contact::indenter::equivalent",
     "contact::indenter::table_equivalent -> contact::indenter::table",
-    "figures::approach -> figures::run",
-    "figures::history -> figures::run",
-    "figures::loops -> figures::run",
-    "figures::pressure -> figures::profile",
-    "figures::pressure -> figures::run",
-    "figures::profile -> figures::run",
-    "figures::run -> figures::approach",
-    "figures::run -> figures::history",
-    "figures::run -> figures::loops",
-    "figures::run -> figures::pressure",
-    "figures::run -> figures::profile",
-    "report -> study",
-    "run::knob -> run::ladder",
-    "run::knob -> run::mesh",
-    "run::knob -> run::parts",
-    "run::ladder -> run::parts",
-    "run::mesh -> run::knob",
-    "run::mesh -> run::parts",
-    "run::parts -> run::knob",
-    "run::parts -> run::mesh",
-    "scene::schema -> scene::study",
-    "scene::schema -> scene::universality",
-    "scene::study -> scene::schema",
-    "scene::universality -> scene::study",
-    "solver::model::jacobian -> solver::model::operators",
-    "solver::model::operators -> solver::model::jacobian",
-    "solver::model::reach -> solver::model::schedule",
-    "solver::model::schedule -> solver::model::reach",
-    "study -> report",
 ];
 
 fn source() -> PathBuf {

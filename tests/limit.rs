@@ -55,7 +55,7 @@ fn data(name: &str) -> PathBuf {
 
 fn scene(amplitude: &str) -> String {
     format!(
-        "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = 0.2\nmodulus = \"210 GPa\"\npoisson_ratio = 0.3\n\
+        "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = 0.2\nmodulus = \"210 GPa\"\nreference_depth = \"1 m\"\npoisson_ratio = 0.3\n\
          [friction.coulomb]\ncoefficient = 0.6\n[wear.archard]\ncoefficient = 1e-14\n\
          [loading]\nindentation = \"1 um\"\n{amplitude}\ntau = 30\n"
     )
@@ -176,16 +176,17 @@ fn a_scene_gives_the_reference_tables() {
             of("c_over_a0"),
         );
         let report = LimitReport::new(&Scene::from_toml(&text, "scene").unwrap(), Some(&[])).unwrap();
-        let (a0, d) = (report.contact_radius_initial, report.indentation);
+        let (contact, limit) = (&report.form.contact, report.form.limit.as_ref().unwrap());
+        let (a0, d) = (contact.contact_radius(), contact.indentation());
         let quantities = [
-            (report.stiffness_ratio, of("mindlin_m")),
-            (report.amplitude / report.amplitude_full_sliding, of("u_over_umax")),
-            (report.amplitude / (0.6 * d), of("ubar")),
-            (report.slip_width_limit.unwrap() / a0, of("a_inf_minus_c_over_a0")),
-            (report.contact_growth_limit.unwrap() / a0, of("a_inf_minus_a0_over_a0")),
-            (report.wear_volume_limit.unwrap() / (PI * a0 * a0 * d), of("dv_over_pi_a0sq_d")),
-            (report.wear_volume_asymptotic.unwrap() / (PI * a0 * a0 * d), of("dv_eq15_over_pi_a0sq_d")),
-            (report.wear_depth_max.unwrap() / d, of("max_df_over_d")),
+            (contact.half_space().stiffness_ratio(), of("mindlin_m")),
+            (contact.amplitude() / contact.amplitude_full_sliding(), of("u_over_umax")),
+            (contact.amplitude() / (0.6 * d), of("ubar")),
+            (limit.slip_width_limit() / a0, of("a_inf_minus_c_over_a0")),
+            (limit.contact_growth_limit() / a0, of("a_inf_minus_a0_over_a0")),
+            (limit.wear_volume() / (PI * a0 * a0 * d), of("dv_over_pi_a0sq_d")),
+            (limit.wear_volume_asymptotic() / (PI * a0 * a0 * d), of("dv_eq15_over_pi_a0sq_d")),
+            (limit.wear_depth_max() / d, of("max_df_over_d")),
         ];
         for (found, expected) in quantities {
             worst = worst.max((found / expected - 1.0).abs());
@@ -217,7 +218,7 @@ fn csv_holds_the_profile_with_all_digits_and_is_never_overwritten_unasked() {
     assert_eq!(Some(column(3)), report.profile.wear_depth);
     // The list is dense enough to see the deepest place.
     let deepest = column(3).into_iter().fold(0.0, f64::max);
-    assert!((deepest / report.wear_depth_max.unwrap() - 1.0).abs() < 1e-3, "{deepest:e}");
+    assert!((deepest / report.form.limit.unwrap().wear_depth_max() - 1.0).abs() < 1e-3, "{deepest:e}");
 
     fs::write(folder.path().join("table.csv"), "mine").unwrap();
     let refused = run(folder.path(), &["limit", scene, "--csv", "table.csv"]);

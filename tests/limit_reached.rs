@@ -8,7 +8,7 @@ use fretwear::numerics::grid::{Clustering, Mesh};
 use fretwear::numerics::linear::multiply;
 use fretwear::numerics::roots::bracketed;
 use fretwear::solver::simulation::{End, Outcome, Plan};
-use fretwear::solver::stepper::Implicit;
+use fretwear::solver::stepper::Sdirk;
 use support::{Case, orders};
 
 #[test]
@@ -22,7 +22,7 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
                 let name = format!("n = {exponent}, k = {grading}, c/a0 = {stick_ratio}");
                 let shape = LimitingShape::from_contact(&case.contact()).unwrap().unwrap();
                 let plan = Plan { outputs: vec![], end: End::Rate(1e-12) };
-                let mut simulation = case.simulation(Box::new(Implicit::new(1e-3)), 1e-3, plan);
+                let mut simulation = case.simulation(Box::new(Sdirk::new(1e-3)), 1e-3, plan);
                 let outcome = simulation.run(&mut []).unwrap();
                 assert_eq!(outcome, Outcome::Rate, "{name}");
                 let model = simulation.model();
@@ -31,7 +31,7 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
                 let distance = support::distance(&simulation.wear_depth(), &limit) / shape.wear_depth_max();
                 let worn = model.wear_volume(simulation.fields()) / shape.wear_volume() - 1.0;
                 let limit_edge = shape.contact_radius_limit().powi(2) - shape.stick_radius().powi(2);
-                let off = (simulation.state().edge / limit_edge - 1.0).abs();
+                let off = (simulation.state().slip_area / limit_edge - 1.0).abs();
                 // As k → 1 the ground next to the edge of stick wears long after the rest.
                 let depth = if grading == 0.9 { &mut late } else { &mut depth };
                 for (worst, value) in [(depth, distance), (&mut volume, worn.abs()), (&mut edge, off)] {

@@ -9,9 +9,11 @@ use fretwear::laws::friction::FrictionLaw;
 use fretwear::laws::loading::{Mode, RecordedPath, TangentialControl};
 use fretwear::numerics::grid::Clustering;
 use fretwear::numerics::quadrature::Rule;
-use fretwear::solver::model::{Demand, FrettingLoop, Model, OperatorStore, Resolution, Schedule, State};
+use fretwear::solver::model::{
+    AmplitudeControl, FrettingLoop, Model, OperatorStore, Resolution, Schedule, State,
+};
 use fretwear::solver::simulation::{End, Plan, Simulation};
-use fretwear::solver::stepper::{Implicit, MovingStickImplicit};
+use fretwear::solver::stepper::Sdirk;
 use support::{Case, Record, Seen, distance, orders};
 
 /// Displacements of a loop of `2 half` equal steps.
@@ -55,7 +57,7 @@ fn first_loading_is_that_of_ciavarella_and_jaeger() {
 fn the_area_of_a_loop_is_the_energy_of_a_cycle_at_every_wear() {
     for case in cases() {
         for tau in [0.3, 3.0, 20.0] {
-            let seen = case.run(Box::new(Implicit::new(1e-4)), 1e-4, &[tau]);
+            let seen = case.run(Box::new(Sdirk::new(1e-4)), 1e-4, &[tau]);
             let model = case.model();
             let state = &seen[0].state;
             let fields = model.fields(state);
@@ -84,7 +86,7 @@ fn the_area_of_a_loop_is_the_energy_of_a_cycle_at_every_wear() {
 #[test]
 fn a_worn_out_contact_is_moved_by_its_stick_zone_alone() {
     let case = Case::new(2.0, 0.0, 0.7, 100);
-    let seen = case.run(Box::new(Implicit::new(1e-4)), 1e-4, &[40.0]);
+    let seen = case.run(Box::new(Sdirk::new(1e-4)), 1e-4, &[40.0]);
     let model = case.model();
     let fields = model.fields(&seen[0].state);
     let (u, c) = (model.contact().amplitude(), 0.7);
@@ -105,10 +107,10 @@ fn under(case: &Case, conditions: &Conditions, substeps: usize) -> Model {
 /// The loop of the cycle that begins in a state, with the energy of its period.
 fn loop_and_energy(model: &Model, state: &State, steps: usize) -> (FrettingLoop, f64) {
     let fields = model.fields(state);
-    let drive = model.drive_in(state, model.schedule().drive(state.cycles, state.cycles));
-    let cycle = model.cycle(&drive, &state.compression, &fields);
-    let found = model.cycle_loop(&drive, &cycle, &state.compression, &fields, steps);
-    (found, cycle.dissipation * drive.cycles_per_period)
+    let loading = model.loading_in(state, model.schedule().loading(state.cycles, state.cycles));
+    let cycle = model.cycle(&loading, &state.compression, &fields);
+    let found = model.cycle_loop(&loading, &cycle, &state.compression, &fields, steps);
+    (found, cycle.dissipation * loading.cycles_per_period)
 }
 
 /// As all the modes below are run: a force that stick can bear to the end.
@@ -212,10 +214,11 @@ fn a_held_force_is_the_force_of_every_loop() {
     let case = CASE;
     let (_, conditions) = modes().into_iter().find(|(name, _)| *name == "force").unwrap();
     let model = under(&case, &conditions, 64);
-    let Demand::Force(asked) = model.schedule().drive(0.0, 0.0).demand else { panic!("no force") };
+    let AmplitudeControl::Force(asked) = model.schedule().loading(0.0, 0.0).control else {
+        panic!("no force")
+    };
     let plan = Plan { outputs: vec![0.5, 3.0, 20.0], end: End::Cycles(20.0) };
-    let mut simulation =
-        Simulation::new(model, Box::new(MovingStickImplicit::new(1e-4)), 1e-4, plan).unwrap();
+    let mut simulation = Simulation::new(model, Box::new(Sdirk::new(1e-4)), 1e-4, plan).unwrap();
     let mut seen = Record::default();
     simulation.run(&mut [&mut seen]).unwrap();
     let first = simulation.model().contact().amplitude();

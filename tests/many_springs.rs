@@ -15,7 +15,7 @@ use fretwear::numerics::linear::{Factors, Halves, HodlrFactors, LowRank, OffDiag
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, Past, State};
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
-use fretwear::solver::stepper::Multistep;
+use fretwear::solver::stepper::Bdf;
 
 /// A compression with waves that vanishes at the contact edge.
 fn compression(mesh: &Mesh) -> Vec<f64> {
@@ -206,8 +206,7 @@ fn run(grading: f64, springs: usize, tolerance: f64) -> (f64, f64) {
     assert_eq!(model.operators().backend(), expected);
     let cycles = 20.0 / contact.tau_per_cycle();
     let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
-    let mut simulation =
-        Simulation::new(model, Box::new(Multistep::new(tolerance)), tolerance, plan).unwrap();
+    let mut simulation = Simulation::new(model, Box::new(Bdf::new(tolerance)), tolerance, plan).unwrap();
     simulation.run(&mut []).unwrap();
     let volume = simulation.model().wear_volume(simulation.fields());
     let limit = LimitingShape::from_contact(&contact).unwrap().unwrap().wear_volume();
@@ -272,14 +271,14 @@ fn factors_of_newtons_matrix_invert_it_nearly() {
         .unwrap();
         let state = model.initial_state().unwrap();
         let fields = model.fields(&state);
-        let drive = model.schedule().drive(0.0, 0.0);
-        let cycle = model.cycle(&drive, &state.compression, &fields);
+        let loading = model.schedule().loading(0.0, 0.0);
+        let cycle = model.cycle(&loading, &state.compression, &fields);
         let step = 0.1 / contact.tau_per_cycle();
-        let slopes = model.plain_growth_slopes(&drive, &fields, &cycle, -step).unwrap();
-        let (by_pressure, growth) = (slopes.by_pressure, slopes.by_edge.clone());
-        let by_edge = model.log_slip_by_edge(&fields);
+        let slopes = model.plain_growth_slopes(&loading, &fields, &cycle, -step).unwrap();
+        let (by_pressure, growth) = (slopes.by_pressure, slopes.by_slip_area.clone());
+        let by_slip_area = model.log_slip_by_slip_area(&fields);
         let theta = 1e-3;
-        let factors = model.stage_factors(&fields, theta, slopes, &by_edge, None).unwrap();
+        let factors = model.stage_factors(&fields, theta, slopes, &by_slip_area, None).unwrap();
         // The product of the matrix, by the transforms, with something that is a compression and not smooth.
         let inner = n - 1;
         let change: Vec<f64> = (0..inner).map(|i| (0.77 * i as f64).sin()).collect();
@@ -289,17 +288,17 @@ fn factors_of_newtons_matrix_invert_it_nearly() {
         let [profile, pressure] = model.operators().transforms();
         profile.apply(&density, &mut carried);
         pressure.apply(&change, &mut pressed);
-        let scale = fields.edge.powf(0.5 * (1.0 - grading));
+        let scale = fields.slip_area.powf(0.5 * (1.0 - grading));
         let by_log: Vec<f64> =
             carried.iter().zip(&fields.slip_depth).map(|(depth, slip)| -scale * depth / slip).collect();
         let along = model.along_annulus(&by_log);
-        let edge = fields.edge;
+        let edge = fields.slip_area;
         let mut rhs: Vec<f64> = (0..inner)
             .map(|i| {
-                by_log[i] - theta * along[i] + by_pressure * pressed[i] + (by_edge[i] + growth[i]) * edge
+                by_log[i] - theta * along[i] + by_pressure * pressed[i] + (by_slip_area[i] + growth[i]) * edge
             })
             .collect();
-        rhs.push(by_log[inner] + by_edge[inner] * edge);
+        rhs.push(by_log[inner] + by_slip_area[inner] * edge);
         factors.solve(&mut rhs);
         let errors = rhs.iter().zip(&change).map(|(found, q)| (found - q).abs());
         let error = errors.fold(0.0, f64::max);
@@ -325,7 +324,7 @@ fn runs_that_are_resumed_with_factors_of_steps_before_repeat_every_bit() {
     let cycles = 20.0 / contact.tau_per_cycle();
     let end = |every: u64| {
         let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
-        let stepper = || Box::new(Multistep::new(1e-4));
+        let stepper = || Box::new(Bdf::new(1e-4));
         let model = Model::new(
             &contact,
             &Conditions::plain(*contact.friction(), *contact.wear()),

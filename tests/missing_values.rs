@@ -5,7 +5,7 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use fretwear::data::{Format, RunFile, StoredArrays};
+use fretwear::data::{Dataset, Format, RunFile};
 use support::command::{done, run};
 
 const SCENE: &str = r#"
@@ -144,9 +144,9 @@ fn curves_of_universality_lie_as_near_to_the_diagonal_as_their_cases_to_the_limi
     fs::write(at.join("study.toml"), study).unwrap();
     let ended = run(at, &["universality", "study.toml", "-o", "out", "--quiet"]);
     assert!(ended.status.code().is_some_and(|code| code < 2), "{}", support::command::text(&ended.stderr));
-    let file = StoredArrays::read(&at.join("out/universality.h5"), Format::Universality).unwrap();
-    let cases = file.coordinate("distance").unwrap();
-    let points = file.coordinate("position").unwrap().len();
+    let file = Dataset::read(&at.join("out/universality.h5"), Format::Universality).unwrap();
+    let cases = file.along("distance").unwrap();
+    let points = file.along("position").unwrap().len();
     let [depth, limit] = ["profile_wear_depth", "profile_limit"]
         .map(|name| file.numbers(name, &[cases.len(), points]).unwrap());
     for (case, distance) in cases.iter().enumerate() {

@@ -12,7 +12,7 @@ use fretwear::numerics::grid::Clustering;
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule, State};
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Progress, Simulation};
-use fretwear::solver::stepper::Implicit;
+use fretwear::solver::stepper::Sdirk;
 use serde_json::Value;
 use support::command::{RUN_KEYS, object};
 use support::resume::whole_and_in_parts;
@@ -353,7 +353,7 @@ impl Observer for Ends {
 
 fn simulation(model: Model, last: f64, before: Option<(State, Progress)>) -> Simulation {
     let plan = Plan { outputs: vec![last], end: End::Cycles(last) };
-    let stepper = Box::new(Implicit::new(1e-5));
+    let stepper = Box::new(Sdirk::new(1e-5));
     match before {
         None => Simulation::new(model, stepper, 1e-5, plan).unwrap(),
         Some((state, progress)) => Simulation::resume(

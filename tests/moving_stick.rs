@@ -19,7 +19,7 @@ use fretwear::run::{Run, Stop};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule, State};
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
-use fretwear::solver::stepper::MovingStickImplicit;
+use fretwear::solver::stepper::Sdirk;
 use support::resume::whole_and_in_parts;
 use support::{Case, distance, laws};
 
@@ -72,7 +72,7 @@ fn finish_at(
     let model = Model::under(contact, schedule, springs, Clustering::Cubic, &store).unwrap();
     assert!(model.moving().is_some());
     let plan = Plan { outputs: vec![0.3, 1.0, 3.0, 10.0, 30.0], end: End::Rate(rate) };
-    let stepper = Box::new(MovingStickImplicit::new(tolerance));
+    let stepper = Box::new(Sdirk::new(tolerance));
     let mut simulation = Simulation::new(model, stepper, tolerance, plan).unwrap();
     let outcome = simulation.run(observers).unwrap();
     assert!([Outcome::Rate, Outcome::WornOut].contains(&outcome), "{outcome:?}");
@@ -89,7 +89,7 @@ fn volume_by_depth(simulation: &Simulation) -> f64 {
     let model = simulation.model();
     let sum: f64 =
         model.operators().depth_sum().iter().zip(simulation.wear_depth()).map(|(w, depth)| w * depth).sum();
-    PI * model.unworn().limit_edge() * sum / model.contact().indentation()
+    PI * model.unworn().limit_slip_area() * sum / model.contact().indentation()
 }
 
 fn end_of(case: &Case, conditions: &Conditions, tolerance: f64) -> f64 {
@@ -239,7 +239,7 @@ fn the_normal_force_is_held_by_the_profile_that_the_edge_of_stick_left_behind() 
             let mut steps = history.0.clone();
             steps.dedup_by(|next, before| next[1] - before[1] < 1e-9 * last);
             let found = load_at_rest(&simulation, &steps);
-            let expected = simulation.fields().place.stick_load;
+            let expected = simulation.fields().stick_zone.stick_load;
             errors.push((found / expected - 1.0).abs());
             let all = 2.0 * contact.half_space().normal_stiffness() * found / contact.normal_force() - 1.0;
             println!(

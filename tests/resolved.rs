@@ -9,7 +9,7 @@ use fretwear::laws::path::SampledPath;
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Plan, Simulation};
-use fretwear::solver::stepper::{CycleJump, EveryCycle, Implicit, Stepper};
+use fretwear::solver::stepper::{CycleJump, EveryCycle, Sdirk, Stepper};
 use support::{Case, distance, laws, orders};
 
 const MEDIA: [(f64, f64); 3] = [(2.0, 0.0), (1.0, -0.3), (2.0, 0.5)];
@@ -19,8 +19,7 @@ fn states(model: &Model, times: &[f64]) -> Vec<State> {
     let mut found = vec![model.initial_state().unwrap()];
     for time in times {
         let plan = Plan { outputs: vec![*time], end: End::Cycles(*time) };
-        let mut simulation =
-            Simulation::new(model.clone(), Box::new(Implicit::new(1e-3)), 1e-3, plan).unwrap();
+        let mut simulation = Simulation::new(model.clone(), Box::new(Sdirk::new(1e-3)), 1e-3, plan).unwrap();
         simulation.run(&mut []).unwrap();
         found.push(simulation.state().clone());
     }
@@ -50,7 +49,7 @@ fn a_resolved_tangential_cycle_is_the_closed_form_for_any_number_of_substeps() {
                     for state in &states {
                         let fields = other.fields(state);
                         let [exact, resolved] = [&one, &other].map(|model| {
-                            other.cycle(&model.schedule().drive(0.0, 0.0), &state.compression, &fields)
+                            other.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields)
                         });
                         // Next to the edge of stick a difference of nearly equal numbers is divided by itself; the depth is not.
                         let [depth, resolved_depth] = [&exact, &resolved].map(|cycle| -> Vec<f64> {
@@ -113,9 +112,9 @@ fn work_of_the_drive_is_what_friction_and_jumps_take_in_every_mode_under_every_l
         let case = Case::new(exponent, grading, 0.7, 16);
         for (name, conditions) in all_conditions(&case) {
             let model = laws::model(&case, &conditions, None);
-            let drive = model.schedule().drive(0.0, 0.0);
+            let loading = model.schedule().loading(0.0, 0.0);
             for state in [model.initial_state().unwrap(), some_compression(&model)] {
-                let cycle = model.cycle(&drive, &state.compression, &model.fields(&state));
+                let cycle = model.cycle(&loading, &state.compression, &model.fields(&state));
                 let error = (cycle.dissipation + cycle.jump_loss) / cycle.work - 1.0;
                 worst = worst.max(error.abs());
                 if !(cycle.work > 0.0 && error.abs() < 1e-9) {
@@ -135,26 +134,27 @@ fn slopes_of_growth_are_those_of_differences_in_every_mode_under_every_law() {
     let mut failed = vec![];
     for (name, conditions) in all_conditions(&case) {
         let model = laws::model(&case, &conditions, None);
-        let drive = model.schedule().drive(0.0, 0.0);
+        let loading = model.schedule().loading(0.0, 0.0);
         let state = some_compression(&model);
         let fields = model.fields(&state);
-        let cycle = model.cycle(&drive, &state.compression, &fields);
+        let cycle = model.cycle(&loading, &state.compression, &fields);
         let n = model.springs();
         let mut matrix = Mat::zeros(n, n);
-        model.add_growth_slopes(&drive, &state.compression, &fields, &cycle, 1.0, &mut matrix);
-        let growth = |edge: f64, compression: &[f64]| {
-            let moved = State { edge, compression: compression.to_vec(), ..state.clone() };
-            model.cycle(&drive, compression, &model.fields(&moved)).growth
+        model.add_growth_slopes(&loading, &state.compression, &fields, &cycle, 1.0, &mut matrix);
+        let growth = |slip_area: f64, compression: &[f64]| {
+            let moved = State { slip_area, compression: compression.to_vec(), ..state.clone() };
+            model.cycle(&loading, compression, &model.fields(&moved)).growth
         };
         let mut error = 0.0_f64;
         let mut whole = 0.0_f64;
         for j in 0..n {
             // Small enough to stay within a cell of the table of a path.
-            let difference = 1e-6 * if j + 1 < n { model.contact().slip_compression() } else { state.edge };
+            let difference =
+                1e-6 * if j + 1 < n { model.contact().slip_compression() } else { state.slip_area };
             let at = |sign: f64| {
-                let (mut edge, mut compression) = (state.edge, state.compression.clone());
-                *compression.get_mut(j).unwrap_or(&mut edge) += sign * difference;
-                growth(edge, &compression)
+                let (mut slip_area, mut compression) = (state.slip_area, state.compression.clone());
+                *compression.get_mut(j).unwrap_or(&mut slip_area) += sign * difference;
+                growth(slip_area, &compression)
             };
             let (before, after) = (at(-1.0), at(1.0));
             for i in 0..n {
@@ -189,7 +189,7 @@ fn every_cycle_resolved_differs_from_the_continuous_wear_by_the_first_order_in_o
         simulation.run(&mut []).unwrap();
         (simulation.wear_depth(), simulation.model().depth_scale())
     };
-    let (exact, scale) = run(1.0, None, Box::new(Implicit::new(1e-9)), 1e-9);
+    let (exact, scale) = run(1.0, None, Box::new(Sdirk::new(1e-9)), 1e-9);
     let errors = [1000.0, 2000.0, 4000.0]
         .map(|cycles| distance(&run(cycles, Some(5), Box::<EveryCycle>::default(), 1.0).0, &exact) / scale);
     println!("errors {errors:?}, orders {:?}", orders(&errors));
@@ -234,12 +234,12 @@ fn every_stepper_wears_alike_with_closed_and_with_resolved_cycles() {
             let scale = simulation.model().depth_scale();
             (seen.0, limit, scale)
         };
-        let (exact, limit, scale) = run(None, Box::new(Implicit::new(1e-8)), 1e-8);
+        let (exact, limit, scale) = run(None, Box::new(Sdirk::new(1e-8)), 1e-8);
         for substeps in [None, Some(3)] {
             let steppers: [(&str, Box<dyn Stepper + Send>, f64); 3] = [
                 ("every-cycle", Box::<EveryCycle>::default(), 3e-3),
                 ("cycle-jump", Box::<CycleJump>::default(), 1e-4),
-                ("implicit", Box::new(Implicit::new(1e-5)), 1e-4),
+                ("implicit", Box::new(Sdirk::new(1e-5)), 1e-4),
             ];
             for (stepper_name, stepper, allowed) in steppers {
                 // Its first cycle takes more off next to the edge of stick than a slope can carry along.

@@ -137,7 +137,7 @@ fn the_scenes_that_come_along_give_the_keys_and_curves_promised() {
         let (by_volume, limit) = (last.wear_volume, shape.wear_volume());
         let by_energy = last.dissipated_energy * contact.wear().coefficient / contact.friction().coefficient;
         let estimate = json["error_estimate"].as_f64().unwrap();
-        // Measured: 1.2e-5 to 5e-5 by the pilot, 2e-4 at most by the energy; the accuracy asked for is the default.
+        // Measured: 1.2e-5 to 5e-5 by the companion, 2e-4 at most by the energy; the accuracy asked for is the default.
         assert!(estimate > 0.0 && estimate < ACCURACY, "{name}: {estimate:e}");
         let balance = (by_energy - by_volume).abs() / limit;
         assert!(balance < 1e-3, "{name}: {balance:e}");

@@ -7,7 +7,7 @@ use fretwear::contact::indenter::Indenter;
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::loading::{Amplitude, Duration, Load};
 use fretwear::report::CheckReport;
-use fretwear::scene::{Cycle, Numerics, Output, Scene, Stepper, WearFrom};
+use fretwear::scene::{Cycle, Numerics, Output, Scene, Stepper};
 use fretwear::units::{Dimension, parse};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
@@ -17,6 +17,7 @@ const VALID: &str = r#"title = "Valid"
 radius = "10 mm"
 [half_space]
 grading = 0.2
+reference_depth = "1 m"
 modulus = "210 GPa"
 poisson_ratio = 0.3
 [friction.coulomb]
@@ -137,9 +138,9 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
         (WEAR, "coefficient = \"1e-5 mm^3/N m\"", "mm^3/N m", &["wear.archard.coefficient", "a/(b c)"]),
         (
             WEAR,
-            "coefficient = \"1e-5 mm^3/Nm\"",
-            "mm^3/Nm",
-            &["wear.archard.coefficient", "did you mean \"N m\"?"],
+            "coefficient = \"1e-5 mm^3/Jm\"",
+            "mm^3/Jm",
+            &["wear.archard.coefficient", "did you mean \"J m\"?"],
         ),
         (
             WEAR,
@@ -175,8 +176,8 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
         (POISSON, "poisson_ratio = 0.6", "= 0.6", &["half_space.poisson_ratio = 0.6 is outside (-1, 0.5]"]),
         (POISSON, "poisson_ratio = \"alike\"", "alike", &["half_space.poisson_ratio", "\"similar\""]),
         (
-            POISSON,
-            "poisson_ratio = 0.3\nreference_depth = 0",
+            "reference_depth = \"1 m\"",
+            "reference_depth = 0",
             "reference_depth",
             &["half_space.reference_depth = 0 is outside"],
         ),
@@ -395,7 +396,7 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
         ),
         (
             POISSON,
-            "poisson_ratio = 0.3\n[counter_body]\nmodulus = 1\npoisson_ratio = 0.9",
+            "poisson_ratio = 0.3\n[counter_body]\nmodulus = 1\nreference_depth = 1\npoisson_ratio = 0.9",
             "= 0.9",
             &["counter_body.poisson_ratio = 0.9 is outside"],
         ),
@@ -468,6 +469,18 @@ fn quantities_are_read_to_the_last_bit() {
         ("1e-5 mm^3/(N·m)", Dimension::INVERSE_PRESSURE, 1e-14),
         ("1e-5 mm³/(N*m)", Dimension::INVERSE_PRESSURE, 1e-14),
         ("1e-5 mm^3/N/m", Dimension::INVERSE_PRESSURE, 1e-14),
+        ("1e-6 mm3/Nm", Dimension::INVERSE_PRESSURE, 1e-15),
+        ("2 mm³/(N·m)", Dimension::INVERSE_PRESSURE, 2e-9),
+        ("2 mm³/(N\u{22c5}m)", Dimension::INVERSE_PRESSURE, 2e-9),
+        ("3 mm3 N-1 m-1", Dimension::INVERSE_PRESSURE, 3e-9),
+        ("4 mm2/kN", Dimension::INVERSE_PRESSURE, 4e-9),
+        ("5 N/mm", Dimension::STIFFNESS, 5000.0),
+        ("5 kNm/m2", Dimension::STIFFNESS, 5000.0),
+        ("6 Nmm/mm", Dimension::FORCE, 6.0),
+        ("20 Hz", Dimension::FREQUENCY, 20.0),
+        ("2 kHz", Dimension::FREQUENCY, 2000.0),
+        ("4 s-1", Dimension::FREQUENCY, 4.0),
+        ("5\u{a0}\u{b5}m", Dimension::LENGTH, 5e-6),
         ("2 min", Dimension::TIME, 120.0),
         ("1.5 h", Dimension::TIME, 5400.0),
         ("30 ms", Dimension::TIME, 0.03),
@@ -516,7 +529,6 @@ fn numerics_and_output_have_defaults_that_serve() {
         tolerance: None,
         cycle: None,
         substeps: None,
-        wear_from: WearFrom::Shakedown,
         checkpoint_interval: 30.0,
     };
     assert_eq!(*bare.numerics(), numerics);
@@ -559,8 +571,7 @@ fn every_alternative_is_read() {
     assert_eq!(numerics("cycle = \"closed-form\"").cycle, Some(Cycle::ClosedForm));
     assert_eq!(numerics("cycle = \"resolved\"\nsubsteps = 200").cycle, Some(Cycle::Resolved));
     assert_eq!(numerics("cycle = \"resolved\"\nsubsteps = 200").substeps, Some(200));
-    assert_eq!(numerics("wear_from = \"shakedown\"").wear_from, WearFrom::Shakedown);
-    assert_eq!(numerics("wear_from = \"first-cycle\"").wear_from, WearFrom::FirstCycle);
+    assert_eq!(numerics("wear_from = \"shakedown\""), numerics(""));
     assert_eq!(
         numerics("cycle = \"closed-form\"\ncheckpoint_interval = \"1 min\"").checkpoint_interval,
         60.0
@@ -573,7 +584,10 @@ fn every_alternative_is_read() {
 
 #[test]
 fn a_half_space_is_given_by_its_springs_as_well() {
-    let body = |lines: &str| *read(&edited("modulus = \"210 GPa\"\npoisson_ratio = 0.3", lines)).half_space();
+    let body = |lines: &str| {
+        *read(&edited("reference_depth = \"1 m\"\nmodulus = \"210 GPa\"\npoisson_ratio = 0.3", lines))
+            .half_space()
+    };
     assert_eq!(
         body("normal_stiffness = 3e9\nstiffness_ratio = 0.7"),
         HalfSpace::from_stiffness(0.2, 3e9, 0.7).expect("springs")
@@ -587,8 +601,9 @@ fn a_half_space_is_given_by_its_springs_as_well() {
 fn a_counter_body_acts_in_series_and_may_leave_its_grading_out() {
     let alone = *read(VALID).half_space();
     for grading in ["", "grading = 0.2\n"] {
-        let table =
-            format!("poisson_ratio = 0.3\n[counter_body]\n{grading}modulus = 210e9\npoisson_ratio = 0.3\n");
+        let table = format!(
+            "poisson_ratio = 0.3\n[counter_body]\n{grading}modulus = 210e9\nreference_depth = 1\npoisson_ratio = 0.3\n"
+        );
         let pair = *read(&edited("poisson_ratio = 0.3\n", &table)).half_space();
         assert_eq!(pair.normal_stiffness(), alone.normal_stiffness() / 2.0);
         assert!((pair.stiffness_ratio() / alone.stiffness_ratio() - 1.0).abs() < 1e-15);
@@ -741,4 +756,13 @@ fn wear_by_dissipated_energy_is_archards_law_times_the_friction_coefficient() {
     let both = text + "\n[wear.archard]\ncoefficient = 1e-14\n";
     let message = Scene::from_toml(&both, "scene.toml").unwrap_err().to_string();
     assert!(message.contains("exclude each other"), "{message}");
+}
+
+#[test]
+fn a_modulus_that_depends_on_the_depth_needs_the_depth_at_which_it_counts() {
+    let text = edited("reference_depth = \"1 m\"\n", "");
+    let error = Scene::from_toml(&text, "scene.toml").expect_err("no depth").to_string();
+    let cure = "half_space.reference_depth is missing; where half_space.grading is not 0 the modulus counts at that depth: give it, for example \"2 mm\"";
+    assert!(error.contains(cure) && error.contains("[half_space]"), "{error}");
+    read(&text.replace("grading = 0.2", "grading = 0"));
 }

@@ -93,6 +93,7 @@ radius = "10 mm"
 [half_space]
 grading = 0.2
 modulus = "210 GPa"
+reference_depth = "2 mm"
 poisson_ratio = 0.3
 [friction.coulomb]
 coefficient = 0.6
@@ -122,7 +123,7 @@ fn every_table() -> Vec<(FileKind, String)> {
         scene("indenter", "[indenter.cone]\nslope = 0.01"),
         scene("indenter", "[indenter.power-law]\ncoefficient = 50\nexponent = 2"),
         scene("indenter", "[indenter.table]\nfile = \"measured_profile.csv\"\nradius_unit = \"mm\"\nprofile_unit = \"um\""),
-        scene("none", "[counter_body]\nmodulus = 1e9\npoisson_ratio = 0.3"),
+        scene("none", "[counter_body]\nmodulus = 1e9\nreference_depth = 1\npoisson_ratio = 0.3"),
         scene("none", "[numerics]\naccuracy = 1e-3"),
         scene("none", "[output]\nsnapshots = 3"),
         scene("friction", "[friction.static-kinetic]\nstatic_coefficient = 0.7\nkinetic_coefficient = 0.6"),

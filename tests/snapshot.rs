@@ -11,10 +11,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fretwear::contact::stick_slip::Regime;
-use fretwear::data::layout::label;
+use fretwear::data::quantity::quantity;
 use fretwear::data::{
-    ArrayFile, Checkpoint, Column, Coordinate, Format, LimitCurves, ResultPath, ResultTables, RunFile,
-    RunHeader, RunWriter, Snapshot, StopReason, StoredArrays, SweepFile, SweepHeader, TextArray, Values,
+    Checkpoint, Dataset, Format, LimitCurves, ResultPath, ResultTables, RunFile, RunHeader, RunWriter,
+    Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
 };
 use fretwear::laws::loading::RecordedPath;
 use fretwear::solver::model::{Linearised, Past, PastPoint, State, StickEdge};
@@ -88,7 +88,7 @@ fn snapshot(nodes: usize, seed: usize) -> Snapshot {
 fn past_point(seed: usize) -> Arc<PastPoint> {
     Arc::new(PastPoint {
         cycles: awkward(seed),
-        edge: awkward(seed + 1),
+        slip_area: awkward(seed + 1),
         dissipated_energy: awkward(seed + 2),
         volume_by_rate: awkward(seed + 3),
         compression: curve(57, seed),
@@ -102,8 +102,8 @@ fn checkpoint() -> Checkpoint {
             compression: curve(57, 4),
             compression_rate: curve(57, 5),
             cycles: 1e5 / 3.0,
-            edge: f64::from_bits(OTHER_NAN),
-            edge_rate: -1e-300,
+            slip_area: f64::from_bits(OTHER_NAN),
+            slip_area_rate: -1e-300,
             dissipated_energy: -0.0,
             volume_by_rate: 1e-17 / 3.0,
             least_stick_radius: f64::INFINITY,
@@ -121,8 +121,8 @@ fn checkpoint() -> Checkpoint {
                 order: 3,
                 points: (0..4).map(past_point).collect(),
                 linearised: Some(Arc::new(Linearised {
-                    edge: 3e-10,
-                    gathered_edge: 2e-10,
+                    slip_area: 3e-10,
+                    gathered_slip_area: 2e-10,
                     step: 7e4,
                     compression: past_point(5).compression.clone(),
                 })),
@@ -256,18 +256,18 @@ fn every_value_comes_back_bit_for_bit() {
     assert_eq!(found.state.past.order, expected.state.past.order);
     let linearised = |it: &State| {
         let it = it.past.linearised.clone().unwrap();
-        [to_bits(&[it.edge, it.gathered_edge, it.step]), to_bits(&it.compression)]
+        [to_bits(&[it.slip_area, it.gathered_slip_area, it.step]), to_bits(&it.compression)]
     };
     assert_eq!(linearised(&found.state), linearised(&expected.state));
     assert_eq!(found.state.past.points.len(), expected.state.past.points.len());
     for (point, wanted) in found.state.past.points.iter().zip(&expected.state.past.points) {
         let scalars =
-            |it: &PastPoint| to_bits(&[it.cycles, it.edge, it.dissipated_energy, it.volume_by_rate]);
+            |it: &PastPoint| to_bits(&[it.cycles, it.slip_area, it.dissipated_energy, it.volume_by_rate]);
         assert_eq!(scalars(point), scalars(wanted));
         assert_eq!(to_bits(&point.compression), to_bits(&wanted.compression));
         assert_eq!(to_bits(&point.log_slip), to_bits(&wanted.log_slip));
     }
-    assert_eq!(found.state.edge.to_bits(), OTHER_NAN);
+    assert_eq!(found.state.slip_area.to_bits(), OTHER_NAN);
     assert_eq!(found.error_estimate.map(f64::to_bits), expected.error_estimate.map(f64::to_bits));
     assert_eq!((found.accuracy, found.accuracy_met()), (expected.accuracy, Some(false)));
     // `Debug` prints the shortest decimal that gives the same number, and the sign of zero.
@@ -667,12 +667,9 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
     };
 
     let sweep = folder.path().join("sweep.h5");
-    let column = Column {
-        name: "verdict".into(),
-        units: "1".into(),
-        long_name: "a word".into(),
-        values: Values::Texts([WORD].into_iter().collect()),
-    };
+    let verdict = quantity("verdict", "1", "a word");
+    let words = || [WORD].into_iter().collect::<Words>();
+    let column = column(verdict, words());
     let header = SweepHeader::default();
     SweepFile::new(header, true, vec![0], vec![column], vec![]).write(&sweep, false).expect("written");
     damage(&sweep);
@@ -680,21 +677,13 @@ fn words_that_are_not_utf_8_are_read_with_a_sign_for_what_is_none() {
     assert_eq!(column.values, Values::Texts([READ].into_iter().collect()));
 
     let study = folder.path().join("study.h5");
-    let file = ArrayFile {
-        format: Format::Universality,
-        attributes: vec![("title", String::new())],
-        coordinates: vec![Coordinate { label: label("case", "1", "a number"), values: vec![0.0] }],
-        arrays: vec![],
-        texts: vec![TextArray {
-            label: label("verdict", "1", "a word"),
-            axis: "case",
-            values: vec![WORD.into()],
-        }],
-    };
+    let mut file = Dataset::of(Format::Universality, &[("title", String::new())]);
+    file.coordinate(quantity("case", "1", "a number"), vec![0.0]);
+    file.add(Variable::new(verdict, &[("case", 1)], words()));
     file.write(&study, false).expect("written");
     damage(&study);
-    let stored = StoredArrays::read(ResultPath::unchecked(&study), file.format).expect("readable");
-    assert_eq!(stored.words("verdict", 1).expect("one"), [READ]);
+    let stored = Dataset::read(ResultPath::unchecked(&study), Format::Universality).expect("readable");
+    assert_eq!(stored.words("verdict", 1).expect("one").iter().collect::<Vec<_>>(), [READ]);
 }
 
 const SAVE_LOOP: &str = "FRETWEAR_TEST_SAVE_LOOP";

@@ -72,7 +72,7 @@ fn volumes(path: &Path) -> Vec<f64> {
     let file = SweepFile::read(path).unwrap();
     match &file.columns.iter().find(|it| it.name == "wear_volume").unwrap().values {
         Values::Numbers(values) => values.clone(),
-        Values::Texts(_) => panic!("numbers"),
+        _ => panic!("numbers"),
     }
 }
 

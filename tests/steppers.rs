@@ -4,7 +4,7 @@ mod support;
 
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Progress, Simulation};
-use fretwear::solver::stepper::{CycleJump, EveryCycle, Implicit, Multistep, Stepper};
+use fretwear::solver::stepper::{Bdf, CycleJump, EveryCycle, Sdirk, Stepper};
 use support::{Case, Record, Seen, distance};
 
 const TOLERANCE: f64 = 1e-5;
@@ -18,8 +18,8 @@ fn steppers() -> [(&'static str, Box<dyn Stepper + Send>); 4] {
     [
         ("every-cycle", Box::<EveryCycle>::default()),
         ("cycle-jump", Box::<CycleJump>::default()),
-        ("implicit", Box::new(Implicit::new(TOLERANCE))),
-        ("multistep", Box::new(Multistep::new(TOLERANCE))),
+        ("implicit", Box::new(Sdirk::new(TOLERANCE))),
+        ("multistep", Box::new(Bdf::new(TOLERANCE))),
     ]
 }
 
@@ -28,7 +28,7 @@ fn all_steppers_agree_over_twenty_thousand_cycles() {
     let outputs = [667.0, 2000.0, 6667.0, 20_000.0];
     let case = scene(30.0 / 20_000.0);
     let scale = case.model().depth_scale();
-    let reference = case.run(Box::new(Implicit::new(1e-8)), 1e-8, &outputs);
+    let reference = case.run(Box::new(Sdirk::new(1e-8)), 1e-8, &outputs);
     // Measured: 7.5e-5, the first order in the wear of one cycle; 1.9e-6; 1.6e-6.
     for ((name, stepper), allowed) in steppers().into_iter().zip([5e-4, 1e-5, 1e-5, 5e-5]) {
         let seen = case.run(stepper, TOLERANCE, &outputs);
@@ -60,7 +60,7 @@ fn every_cycle_differs_from_the_continuous_wear_by_the_first_order_in_one_cycle(
     let depth_after = |cycles: f64, stepper: Box<dyn Stepper + Send>, tolerance: f64| -> Seen {
         scene(3.0 / cycles).run(stepper, tolerance, &[cycles]).pop().unwrap()
     };
-    let exact = depth_after(1.0, Box::new(Implicit::new(1e-9)), 1e-9);
+    let exact = depth_after(1.0, Box::new(Sdirk::new(1e-9)), 1e-9);
     let errors = [2000.0, 4000.0, 8000.0].map(|cycles| {
         let seen = depth_after(cycles, Box::<EveryCycle>::default(), TOLERANCE);
         distance(&seen.wear_depth, &exact.wear_depth) / scene(1.0).model().depth_scale()
@@ -120,10 +120,10 @@ fn a_resumed_run_repeats_every_bit_of_one_without_interruption() {
 fn backward_differentiation_gives_about_the_error_asked_for_in_a_number_of_steps_that_grows_slowly() {
     let outputs: Vec<f64> = (0..14).map(|i| 30.0 * 0.5f64.powi(13 - i)).collect();
     let case = Case { clustering: Clustering::Smooth, ..scene(1.0) };
-    let reference = case.run(Box::new(Multistep::new(1e-10)), 1e-10, &outputs);
+    let reference = case.run(Box::new(Bdf::new(1e-10)), 1e-10, &outputs);
     let scale = case.model().depth_scale();
     let found = [1e-4, 1e-6, 1e-8].map(|tolerance| {
-        let seen = case.run(Box::new(Multistep::new(tolerance)), tolerance, &outputs);
+        let seen = case.run(Box::new(Bdf::new(tolerance)), tolerance, &outputs);
         let pairs = seen.iter().zip(&reference);
         let error = pairs
             .fold(0.0, |m: f64, (now, exact)| m.max(distance(&now.wear_depth, &exact.wear_depth) / scale));
@@ -142,7 +142,7 @@ fn backward_differentiation_gives_about_the_error_asked_for_in_a_number_of_steps
 fn snapshots_cost_backward_differentiation_no_steps() {
     let steps = |count: i32| {
         let outputs: Vec<f64> = (1..=count).map(|i| 30.0 * f64::from(i) / f64::from(count)).collect();
-        let seen = scene(1.0).run(Box::new(Multistep::new(TOLERANCE)), TOLERANCE, &outputs);
+        let seen = scene(1.0).run(Box::new(Bdf::new(TOLERANCE)), TOLERANCE, &outputs);
         assert_eq!(seen.len(), outputs.len());
         seen[seen.len() - 1].steps
     };

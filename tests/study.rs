@@ -121,10 +121,13 @@ fn mistakes_are_named_with_place_and_cure() {
     };
     for (text, expected) in [
         ("scene = \"base.toml\"\nsteps = 3".to_string(), "steps is not a key of a study"),
-        (axis("key = \"friction\"\nvalues = [1]"), "is not a key of a scene, such as"),
+        (
+            axis("key = \"friction\"\nvalues = [1]"),
+            "is not a key of a scene; it is a table; name one of its keys",
+        ),
         (
             axis("key = \"friction.coulomb.coefficient\""),
-            "axes[0].from is missing; an axis has values = [...], or from, to and count",
+            "give exactly one of axes[0].values or axes[0].from; none is there",
         ),
         (axis("key = \"friction.coulomb.coefficient\"\nvalues = []"), "axes[0].values = [] is empty"),
         (
@@ -168,7 +171,10 @@ fn mistakes_are_named_with_place_and_cure() {
             "expands to 100000000 scenes, more than 10000000",
         ),
         (sampled("distribution = \"gaussian\""), "is none of the words it may be"),
-        (sampled("distribution = \"normal\"\nmean = 1"), "a normal distribution has mean and deviation"),
+        (
+            sampled("distribution = \"normal\"\nmean = 1"),
+            "distribution = \"normal\" needs mean and deviation",
+        ),
         (sampled("distribution = \"normal\"\nmean = 1\ndeviation = 0"), "must be above zero"),
         (
             sampled("distribution = \"normal\"\nmean = 1\ndeviation = 1\nminimum = 2\nmaximum = 1"),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use fretwear::data::{Column, SweepFile, Values};
+use fretwear::data::{SweepFile, Values, Variable};
 use fretwear::scene::Study;
 use fretwear::study::sweep::{SweepOptions, merge, sweep};
 use tempfile::TempDir;
@@ -65,9 +65,10 @@ fn study(scenes: usize) -> String {
 
 /// Bits of all that must not depend on how the scenes were run.
 fn bits(file: &SweepFile) -> Vec<(String, Vec<u64>, Vec<String>)> {
-    let column = |Column { name, values, .. }: &Column| match values {
+    let column = |Variable { name, values, .. }: &Variable| match values {
         Values::Numbers(numbers) => (name.clone(), numbers.iter().map(|it| it.to_bits()).collect(), vec![]),
         Values::Texts(texts) => (name.clone(), vec![], texts.iter().map(str::to_owned).collect()),
+        _ => panic!("{name} holds neither numbers nor words"),
     };
     let kept = file.columns.iter().filter(|column| column.name != "wall_seconds");
     std::iter::once(("scene".into(), file.scenes.clone(), vec![])).chain(kept.map(column)).collect()
@@ -76,14 +77,14 @@ fn bits(file: &SweepFile) -> Vec<(String, Vec<u64>, Vec<String>)> {
 fn numbers<'a>(file: &'a SweepFile, name: &str) -> &'a [f64] {
     match &file.columns.iter().find(|column| column.name == name).unwrap().values {
         Values::Numbers(numbers) => numbers,
-        Values::Texts(_) => panic!("{name}"),
+        _ => panic!("{name}"),
     }
 }
 
 fn texts<'a>(file: &'a SweepFile, name: &str) -> Vec<&'a str> {
     match &file.columns.iter().find(|column| column.name == name).unwrap().values {
         Values::Texts(texts) => texts.iter().collect(),
-        Values::Numbers(_) => panic!("{name}"),
+        _ => panic!("{name}"),
     }
 }
 

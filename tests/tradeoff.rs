@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use fretwear::contact::closed_form::LimitingShape;
-use fretwear::data::{ArraySummary, RunFile};
+use fretwear::data::{DatasetSummary, RunFile};
 use fretwear::scene::Scene;
 use fretwear::study::tradeoff::{cheapest, pareto_front};
 use serde_json::Value;
@@ -181,7 +181,7 @@ fn the_file_has_a_row_for_each_candidate_with_units_and_meaning() {
     let more = ["--steppers", "implicit", "--quiet"];
     let done = run(folder.path(), &arguments(&more));
     assert_eq!((done.status.code(), text(&done.stdout)), (Some(0), ""), "{}", text(&done.stderr));
-    let summary = ArraySummary::read(&output.join("tradeoff.h5")).unwrap().expect("arrays");
+    let summary = DatasetSummary::read(&output.join("tradeoff.h5")).unwrap().expect("arrays");
     assert_eq!((summary.format.as_str(), summary.complete), ("fretwear-tradeoff", true));
     let table = fs::read_to_string(output.join("tradeoff.csv")).unwrap();
     // Two ways through a cycle, three numbers of springs, two tolerances; and the knob.

@@ -5,7 +5,7 @@ mod support;
 use fretwear::contact::closed_form::{GibsonTransient, gibson_wear_volume};
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::State;
-use fretwear::solver::stepper::{CycleJump, Implicit, Stepper};
+use fretwear::solver::stepper::{CycleJump, Sdirk, Stepper};
 use support::{Case, Seen, distance, orders};
 
 const TAUS: [f64; 3] = [1.0, 3.0, 10.0];
@@ -16,14 +16,14 @@ fn paraboloid(springs: usize) -> Case {
 }
 
 fn run(case: Case, taus: &[f64]) -> Vec<Seen> {
-    case.run(Box::new(Implicit::new(1e-8)), 1e-8, taus)
+    case.run(Box::new(Sdirk::new(1e-8)), 1e-8, taus)
 }
 
 /// `ΔV/(a0² d)` by boundary-element codes of the three-dimensional half-space, which know nothing of the springs.
 #[test]
 fn the_worn_volume_agrees_with_boundary_elements() {
     let case = paraboloid(60);
-    let seen = case.run(Box::new(Implicit::new(1e-6)), 1e-6, &[1.0, 3.0, 10.0, 30.0]);
+    let seen = case.run(Box::new(Sdirk::new(1e-6)), 1e-6, &[1.0, 3.0, 10.0, 30.0]);
     for (seen, reference) in seen.iter().zip([0.0268731, 0.0830288, 0.213381, 0.235817]) {
         let volume = seen.wear_volume / case.indentation();
         let error = volume / reference - 1.0;
@@ -93,8 +93,8 @@ fn assert_orders(errors: &[f64], range: std::ops::Range<f64>) {
 #[test]
 fn the_implicit_stepper_is_of_second_order() {
     // Measured: 1.98, 2.00 on few springs, 1.9, 2.1, 2.2 on a stiff mesh.
-    assert_orders(&errors_in_time(few_springs(), &mut Implicit::new(1e-12), &[80, 160, 320]), 1.9..2.1);
-    assert_orders(&errors_in_time(paraboloid(30), &mut Implicit::new(1e-12), &[8, 16, 32, 64]), 1.8..2.4);
+    assert_orders(&errors_in_time(few_springs(), &mut Sdirk::new(1e-12), &[80, 160, 320]), 1.9..2.1);
+    assert_orders(&errors_in_time(paraboloid(30), &mut Sdirk::new(1e-12), &[8, 16, 32, 64]), 1.8..2.4);
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn a_gibson_medium_follows_the_logistic_curve() {
                 largest.max((f0 + w / d - (F_C + odds) / (1.0 + odds)).abs())
             })
         };
-        let seen = case.run(Box::new(Implicit::new(1e-7)), 1e-7, &[1.0, 3.0]);
+        let seen = case.run(Box::new(Sdirk::new(1e-7)), 1e-7, &[1.0, 3.0]);
         distances.push(seen.iter().map(off).collect());
     }
     // Measured: 9.46e-4, 9.30e-5, 9.28e-6, 9.28e-7 at τ = 1 and 2.52e-3, 2.48e-4, 2.47e-5, 2.48e-6 at τ = 3.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use fretwear::scene::{Prediction, UniversalityStudy, covering_design};
-use fretwear::study::universality::{Options, Outcome, Row, Universality, Verdict};
+use fretwear::study::universality::{CaseResult, Options, Outcome, Universality, Verdict};
 use support::command::{names, object, program, run, text};
 
 /// Thirty springs: milliseconds a case, and the limit to round-off all the same.
@@ -66,7 +66,7 @@ fn execute(study: &UniversalityStudy, folder: &Path, threads: usize) -> Outcome 
         .expect("no signal came")
 }
 
-fn row<'a>(outcome: &'a Outcome, name: &str) -> &'a Row {
+fn row<'a>(outcome: &'a Outcome, name: &str) -> &'a CaseResult {
     outcome.rows.iter().find(|row| row.case.name == name).expect("a case of this name")
 }
 

@@ -75,7 +75,7 @@ fn the_unworn_slip_of_ten_to_a_thousand_waves_is_that_of_adaptive_quadrature() {
             let slip = UnwornSlip::new(&g, c, rise(&g, c, 1.0), 0.0, 1.0 - c * c).unwrap();
             let transforms = outside(grading, c, rows);
             for part in [1e-9, 1e-5, 3e-3, 0.1, 0.37, 0.81, 1.0] {
-                let z = part * slip.limit_edge();
+                let z = part * slip.limit_slip_area();
                 // From c = 0.7 on, no closer than its rounding allows.
                 let exact = |z: f64| carried(&transforms, c, (c * c + z).sqrt(), |x| rise(&g, c, x));
                 let found = slip.at(z);
@@ -98,7 +98,7 @@ fn the_unworn_slip_of_ten_to_a_thousand_waves_is_that_of_adaptive_quadrature() {
                 }
             }
             // Next to the edge of stick slip is that of a straight g.
-            let z = 1e-9 * slip.limit_edge();
+            let z = 1e-9 * slip.limit_slip_area();
             let mu = 0.5 * (1.0 - grading);
             let leading = slip.at(z).slip / (g.derivative(c) * 0.5 * c);
             let l = slip.at(z).logarithm;
@@ -384,7 +384,7 @@ fn a_wave_with_a_flat_spot_is_still_a_contact() {
         )
         .unwrap();
         let state = model.initial_state().unwrap();
-        let edge = relative(state.edge, contact.slip_area_offset());
+        let edge = relative(state.slip_area, contact.slip_area_offset());
         assert!(edge < 1e-4, "c/a0 = {ratio}: {edge:e}");
         assert!(relative(model.limit_volume(), found.wear_volume()) < 1e-4, "c/a0 = {ratio}");
     }

@@ -71,7 +71,7 @@ fn refused(output: &std::path::Path, why: &str) -> Error {
 fn list(arguments: &Export) -> Result<String> {
     let tables = ResultTables::open(result_file(&arguments.file, arguments.unchecked)?)?;
     let mut text = String::new();
-    for table in tables.summaries() {
+    for table in tables.summaries()? {
         let usual = if table.name == tables.usual() { ", the one taken by default" } else { "" };
         let rows = if table.rows == 1 { "1 row".into() } else { format!("{} rows", table.rows) };
         text += &format!("{}: {rows}{usual}\n    {}\n", table.name, table.columns.join("  "));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use fretwear::Result;
-use fretwear::data::ArraySummary;
+use fretwear::data::DatasetSummary;
 use fretwear::report::{self, InfoReport};
 
 use super::result_file;
@@ -24,7 +24,7 @@ pub struct Info {
 
 pub fn info(arguments: &Info) -> Result<String> {
     let file = result_file(&arguments.file, arguments.unchecked)?;
-    if let Some(summary) = ArraySummary::read(file)? {
+    if let Some(summary) = DatasetSummary::read(file)? {
         return Ok(if arguments.json { report::json(&summary) } else { report::arrays_text(&summary) });
     }
     let report = InfoReport::read(file)?;

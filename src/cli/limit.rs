@@ -7,13 +7,15 @@ use fretwear::Result;
 use fretwear::data::check_distinct;
 use fretwear::report::{self, LimitReport, TableFile};
 
-use super::{at, read};
+use super::{Settings, at, read};
 
 #[derive(Args)]
 pub struct Limit {
     /// The scene, a TOML file
     #[arg(value_name = "SCENE.toml")]
     scene: PathBuf,
+    #[command(flatten)]
+    set: Settings,
     /// Print one JSON object in SI units
     #[arg(long)]
     json: bool,
@@ -29,11 +31,12 @@ pub struct Limit {
 }
 
 pub fn limit(arguments: &Limit) -> Result<String> {
-    let scene = read(&arguments.scene)?;
+    let scene = read(&arguments.scene, &arguments.set)?;
     let radii = arguments.at.as_deref().map(report::parse_radii).transpose()?;
     arguments.csv.as_deref().map_or(Ok(()), |path| check_distinct(path, &arguments.scene))?;
     let table = arguments.csv.as_deref().map(|path| TableFile::new(path, arguments.force)).transpose()?;
-    let report = LimitReport::new(&scene, radii.as_deref()).map_err(at(&scene, &arguments.scene))?;
+    let report =
+        LimitReport::new(&scene, radii.as_deref()).map_err(at(&scene, &arguments.scene, &arguments.set))?;
     if let Some(table) = table {
         table.write(&report.csv())?;
     }

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use fretwear::Result;
-use fretwear::report::{self, MapReport};
+use fretwear::report;
 use fretwear::scene::MapScene;
+use fretwear::study::wear_map::MapReport;
 
 #[derive(Args)]
 pub struct Map {

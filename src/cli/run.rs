@@ -12,7 +12,7 @@ use fretwear::{Result, Stop};
 
 use super::end::{End, Failure, of_run};
 use super::progress::RunProgress;
-use super::{at, complain, error_line, plot, read, result_file, signals};
+use super::{Settings, at, complain, error_line, plot, read, result_file, signals};
 
 #[derive(Args)]
 pub struct Run {
@@ -20,11 +20,13 @@ pub struct Run {
     #[arg(value_name = "SCENE.toml", required_unless_present = "resume", conflicts_with = "resume")]
     scene: Option<PathBuf>,
     /// Go on from the last checkpoint in this result file, which holds everything needed
-    #[arg(long, value_name = "FILE.h5", conflicts_with_all = ["output", "force"])]
+    #[arg(long, value_name = "FILE.h5", conflicts_with_all = ["output", "force", "settings"])]
     resume: Option<PathBuf>,
     /// The result file; by default the scene's name with .h5, in the current directory
     #[arg(short, long, value_name = "FILE.h5")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    set: Settings,
     /// Print the summary as one JSON object in SI units
     #[arg(long)]
     json: bool,
@@ -55,7 +57,10 @@ pub fn run(arguments: &Run) -> End {
     let picture =
         arguments.plot.as_ref().map(|named| run_picture(arguments, named.as_deref())).transpose()?;
     let (results, output) = match ready(arguments, &signals::stop()?)? {
-        Ready::Run(run, output) => (execute(arguments, *run).map_err(Failure::Failed)?, output),
+        Ready::Run(run, named) => {
+            let output = run.path().map_or(named, Path::to_owned);
+            (execute(arguments, *run).map_err(Failure::Failed)?, output)
+        }
         Ready::Complete(results, output) => {
             complain("note", &format!("{} is complete, nothing is left to do", output.display()));
             (*results, output)
@@ -91,13 +96,17 @@ fn ready(arguments: &Run, stop: &Stop) -> Result<Ready> {
             Resumed::Complete(results) => Ok(Ready::Complete(results, file.clone())),
         },
         (Some(path), None) => {
-            let scene = read(path)?;
+            let scene = read(path, &arguments.set)?;
             let output = arguments.output.clone().unwrap_or_else(|| default_output(path));
             check_distinct(&output, path)?;
             if arguments.output.is_none() && arguments.force {
                 check_own(&output, Mark::Results)?;
             }
-            let run = run::Run::new(&scene, &output, arguments.force, stop).map_err(at(&scene, path))?;
+            let run = run::Run::new(&scene, &output, arguments.force, stop).map_err(at(
+                &scene,
+                path,
+                &arguments.set,
+            ))?;
             Ok(Ready::Run(Box::new(run), output))
         }
         (None, None) => unreachable!("clap requires one of the two"),

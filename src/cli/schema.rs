@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fretwear::Result;
 use fretwear::report::{self, TableFile};
+use fretwear::scene::page_of_keys;
 use fretwear::scene::schema::FileKind;
 
 /// A scene with its alternatives as comments.
@@ -15,6 +16,9 @@ pub struct Schema {
     /// What kind of file
     #[arg(value_name = "scene|study|map|universality", default_value = "scene", value_parser = kind)]
     kind: FileKind,
+    /// Print the keys of all kinds of files as a page in Markdown instead
+    #[arg(long, conflicts_with = "kind")]
+    markdown: bool,
     /// File to write instead of stdout
     #[arg(short, long, value_name = "FILE.json")]
     output: Option<PathBuf>,
@@ -41,7 +45,11 @@ fn kind(word: &str) -> std::result::Result<FileKind, String> {
 
 /// Writes the JSON Schema; what is left to print.
 pub fn schema(arguments: &Schema) -> Result<String> {
-    write(report::json(&arguments.kind.schema()), arguments.output.as_deref(), arguments.force)
+    let text = match arguments.markdown {
+        true => page_of_keys(),
+        false => report::json(&arguments.kind.schema()),
+    };
+    write(text, arguments.output.as_deref(), arguments.force)
 }
 
 /// Writes the scene; what is left to print.

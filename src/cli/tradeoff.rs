@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fretwear::report::{self, TradeoffReport};
+use fretwear::report;
 use fretwear::scene::Stepper;
 use fretwear::study::Progress;
-use fretwear::study::tradeoff::{self, Ladders};
+use fretwear::study::tradeoff::{self, Ladders, TradeoffReport};
 
 use super::end::{End, Failure, done, interrupted};
 use super::progress::SceneProgress;
-use super::{at, complain, read, signals};
+use super::{Settings, at, complain, read, signals};
 
 /// Candidates of the trade-off and where its results go.
 #[derive(Args)]
@@ -60,7 +60,7 @@ fn stepper(word: &str) -> std::result::Result<Stepper, String> {
 }
 
 pub fn tradeoff(arguments: &Tradeoff) -> End {
-    let scene = read(&arguments.scene)?;
+    let scene = read(&arguments.scene, &Settings::default())?;
     let usual = Ladders::default();
     let ladders = Ladders {
         springs: arguments.springs.clone().unwrap_or(usual.springs),
@@ -76,7 +76,7 @@ pub fn tradeoff(arguments: &Tradeoff) -> End {
         overwrite: arguments.force,
     };
     let ready = tradeoff::Tradeoff::new(&scene, &arguments.output, &options, &signals::stop()?)
-        .map_err(at(&scene, &arguments.scene))?;
+        .map_err(at(&scene, &arguments.scene, &Settings::default()))?;
     let shown = !arguments.quiet && !arguments.json;
     if shown {
         complain("note", &format!("{} candidates, one after the other", ready.candidates()));

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use fretwear::report::{self, UniversalityReport};
+use fretwear::report;
 use fretwear::scene::UniversalityStudy;
-use fretwear::study::{Progress, universality};
+use fretwear::study::Progress;
+use fretwear::study::universality::{self, UniversalityReport};
 
 use super::end::{End, Failure, done, interrupted};
 use super::progress::SceneProgress;

@@ -42,7 +42,7 @@ pub struct UnwornSlip {
     slip: SlipSeries,
     rule: Rule,
     table: Option<Arc<RiseTransform>>,
-    limit_edge: f64,
+    limit_slip_area: f64,
 }
 
 /// `(F(q_c - q_0))/ℓ^(1+μ)`.
@@ -154,8 +154,8 @@ impl UnwornSlip {
             high = (1.5 * high).min(largest);
         }
         let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
-        let limit_edge = squared * logarithm.exp_m1();
-        let end = (MARGIN * limit_edge / squared).ln_1p();
+        let limit_slip_area = squared * logarithm.exp_m1();
+        let end = (MARGIN * limit_slip_area / squared).ln_1p();
         let slip = match &transform.table {
             Some(table) => SlipSeries::Table { series: table.series(logarithm)?, factor: transform.factor },
             None => {
@@ -174,21 +174,21 @@ impl UnwornSlip {
             slip,
             rule: transform.rule,
             table: transform.table,
-            limit_edge,
+            limit_slip_area,
         })
     }
 
     /// `a∞² - c²`, m²: the edge at which the depth that can be worn away, `F q_0`, is zero.
-    pub fn limit_edge(&self) -> f64 {
-        self.limit_edge
+    pub fn limit_slip_area(&self) -> f64 {
+        self.limit_slip_area
     }
 
     /// Largest `z`, m², for which [`UnwornSlip::at`] holds.
-    pub fn largest_edge(&self) -> f64 {
-        MARGIN * self.limit_edge
+    pub fn largest_slip_area(&self) -> f64 {
+        MARGIN * self.limit_slip_area
     }
 
-    /// Slip depths at `z = r² - c²`, m², in (0, [`UnwornSlip::largest_edge`]].
+    /// Slip depths at `z = r² - c²`, m², in (0, [`UnwornSlip::largest_slip_area`]].
     pub fn at(&self, z: f64) -> UnwornValues {
         let logarithm = (z / self.stick_radius_squared).ln_1p();
         self.values(logarithm, self.slip_compression, self.slip.value(logarithm))

@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use super::atomic::{AtomicFile, failure};
+use super::reader::format_of;
 use super::scratch::Scratch;
-use super::stored::format_of;
 use crate::error::{Error, Result};
 
 /// How a file is known for this program's own.
@@ -105,31 +105,4 @@ pub(crate) fn check_can_be_made(folder: &Path) -> Result<()> {
         return make_folder(there);
     }
     Scratch::new(there, "a check").map(drop).map_err(|error| failure(there, &error))
-}
-
-/// A number with all its digits; nothing where it is not a number.
-pub(crate) fn cell(value: f64) -> String {
-    if value.is_nan() { String::new() } else { format!("{value:e}") }
-}
-
-/// A cell of words; quotes where it needs them.
-pub(crate) fn quoted(word: &str) -> String {
-    match word.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", word.replace('"', "\"\"")),
-        false => word.to_owned(),
-    }
-}
-
-/// A table with its header.
-///
-/// # Arguments
-/// * `names` -- of the columns
-/// * `rows` -- as many cells each
-pub(crate) fn table<'a>(
-    names: impl Iterator<Item = &'a str>,
-    rows: impl Iterator<Item = Vec<String>>,
-) -> String {
-    let mut table = names.collect::<Vec<_>>().join(",") + "\n";
-    rows.for_each(|cells| table += &(cells.join(",") + "\n"));
-    table
 }

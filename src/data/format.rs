@@ -1,5 +1,8 @@
 //! The kinds of files of this program.
 
+/// Value of the root attribute `format_version` of a run that this program writes and reads.
+pub const FORMAT_VERSION: i32 = 3;
+
 /// What a file is of; its root attribute `format` tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
@@ -32,6 +35,14 @@ impl Format {
             Self::Map => "fretwear-map",
             Self::Universality => "fretwear-universality",
             Self::Tradeoff => "fretwear-tradeoff",
+        }
+    }
+
+    /// Version of its layout, the root attribute `format_version`.
+    pub fn version(self) -> i32 {
+        match self {
+            Self::Run => FORMAT_VERSION,
+            _ => 1,
         }
     }
 

@@ -6,10 +6,10 @@ use std::str::FromStr;
 
 use hdf5::file::{AttrCreationOrder, LibraryVersion, LinkCreationOrder};
 use hdf5::types::VarLenUnicode;
-use hdf5::{Dataset, Extent, File, FileBuilder, Group, H5Type, Location, Result};
+use hdf5::{Dataset as StoredDataset, Extent, File, FileBuilder, Group, H5Type, Location, Result};
 use hdf5_sys::h5i::hid_t;
 
-use super::layout::Label;
+use super::dataset::{Attribute, Dataset, Values, Variable, text};
 use crate::error::Error;
 
 /// Chunks hold at most this many values (1 MiB), the size of HDF5's chunk cache.
@@ -24,22 +24,22 @@ unsafe extern "C" {
 }
 
 /// Whether a dataset is a dimension.
-pub(super) fn is_dimension(dataset: &Dataset) -> bool {
+pub(super) fn is_dimension(dataset: &StoredDataset) -> bool {
     // SAFETY: under the library's lock, with an open dataset.
     hdf5::sync::sync(|| unsafe { H5DSis_scale(dataset.id()) }) > 0
 }
 
 /// Whether an axis of a dataset runs along a dimension.
-pub(super) fn runs_along(dataset: &Dataset, axis: usize, dimension: &Dataset) -> bool {
+pub(super) fn runs_along(dataset: &StoredDataset, axis: usize, dimension: &StoredDataset) -> bool {
     let Ok(axis) = c_uint::try_from(axis) else { return false };
     // SAFETY: under the library's lock, with two open datasets of one file; an axis that is not there is an error, which is below zero.
     hdf5::sync::sync(|| unsafe { H5DSis_attached(dataset.id(), dimension.id(), axis) }) > 0
 }
 
-/// A dimension: an index coordinate `0, 1, …` that datasets name as the scale of an axis.
-pub(super) struct Dimension {
-    scale: Dataset,
-    length: usize,
+/// A dimension that variables name as the scale of an axis.
+struct Dimension {
+    name: String,
+    scale: StoredDataset,
     resizable: bool,
 }
 
@@ -114,117 +114,126 @@ pub(super) fn create_group(parent: &Group, name: &str) -> Result<Group> {
     builder.with_gcpl(|creation| creation.link_creation_order(LinkCreationOrder::Indexed)).create(name)
 }
 
-/// Writes a text attribute: UTF-8 of variable length, which has no upper limit and h5py gives back as `str`.
-pub(super) fn put_text(place: &Location, name: &str, text: &str) -> Result<()> {
-    let text = VarLenUnicode::from_str(text).map_err(|error| format!("attribute {name}: {error}"))?;
-    place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text)
+/// Writes a dataset with all the groups in it into a group. The same dataset gives the same bytes: no times of creation are stored.
+pub(super) fn put_dataset(group: &Group, dataset: &Dataset) -> Result<()> {
+    put_within(group, dataset, &mut vec![])
 }
 
-/// Writes a whole number as an attribute.
-pub(super) fn put_integer(place: &Location, name: &str, value: i32) -> Result<()> {
-    place.new_attr::<i32>().create(name)?.write_scalar(&value)
-}
-
-/// Writes whole numbers as an attribute.
-pub(super) fn put_integers(place: &Location, name: &str, values: &[i32]) -> Result<()> {
-    place.new_attr::<i32>().shape(values.len()).create(name)?.write_raw(values)
-}
-
-/// Writes a real number as an attribute.
-pub(super) fn put_real(place: &Location, name: &str, value: f64) -> Result<()> {
-    place.new_attr::<f64>().create(name)?.write_scalar(&value)
-}
-
-/// Says that what is not a number in a dataset is missing, and why, in the attributes of the CF conventions.
-pub(super) fn put_missing(dataset: &Dataset, why: &str) -> Result<()> {
-    put_real(dataset, "_FillValue", f64::NAN)?;
-    put_text(dataset, "comment", why)
-}
-
-impl Dimension {
-    /// Creates the index coordinate `0, 1, …` of `length` entries.
-    pub(super) fn create(group: &Group, label: Label, length: usize, resizable: bool) -> Result<Self> {
-        let index: Vec<i64> = (0..).take(length).collect();
-        let builder = group.new_dataset::<i64>().obj_track_times(false);
-        let builder =
-            if resizable { builder.chunk(length.clamp(1, CHUNK_VALUES)) } else { builder.no_chunk() };
-        let extent = if resizable { Extent::resizable(length) } else { Extent::fixed(length) };
-        let scale = builder.shape(extent).create(label.name)?;
-        scale.write_raw(&index)?;
-        Self::with_scale(scale, label, length, resizable)
+/// As [`put_dataset`]; `dimensions` are those of the groups around it, and have the own ones added.
+fn put_within(group: &Group, dataset: &Dataset, dimensions: &mut Vec<Dimension>) -> Result<()> {
+    let around = dimensions.len();
+    for (name, attribute) in &dataset.attributes {
+        put_attribute(group, name, attribute)?;
     }
-
-    /// Creates a coordinate whose values are more than an index.
-    pub(super) fn coordinate<T: H5Type>(group: &Group, label: Label, values: &[T]) -> Result<Self> {
-        let builder = group.new_dataset::<T>().obj_track_times(false).no_chunk();
-        let scale = builder.shape(values.len()).create(label.name)?;
-        scale.write_raw(values)?;
-        Self::with_scale(scale, label, values.len(), false)
-    }
-
-    fn with_scale(scale: Dataset, label: Label, length: usize, resizable: bool) -> Result<Self> {
-        put_label(&scale, label)?;
-        let name = format!("{}\0", label.name);
-        let name = CStr::from_bytes_with_nul(name.as_bytes()).map_err(|error| error.to_string())?;
-        // SAFETY: under the library's lock, with an open dataset and a string that ends in NUL.
-        check(hdf5::sync::sync(|| unsafe { H5DSset_scale(scale.id(), name.as_ptr()) }), label.name)?;
-        Ok(Self { scale, length, resizable })
-    }
-}
-
-/// Writes one dataset with its label and the scales of its axes; no dimension means a scalar.
-///
-/// # Panics
-/// If the number of values is not the product of the lengths of the dimensions.
-pub(super) fn put_array<T: H5Type>(
-    group: &Group,
-    label: Label,
-    axes: &[&Dimension],
-    values: &[T],
-) -> Result<Dataset> {
-    assert_eq!(values.len(), axes.iter().map(|axis| axis.length).product::<usize>(), "{}", label.name);
-    let builder = group.new_dataset::<T>().obj_track_times(false);
-    let extents: Vec<Extent> = axes
-        .iter()
-        .map(|axis| if axis.resizable { Extent::resizable(axis.length) } else { Extent::fixed(axis.length) })
-        .collect();
-    let dataset = match axes {
-        [] => builder.create(label.name)?,
-        axes if axes.iter().any(|axis| axis.resizable) => {
-            builder.chunk(chunk_shape(axes)).shape(extents).create(label.name)?
+    for variable in &dataset.variables {
+        if let Some(dimension) = put_variable(group, variable, dimensions)? {
+            dimensions.push(dimension);
         }
-        _ => builder.no_chunk().shape(extents).create(label.name)?,
+    }
+    for (name, inner) in &dataset.groups {
+        put_within(&create_group(group, name)?, inner, dimensions)?;
+    }
+    dimensions.truncate(around);
+    Ok(())
+}
+
+/// Writes an attribute; texts are UTF-8 of variable length, which has no upper limit and h5py gives back as `str`.
+pub(super) fn put_attribute(place: &Location, name: &str, attribute: &Attribute) -> Result<()> {
+    match attribute {
+        Attribute::Text(text) => {
+            let text = VarLenUnicode::from_str(text).map_err(|error| format!("attribute {name}: {error}"))?;
+            place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text)
+        }
+        Attribute::Integer(value) => place.new_attr::<i32>().create(name)?.write_scalar(value),
+        Attribute::Count(value) => place.new_attr::<u64>().create(name)?.write_scalar(value),
+        Attribute::Real(value) => place.new_attr::<f64>().create(name)?.write_scalar(value),
+        Attribute::Integers(values) => {
+            place.new_attr::<i32>().shape(values.len()).create(name)?.write_raw(values)
+        }
+    }
+}
+
+/// Writes a variable along dimensions that are there, the innermost of a name if there are more; a coordinate is a new one.
+fn put_variable(group: &Group, variable: &Variable, dimensions: &[Dimension]) -> Result<Option<Dimension>> {
+    match &variable.values {
+        Values::Numbers(values) => put_values(group, variable, dimensions, values),
+        Values::Indices(values) => put_values(group, variable, dimensions, values),
+        Values::Counts(values) => put_values(group, variable, dimensions, values),
+        Values::Flags(values) => put_values(group, variable, dimensions, values),
+        Values::Texts(words) => {
+            // HDF5 would end a text at a NUL.
+            let unicode = |word: &str| VarLenUnicode::from_str(&word.replace('\0', "\u{fffd}"));
+            let texts: std::result::Result<Vec<_>, _> = words.iter().map(unicode).collect();
+            put_values(group, variable, dimensions, &texts.map_err(|error| error.to_string())?)
+        }
+        Values::Foreign => Err(format!("{} holds no values of this program", variable.name).into()),
+    }
+}
+
+fn put_values<T: H5Type>(
+    group: &Group,
+    variable: &Variable,
+    dimensions: &[Dimension],
+    values: &[T],
+) -> Result<Option<Dimension>> {
+    let name = variable.name.as_str();
+    let is_coordinate = variable.is_coordinate();
+    let along = |axis: &String| {
+        let found = dimensions.iter().rev().find(|it| it.name == *axis);
+        found.unwrap_or_else(|| panic!("{name} runs along {axis}, which is no coordinate"))
+    };
+    let axes: Vec<&Dimension> =
+        if is_coordinate { vec![] } else { variable.dimensions.iter().map(along).collect() };
+    let grows = |axis: usize| axes.get(axis).map_or(variable.unlimited, |it| it.resizable);
+    let extent = |(axis, length): (usize, &usize)| match grows(axis) {
+        true => Extent::resizable(*length),
+        false => Extent::fixed(*length),
+    };
+    let extents: Vec<Extent> = variable.shape.iter().enumerate().map(extent).collect();
+    let builder = group.new_dataset::<T>().obj_track_times(false);
+    let dataset = match variable.shape.len() {
+        0 => builder.create(name)?,
+        count if (0..count).any(grows) => {
+            builder.chunk(chunk_shape(&variable.shape)).shape(extents).create(name)?
+        }
+        _ => builder.no_chunk().shape(extents).create(name)?,
     };
     dataset.write_raw(values)?;
-    put_label(&dataset, label)?;
-    for (position, axis) in (0..).zip(axes) {
+    put_attribute(&dataset, "units", &text(&variable.units))?;
+    put_attribute(&dataset, "long_name", &text(&variable.long_name))?;
+    if is_coordinate {
+        let ended = format!("{name}\0");
+        let ended = CStr::from_bytes_with_nul(ended.as_bytes()).map_err(|error| error.to_string())?;
+        // SAFETY: under the library's lock, with an open dataset and a string that ends in NUL.
+        check(hdf5::sync::sync(|| unsafe { H5DSset_scale(dataset.id(), ended.as_ptr()) }), name)?;
+    }
+    for (position, axis) in (0..).zip(&axes) {
         // SAFETY: under the library's lock, with two open datasets of one file and an axis that the first one has.
         let status =
             hdf5::sync::sync(|| unsafe { H5DSattach_scale(dataset.id(), axis.scale.id(), position) });
-        check(status, label.name)?;
+        check(status, name)?;
     }
-    Ok(dataset)
+    for (name, attribute) in &variable.attributes {
+        put_attribute(&dataset, name, attribute)?;
+    }
+    let (name, resizable) = (name.to_owned(), variable.unlimited);
+    Ok(is_coordinate.then_some(Dimension { name, scale: dataset, resizable }))
 }
 
 /// The whole array where it fits, else whole rows, else parts of a row.
-fn chunk_shape(axes: &[&Dimension]) -> Vec<usize> {
+fn chunk_shape(lengths: &[usize]) -> Vec<usize> {
     let mut room = CHUNK_VALUES;
-    let mut shape: Vec<usize> = axes
+    let mut shape: Vec<usize> = lengths
         .iter()
         .rev()
-        .map(|axis| {
-            let length = axis.length.clamp(1, room);
+        .map(|length| {
+            let length = (*length).clamp(1, room);
             room /= length;
             length
         })
         .collect();
     shape.reverse();
     shape
-}
-
-fn put_label(dataset: &Dataset, label: Label) -> Result<()> {
-    put_text(dataset, "units", label.units)?;
-    put_text(dataset, "long_name", label.long_name)
 }
 
 fn check(status: i32, name: &str) -> Result<()> {

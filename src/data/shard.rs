@@ -1,23 +1,20 @@
 //! A file of a sweep: one row per scene, and the whole runs of scenes whose snapshots are kept.
 
-use std::collections::HashMap;
 use std::path::Path;
-use std::str::FromStr;
 
-use hdf5::types::VarLenUnicode;
-use hdf5::{File, Group};
+use hdf5::File;
 
 use super::atomic::AtomicFile;
-use super::labelled::{Dimension, create_group, file_on_disk, put_array, put_integer, put_text};
-use super::layout::{Label, label};
-use super::reader::{self, Source};
+use super::dataset::{Attribute, Dataset, Quantity, Values, Variable, quantity, text};
+use super::labelled::{create_group, file_on_disk, put_dataset};
+use super::reader::{OpenFile, Wanted, variable};
 use super::save::Save;
 use super::seal::{ResultPath, seal};
-use super::{Format, RunFile, StopReason};
+use super::{Format, RunFile};
 use crate::error::{Error, Result};
 
 /// Coordinate of the rows.
-const SCENE: Label<'static> = label("scene", "1", "number of the scene in the expanded study");
+const SCENE: Quantity = quantity("scene", "1", "number of the scene in the expanded study");
 
 /// Group of the runs whose snapshots are kept.
 pub(super) const RUNS: &str = "runs";
@@ -43,80 +40,6 @@ pub struct SweepHeader {
     pub shard: u64,
 }
 
-/// A quantity of all rows.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Column {
-    /// Name of the dataset.
-    pub name: String,
-    /// Units; "1" for a pure number or a word.
-    pub units: String,
-    /// Meaning.
-    pub long_name: String,
-    /// One value for each row.
-    pub values: Values,
-}
-
-/// Values of a column.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Values {
-    /// Numbers; not a number where the quantity has no meaning.
-    Numbers(Vec<f64>),
-    /// Words.
-    Texts(Words),
-}
-
-/// Many words of which few are different.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Words {
-    different: Vec<String>,
-    known: HashMap<String, u32>,
-    places: Vec<u32>,
-}
-
-impl Words {
-    /// Adds a word.
-    pub fn push(&mut self, word: &str) {
-        let place = self.known.get(word).copied().unwrap_or_else(|| {
-            let place = self.different.len() as u32;
-            self.known.insert(word.to_owned(), place);
-            self.different.push(word.to_owned());
-            place
-        });
-        self.places.push(place);
-    }
-
-    /// Number of words.
-    pub fn len(&self) -> usize {
-        self.places.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
-    }
-
-    /// The words in their order.
-    pub fn iter(&self) -> impl Iterator<Item = &str> {
-        self.places.iter().map(|&place| self.different[place as usize].as_str())
-    }
-
-    /// One of the words.
-    ///
-    /// # Panics
-    /// If there are not so many.
-    pub fn get(&self, index: usize) -> &str {
-        &self.different[self.places[index] as usize]
-    }
-}
-
-impl<T: AsRef<str>> FromIterator<T> for Words {
-    fn from_iter<I: IntoIterator<Item = T>>(words: I) -> Self {
-        let mut found = Self::default();
-        words.into_iter().for_each(|word| found.push(word.as_ref()));
-        found
-    }
-}
-
 /// Rows of a sweep; the same rows give the same bytes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepFile {
@@ -129,7 +52,7 @@ pub struct SweepFile {
     /// Numbers of the scenes, shape `(scene,)`.
     pub scenes: Vec<u64>,
     /// Everything about them, each of shape `(scene,)`.
-    pub columns: Vec<Column>,
+    pub columns: Vec<Variable>,
     /// Runs of scenes whose snapshots are kept.
     pub runs: Vec<(u64, RunFile)>,
 }
@@ -149,7 +72,7 @@ impl SweepFile {
         header: SweepHeader,
         complete: bool,
         scenes: Vec<u64>,
-        columns: Vec<Column>,
+        columns: Vec<Variable>,
         runs: Vec<(u64, RunFile)>,
     ) -> Self {
         let program_version = env!("CARGO_PKG_VERSION").into();
@@ -164,12 +87,8 @@ impl SweepFile {
     /// # Panics
     /// If a column does not have one value per scene.
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
-        for Column { name, values, .. } in &self.columns {
-            let length = match values {
-                Values::Numbers(values) => values.len(),
-                Values::Texts(values) => values.len(),
-            };
-            assert_eq!(length, self.scenes.len(), "values of {name}, scenes");
+        for column in &self.columns {
+            assert_eq!(column.values.len(), self.scenes.len(), "values of {}, scenes", column.name);
         }
         let mut file = AtomicFile::new(path, overwrite)?;
         file.write_with(|temporary| {
@@ -180,9 +99,10 @@ impl SweepFile {
             self.lay_out(temporary).map_err(|error| failed(&error))?;
             seal(temporary).map_err(|error| failed(&error))?;
             // The library has lost errors of a full disk.
-            let (source, file) = reader::open(temporary).map_err(|error| failed(&error))?;
-            let rows: Vec<i64> = source.values(&file, SCENE, &[Some(self.scenes.len())])?;
-            match header(&source, &file)? == self.header && rows == self.ids() {
+            let open = OpenFile::new(temporary).map_err(|error| failed(&error))?;
+            let scenes = open.file.dataset(SCENE.name).map_err(|error| error.to_string());
+            let scenes = scenes.and_then(|it| variable(SCENE.name, &it, Wanted::Values));
+            match header(&open)? == self.header && scenes.is_ok_and(|it| it.0.values == self.ids().into()) {
                 true => Ok(()),
                 false => Err(failed(&"what was written reads differently")),
             }
@@ -193,53 +113,40 @@ impl SweepFile {
         self.scenes.iter().map(|scene| scene.cast_signed()).collect()
     }
 
+    /// The rows without the runs that are kept.
+    fn dataset(&self) -> Dataset {
+        let header = &self.header;
+        let mut sweep = Dataset::default();
+        sweep.say("title", text(&header.title));
+        sweep.say("format", text(Format::Sweep.name()));
+        sweep.say("format_version", Attribute::Integer(Self::FORMAT_VERSION));
+        sweep.say("program_version", text(&self.program_version));
+        sweep.say("task", text(&header.task));
+        sweep.say("study", text(&header.study));
+        sweep.say("base_scene", text(&header.base_scene));
+        sweep.say("study_hash", text(&header.study_hash));
+        sweep.say("scenes", Attribute::Count(header.scenes));
+        sweep.say("shards", Attribute::Count(header.shards));
+        sweep.say("shard", Attribute::Count(header.shard));
+        sweep.say("complete", Attribute::Integer(self.complete.into()));
+        sweep.coordinate(SCENE, self.ids());
+        sweep.variables.extend(self.columns.iter().cloned());
+        sweep
+    }
+
     fn lay_out(&self, path: &Path) -> hdf5::Result<()> {
         let file = file_on_disk(path)?;
-        let header = &self.header;
-        put_text(&file, "title", &header.title)?;
-        put_text(&file, "format", Format::Sweep.name())?;
-        put_integer(&file, "format_version", Self::FORMAT_VERSION)?;
-        put_text(&file, "program_version", &self.program_version)?;
-        for (name, text) in [
-            ("task", &header.task),
-            ("study", &header.study),
-            ("base_scene", &header.base_scene),
-            ("study_hash", &header.study_hash),
-        ] {
-            put_text(&file, name, text)?;
-        }
-        for (name, number) in [("scenes", header.scenes), ("shards", header.shards), ("shard", header.shard)]
-        {
-            file.new_attr::<u64>().create(name)?.write_scalar(&number)?;
-        }
-        put_integer(&file, "complete", self.complete.into())?;
-        let rows = Dimension::coordinate(&file, SCENE, &self.ids())?;
-        for Column { name, units, long_name, values } in &self.columns {
-            let label = Label { name, units, long_name };
-            match values {
-                Values::Numbers(values) => put_array(&file, label, &[&rows], values)?,
-                Values::Texts(values) => {
-                    let texts = values.iter().map(unicode).collect::<hdf5::Result<Vec<_>>>()?;
-                    put_array(&file, label, &[&rows], &texts)?
-                }
-            };
-        }
+        put_dataset(&file, &self.dataset())?;
         if !self.runs.is_empty() {
             let group = create_group(&file, RUNS)?;
             for (scene, run) in &self.runs {
                 let RunFile { header, snapshots, checkpoint, stop_reason, complete, .. } = run;
-                let checkpoint = checkpoint.clone().unwrap_or_default();
-                let run = Save {
-                    header,
-                    snapshots,
-                    checkpoint: &checkpoint,
-                    stop_reason: *stop_reason,
-                    complete: *complete,
-                };
-                run.put_into(&create_group(&group, &scene.to_string())?)?;
+                let checkpoint = &checkpoint.clone().unwrap_or_default();
+                let run =
+                    Save { header, snapshots, checkpoint, stop_reason: *stop_reason, complete: *complete };
+                put_dataset(&create_group(&group, &scene.to_string())?, &run.dataset())?;
             }
         }
-        drop(rows);
         file.flush()?;
         file.close()
     }
@@ -249,38 +156,37 @@ impl SweepFile {
     /// # Errors
     /// [`Error::File`] names the file and what is wrong with it.
     pub fn read<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
-        let (source, file) = reader::open(file)?;
-        let header = header(&source, &file)?;
-        let program_version = source.text(&file, "program_version")?;
-        let complete = source.integer(&file, "complete")? != 0;
-        let ids: Vec<i64> = source.values(&file, SCENE, &[None])?;
-        let rows = [Some(ids.len())];
-        let mut names = file.member_names().map_err(|error| source.damaged("its members", &error))?;
-        names.sort();
-        let mut columns = vec![];
-        for name in names.into_iter().filter(|name| name != SCENE.name && name != RUNS) {
-            let dataset = file.dataset(&name).map_err(|error| source.damaged(&name, &error))?;
-            let (units, long_name) = (source.text(&dataset, "units")?, source.text(&dataset, "long_name")?);
-            let values = if dataset.dtype().is_ok_and(|kind| kind.is::<f64>()) {
-                Values::Numbers(source.values_of(&dataset, &dataset.name(), &rows)?)
-            } else {
-                Values::Texts(source.words_of(&dataset, &dataset.name(), &rows)?.into_iter().collect())
-            };
-            columns.push(Column { name, units, long_name, values });
+        let open = OpenFile::new(file)?;
+        let header = header(&open)?;
+        let program_version = open.text(&open.file, "program_version")?;
+        let complete = open.integer::<i32>(&open.file, "complete")? != 0;
+        let mut sweep = open.dataset(&open.file, Wanted::Values, &[RUNS])?;
+        let scenes: Vec<i64> = sweep.take(SCENE, &[None])?;
+        if let Some((name, why)) = sweep.unusable.first() {
+            return Err(open.damaged(name, why));
         }
-        let mut runs = vec![];
-        if file.link_exists(RUNS) {
-            let group = file.group(RUNS).map_err(|error| source.damaged(RUNS, &error))?;
-            let mut names = group.member_names().map_err(|error| source.damaged(RUNS, &error))?;
-            names.sort_by_key(|name| name.parse::<u64>().ok());
-            for name in names {
-                let place = format!("/{RUNS}/{name}");
-                let scene = name.parse().map_err(|error| source.damaged(&place, &error))?;
-                let group = group.group(&name).map_err(|error| source.damaged(&place, &error))?;
-                runs.push((scene, RunFile::from_group(&source, &group)?));
+        let mut columns = std::mem::take(&mut sweep.variables);
+        columns.sort_by(|one, other| one.name.cmp(&other.name));
+        for column in &mut columns {
+            let known = matches!(column.values, Values::Numbers(_) | Values::Texts(_));
+            if !known || column.shape != [scenes.len()] {
+                let why = format!(
+                    "has the shape {:?}, expected words or numbers of {}",
+                    column.shape,
+                    scenes.len()
+                );
+                return Err(open.damaged(&column.name, &why));
             }
+            column.dimensions = vec![SCENE.name.into()];
         }
-        let scenes = ids.into_iter().map(i64::cast_unsigned).collect();
+        let runs = kept_runs(&open)?.into_iter().map(|name| {
+            let place = format!("/{RUNS}/{name}");
+            let scene = name.parse().map_err(|error| open.damaged(&place, &error))?;
+            let group = open.file.group(&place).map_err(|error| open.damaged(&place, &error))?;
+            Ok((scene, RunFile::from_group(&open, &group)?))
+        });
+        let runs = runs.collect::<Result<_>>()?;
+        let scenes = scenes.into_iter().map(i64::cast_unsigned).collect();
         Ok(Self { header, program_version, complete, scenes, columns, runs })
     }
 
@@ -289,50 +195,40 @@ impl SweepFile {
     /// # Errors
     /// As [`SweepFile::read`].
     pub fn read_header(path: &Path) -> Result<SweepHeader> {
-        let (source, file) = reader::open(path)?;
-        header(&source, &file)
+        header(&OpenFile::new(path)?)
     }
 }
 
-impl RunFile {
-    /// A run as it would be read from its file.
-    pub fn finished(
-        header: super::RunHeader,
-        snapshots: Vec<super::Snapshot>,
-        checkpoint: super::Checkpoint,
-        stop_reason: StopReason,
-    ) -> Self {
-        let program_version: String = env!("CARGO_PKG_VERSION").into();
-        let complete = stop_reason != StopReason::Interrupted;
-        let scene_hash = Some(header.scene_hash(&program_version));
-        let checkpoint = Some(checkpoint);
-        Self { header, snapshots, checkpoint, stop_reason, complete, program_version, scene_hash }
+/// Names of the runs that a sweep has kept, in the order of the scenes.
+pub(super) fn kept_runs(open: &OpenFile) -> Result<Vec<String>> {
+    if !open.file.link_exists(RUNS) {
+        return Ok(vec![]);
     }
+    let group = open.file.group(RUNS).map_err(|error| open.damaged(RUNS, &error))?;
+    let mut names = group.member_names().map_err(|error| open.damaged(RUNS, &error))?;
+    names.sort_by_key(|name| name.parse::<u64>().ok());
+    Ok(names)
 }
 
-fn header(source: &Source, file: &File) -> Result<SweepHeader> {
-    let group: &Group = file;
-    const CURE: &str = "give the directory of a `fretwear sweep` only";
-    source.check_format(group, Format::Sweep, SweepFile::FORMAT_VERSION, CURE)?;
-    let whole = |name: &str| -> Result<u64> {
-        let attribute = group.attr(name).and_then(|attribute| attribute.read_scalar::<u64>());
-        attribute.map_err(|error| source.damaged(&format!("attribute {name}"), &error))
-    };
+/// A quantity of all rows of a sweep.
+pub fn column(quantity: Quantity, values: impl Into<Values>) -> Variable {
+    let values = values.into();
+    Variable::new(quantity, &[(SCENE.name, values.len())], values)
+}
+
+fn header(open: &OpenFile) -> Result<SweepHeader> {
+    let file: &File = &open.file;
+    open.check_format(file, Format::Sweep, "give the directory of a `fretwear sweep` only")?;
     Ok(SweepHeader {
-        title: source.text(group, "title")?,
-        task: source.text(group, "task")?,
-        study: source.text(group, "study")?,
-        base_scene: source.text(group, "base_scene")?,
-        study_hash: source.text(group, "study_hash")?,
-        scenes: whole("scenes")?,
-        shards: whole("shards")?,
-        shard: whole("shard")?,
+        title: open.text(file, "title")?,
+        task: open.text(file, "task")?,
+        study: open.text(file, "study")?,
+        base_scene: open.text(file, "base_scene")?,
+        study_hash: open.text(file, "study_hash")?,
+        scenes: open.integer(file, "scenes")?,
+        shards: open.integer(file, "shards")?,
+        shard: open.integer(file, "shard")?,
     })
-}
-
-/// Text without NUL, which HDF5 would end it at.
-pub(super) fn unicode(text: &str) -> hdf5::Result<VarLenUnicode> {
-    VarLenUnicode::from_str(&text.replace('\0', "\u{fffd}")).map_err(|error| error.to_string().into())
 }
 
 /// Errors of the HDF5 library go on for lines.

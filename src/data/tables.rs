@@ -1,14 +1,14 @@
 //! Result files of every kind as tables: variables over the same dimensions stand beside each other, one row for each place along them.
 
-use hdf5::{Dataset, File, Group, IndexType, IterationOrder};
+use serde::Serialize;
 
 use super::Format;
-use super::folder::{cell, quoted, table};
-use super::labelled::{is_dimension, runs_along};
+use super::cells::{cell, quoted, table};
+use super::dataset::{Dataset, Values, Variable};
 use super::layout::FLAG_MEANINGS;
-use super::reader::{self, Source};
+use super::reader::{OpenFile, Wanted};
 use super::seal::ResultPath;
-use super::shard::RUNS;
+use super::shard::{RUNS, kept_runs};
 use crate::error::{Error, Result, most_alike};
 
 const NOT_OURS: &str =
@@ -25,97 +25,81 @@ pub struct TableSummary {
     pub columns: Vec<String>,
 }
 
-/// A result file of any kind, opened to be read as tables.
+/// A result file of any kind, read as tables.
 ///
 /// A table is named by its dimensions, `time` or `time,node`, after the group in which they are, `loops/time,point`; one without dimensions by
 /// its group alone, `checkpoint`. The columns are the dimensions, the coordinates along them, then the variables. A head is the name of the
-/// dataset with its unit, `wear_volume [m3]`, and the name alone for a pure number or a word. Numbers have all digits that tell them from any
+/// variable with its unit, `wear_volume [m3]`, and the name alone for a pure number or a word. Numbers have all digits that tell them from any
 /// other; a cell is empty where there is none.
 #[derive(Debug)]
 pub struct ResultTables {
-    source: Source,
-    tables: Vec<Table>,
+    open: OpenFile,
+    dataset: Dataset,
     usual: &'static str,
-    /// Runs kept in the file of a sweep, of which the first is among the tables.
+    /// Runs kept in the file of a sweep, of which the first is in the dataset.
     runs: Vec<String>,
 }
 
-/// Datasets over the same dimensions.
-#[derive(Debug)]
-struct Table {
+/// Variables over the same dimensions.
+struct Table<'a> {
     name: String,
-    axes: Vec<Dataset>,
-    columns: Vec<Variable>,
-}
-
-/// A dataset and the places of its axes among those of its table.
-#[derive(Debug)]
-struct Variable {
-    name: String,
-    dataset: Dataset,
-    axes: Vec<usize>,
-}
-
-/// Values of a dataset.
-enum Values {
-    Real(Vec<f64>),
-    Whole(Vec<i64>),
-    Words(Vec<String>),
+    /// Name and length of its dimensions, slowest first.
+    axes: Vec<(&'a str, usize)>,
+    columns: Vec<&'a Variable>,
 }
 
 impl ResultTables {
-    /// Opens a file.
+    /// Reads a file.
     ///
     /// # Errors
     /// [`Error::File`] if it is no HDF5 file, not one of this program's, or damaged.
     pub fn open<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
-        let (source, file) = reader::open(file)?;
-        let usual = match source.format(&file)? {
+        let open = OpenFile::new(file)?;
+        let usual = match open.format(&open.file)? {
             Some(Format::Run) => "time",
             Some(Format::Sweep) => "scene",
             Some(Format::Map) => "grading,amplitude_ratio",
             Some(Format::Universality) => "case",
             Some(Format::Tradeoff) => "candidate",
-            None => return Err(source.error(format!("is no result of this program; {NOT_OURS}"))),
+            None => return Err(open.error(format!("is no result of this program; {NOT_OURS}"))),
         };
-        let mut this = Self { source, tables: vec![], usual, runs: vec![] };
-        this.walk(&file, "", &[])?;
-        if let Some(first) = this.list_runs(&file)? {
-            this.walk_run(&file, &first)?;
+        let (dataset, runs) = (open.dataset(&open.file, Wanted::Everything, &[RUNS])?, kept_runs(&open)?);
+        let mut this = Self { open, dataset, usual, runs };
+        if let Some(first) = this.runs.first().cloned() {
+            this.add_run(&first)?;
         }
         Ok(this)
     }
 
-    /// Opens a file for one of its tables, by its name or the usual one; of the runs that a sweep has kept, any may be named.
+    /// One of the tables of a file, by its name or the usual one; of the runs that a sweep has kept, any may be named.
     ///
     /// # Errors
     /// As [`ResultTables::open`]; also if there is no such table.
     pub fn csv<'a>(file: impl Into<ResultPath<'a>>, name: Option<&str>) -> Result<String> {
-        let file = file.into().ready()?;
         let mut this = Self::open(file)?;
         let name = name.unwrap_or(this.usual);
         let run = name.strip_prefix("runs/").and_then(|rest| rest.split('/').next());
         if let Some(run) = run.filter(|run| this.runs.iter().skip(1).any(|other| other == run)) {
-            this.walk_run(&reader::open(file)?.1, run)?;
+            this.add_run(run)?;
         }
-        match this.tables.iter().find(|table| table.name == name) {
-            Some(table) => this.text(table),
-            None => Err(this.no_such_table(name)),
+        let tables = this.tables()?;
+        match tables.iter().find(|table| table.name == name) {
+            Some(table) => Ok(table.text()),
+            None => Err(this.no_such_table(name, &tables)),
         }
     }
 
     /// The tables of the file; of the runs that a sweep has kept, those of the first.
-    pub fn summaries(&self) -> Vec<TableSummary> {
-        let summary = |table: &Table| TableSummary {
-            name: table.name.clone(),
+    ///
+    /// # Errors
+    /// [`Error::File`] if a variable does not run along dimensions of the file.
+    pub fn summaries(&self) -> Result<Vec<TableSummary>> {
+        let summary = |table: Table| TableSummary {
             rows: table.rows(),
-            columns: table
-                .columns
-                .iter()
-                .map(|it| it.head(&self.source).unwrap_or(it.name.clone()))
-                .collect(),
+            columns: table.columns.iter().map(|it| head(it)).collect(),
+            name: table.name,
         };
-        self.tables.iter().map(summary).collect()
+        Ok(self.tables()?.into_iter().map(summary).collect())
     }
 
     /// Name of the table that is taken where none is named.
@@ -128,227 +112,209 @@ impl ResultTables {
         self.runs.iter().map(|run| format!("{RUNS}/{run}")).collect()
     }
 
-    fn no_such_table(&self, name: &str) -> Error {
-        let names: Vec<&str> = self.tables.iter().map(|table| table.name.as_str()).collect();
+    fn no_such_table(&self, name: &str, tables: &[Table]) -> Error {
+        let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
         let near = most_alike(name, &names).map_or("", |(_, near)| near);
-        self.source
+        self.open
             .error(format!("has no table {name:?}; did you mean {near:?}? There are: {}", names.join("  ")))
     }
 
-    fn list_runs(&mut self, file: &File) -> Result<Option<String>> {
-        if !file.link_exists(RUNS) {
-            return Ok(None);
-        }
-        let group = file.group(RUNS).map_err(|error| self.source.damaged(RUNS, &error))?;
-        self.runs = group.member_names().map_err(|error| self.source.damaged(RUNS, &error))?;
-        self.runs.sort_by_key(|name| name.parse::<u64>().ok());
-        Ok(self.runs.first().cloned())
-    }
-
-    fn walk_run(&mut self, file: &File, run: &str) -> Result<()> {
+    fn add_run(&mut self, run: &str) -> Result<()> {
         let place = format!("{RUNS}/{run}");
-        let group = file.group(&place).map_err(|error| self.source.damaged(&place, &error))?;
-        self.walk(&group, &place, &[])
-    }
-
-    /// Adds the tables of a group and of the groups in it, where datasets may run along dimensions of the groups above.
-    fn walk(&mut self, group: &Group, path: &str, above: &[(String, Dataset)]) -> Result<()> {
-        let damaged = |what: &str, error: &dyn std::fmt::Display| self.source.damaged(what, error);
-        // In the order of creation, in which what belongs together stands together.
-        let names = group
-            .member_names_by(IndexType::CreationOrder, IterationOrder::Increasing)
-            .or_else(|_| group.member_names())
-            .map_err(|error| damaged(path, &error))?;
-        let (mut groups, mut datasets) = (vec![], vec![]);
-        for name in names.into_iter().filter(|name| !(path.is_empty() && name == RUNS)) {
-            match group.group(&name) {
-                Ok(inner) => groups.push((name, inner)),
-                Err(_) => {
-                    let dataset = group.dataset(&name).map_err(|error| damaged(&name, &error))?;
-                    datasets.push((name, dataset));
-                }
-            }
-        }
-        let known: Vec<(String, Dataset)> = datasets.iter().chain(above).cloned().collect();
-        let first = self.tables.len();
-        for (name, dataset) in datasets.iter().filter(|(_, dataset)| !is_dimension(dataset)) {
-            let axes = axes(dataset, &known).map_err(|why| damaged(name, &why))?;
-            let names: Vec<&str> = axes.iter().map(|axis| axis.0.as_str()).collect();
-            let title = match (path, &names[..]) {
-                ("", names) => names.join(","),
-                (path, []) => path.to_owned(),
-                (path, names) => format!("{path}/{}", names.join(",")),
-            };
-            let table = match self.tables[first..].iter().position(|table| table.name == title) {
-                Some(place) => first + place,
-                None => {
-                    self.tables.push(Table::new(title, axes));
-                    self.tables.len() - 1
-                }
-            };
-            self.tables[table].add_with_coordinates(&self.source, name, dataset, &known)?;
-        }
-        for (name, inner) in groups {
-            let path = if path.is_empty() { name } else { format!("{path}/{name}") };
-            self.walk(&inner, &path, &known)?;
-        }
+        let group = self.open.file.group(&place).map_err(|error| self.open.damaged(&place, &error))?;
+        let run = self.open.dataset(&group, Wanted::Everything, &[])?;
+        self.dataset.groups.push((place, run));
         Ok(())
     }
 
-    fn text(&self, shown: &Table) -> Result<String> {
-        let heads = shown.columns.iter().map(|it| it.head(&self.source)).collect::<Result<Vec<_>>>()?;
-        let lengths: Vec<usize> = shown.axes.iter().map(|axis| axis.size()).collect();
-        let columns = shown
-            .columns
-            .iter()
-            .map(|it| Ok((it.values(&self.source, &lengths)?, it.strides(&lengths))))
-            .collect::<Result<Vec<_>>>()?;
-        let rows = (0..shown.rows()).map(|row| {
-            let mut place = vec![0; lengths.len()];
+    fn tables(&self) -> Result<Vec<Table<'_>>> {
+        let mut tables = vec![];
+        add_tables(&mut tables, &self.dataset, "", &mut vec![])?;
+        Ok(tables)
+    }
+}
+
+/// Adds the tables of a dataset and of the groups in it, whose variables may run along dimensions and name coordinates of those around them.
+fn add_tables<'a>(
+    tables: &mut Vec<Table<'a>>,
+    dataset: &'a Dataset,
+    path: &str,
+    around: &mut Vec<&'a Dataset>,
+) -> Result<()> {
+    if let Some((name, why)) = dataset.unusable.first() {
+        return Err(dataset.damaged(name, why));
+    }
+    around.push(dataset);
+    let find = |name: &str| {
+        let inwards = around.iter().rev();
+        inwards.filter_map(|it| it.variables.iter().find(|it| it.name == name)).next()
+    };
+    let first = tables.len();
+    for variable in dataset.variables.iter().filter(|it| !it.is_coordinate()) {
+        let name = variable.name.as_str();
+        if let Some(axis) = variable.dimensions.iter().position(String::is_empty) {
+            return Err(dataset.damaged(name, &format!("axis {axis} has no dimension scale")));
+        }
+        let names = variable.dimensions.join(",");
+        let title = match (path, names.as_str()) {
+            ("", names) => names.to_owned(),
+            (path, "") => path.to_owned(),
+            (path, names) => format!("{path}/{names}"),
+        };
+        let place = tables[first..].iter().position(|table| table.name == title);
+        let place = place.map_or(tables.len(), |place| first + place);
+        if place == tables.len() {
+            let axes = variable.dimensions.iter().map(String::as_str).zip(variable.shape.iter().copied());
+            let columns = variable.dimensions.iter().filter_map(|name| find(name)).collect();
+            tables.push(Table { name: title, axes: axes.collect(), columns });
+        }
+        let table = &mut tables[place];
+        let coordinates = variable.text("coordinates").unwrap_or_default().split_whitespace();
+        for column in coordinates.filter_map(find).chain([variable]) {
+            table.add(column).map_err(|why| dataset.damaged(&column.name, &why))?;
+        }
+    }
+    for (name, inner) in &dataset.groups {
+        let path = if path.is_empty() { name.clone() } else { format!("{path}/{name}") };
+        add_tables(tables, inner, &path, around)?;
+    }
+    around.pop();
+    Ok(())
+}
+
+impl<'a> Table<'a> {
+    fn rows(&self) -> usize {
+        self.axes.iter().map(|axis| axis.1).product()
+    }
+
+    /// Adds a variable once.
+    fn add(&mut self, variable: &'a Variable) -> std::result::Result<(), String> {
+        if self.columns.iter().any(|it| it.name == variable.name) {
+            return Ok(());
+        }
+        let own = variable.dimensions.iter().map(String::as_str).zip(variable.shape.iter().copied());
+        if !own.clone().all(|axis| self.axes.contains(&axis)) {
+            return Err(format!("does not run along the dimensions of {}", self.name));
+        }
+        self.columns.push(variable);
+        Ok(())
+    }
+
+    fn text(&self) -> String {
+        let columns: Vec<_> = self.columns.iter().map(|it| (cells(it), self.strides(it))).collect();
+        let rows = (0..self.rows()).map(|row| {
+            let mut place = vec![0; self.axes.len()];
             let mut rest = row;
-            for (index, length) in place.iter_mut().zip(&lengths).rev() {
+            for (index, (_, length)) in place.iter_mut().zip(&self.axes).rev() {
                 *index = rest % length;
                 rest /= length;
             }
-            let of = |(values, strides): &(Values, Vec<usize>)| {
-                values.cell(place.iter().zip(strides).map(|(index, stride)| index * stride).sum())
-            };
-            columns.iter().map(of).collect()
+            let at =
+                |strides: &[usize]| place.iter().zip(strides).map(|(index, stride)| index * stride).sum();
+            columns.iter().map(|(cell, strides)| cell(at(strides))).collect()
         });
-        let heads: Vec<String> = heads.iter().map(|head| quoted(head)).collect();
-        Ok(table(heads.iter().map(String::as_str), rows))
-    }
-}
-
-/// The dimensions of a dataset.
-fn axes(
-    dataset: &Dataset,
-    known: &[(String, Dataset)],
-) -> std::result::Result<Vec<(String, Dataset)>, String> {
-    let along = |axis: usize| {
-        let found = known.iter().find(|(_, it)| is_dimension(it) && runs_along(dataset, axis, it));
-        let (name, dimension) = found.ok_or(format!("axis {axis} has no dimension scale"))?;
-        match dataset.shape()[axis] == dimension.size() {
-            true => Ok((name.clone(), dimension.clone())),
-            false => Err(format!("axis {axis} is not as long as its dimension {name}")),
-        }
-    };
-    (0..dataset.ndim()).map(along).collect()
-}
-
-impl Table {
-    /// A table of its dimensions alone.
-    fn new(name: String, axes: Vec<(String, Dataset)>) -> Self {
-        let columns = axes.iter().enumerate().map(|(place, (name, dataset))| Variable {
-            name: name.clone(),
-            dataset: dataset.clone(),
-            axes: vec![place],
-        });
-        Self { name, columns: columns.collect(), axes: axes.into_iter().map(|axis| axis.1).collect() }
+        let heads: Vec<String> = self.columns.iter().map(|it| quoted(&head(it))).collect();
+        table(heads.iter().map(String::as_str), rows)
     }
 
-    fn rows(&self) -> usize {
-        self.axes.iter().map(|axis| axis.size()).product()
-    }
-
-    /// Adds a variable after the coordinates that it names, each once.
-    fn add_with_coordinates(
-        &mut self,
-        source: &Source,
-        name: &str,
-        dataset: &Dataset,
-        known: &[(String, Dataset)],
-    ) -> Result<()> {
-        let named = match dataset.attr("coordinates") {
-            Ok(_) => source.text(dataset, "coordinates")?,
-            Err(_) => String::new(),
-        };
-        for coordinate in named.split_whitespace() {
-            if let Some((name, dataset)) = known.iter().find(|(name, _)| name == coordinate) {
-                self.add(source, name, dataset)?;
-            }
-        }
-        self.add(source, name, dataset)
-    }
-
-    fn add(&mut self, source: &Source, name: &str, dataset: &Dataset) -> Result<()> {
-        if self.columns.iter().any(|it| it.name == name) {
-            return Ok(());
-        }
-        let place = |axis| {
-            let found = self.axes.iter().position(|dimension| runs_along(dataset, axis, dimension));
-            found.ok_or_else(|| {
-                source.damaged(name, &format!("does not run along the dimensions of {}", self.name))
-            })
-        };
-        let axes = (0..dataset.ndim()).map(place).collect::<Result<_>>()?;
-        self.columns.push(Variable { name: name.to_owned(), dataset: dataset.clone(), axes });
-        Ok(())
-    }
-}
-
-impl Variable {
-    /// `wear_volume [m3]`; the name alone where the unit is 1.
-    fn head(&self, source: &Source) -> Result<String> {
-        Ok(match source.text(&self.dataset, "units")?.as_str() {
-            "1" => self.name.clone(),
-            unit => format!("{} [{unit}]", self.name),
-        })
-    }
-
-    /// Steps of the position in the values for one step along each axis of the table.
-    fn strides(&self, lengths: &[usize]) -> Vec<usize> {
-        let mut strides = vec![0; lengths.len()];
+    /// Steps of the position in the values of a variable for one step along each axis of the table.
+    fn strides(&self, variable: &Variable) -> Vec<usize> {
+        let mut strides = vec![0; self.axes.len()];
         let mut stride = 1;
-        for &axis in self.axes.iter().rev() {
+        for (name, length) in variable.dimensions.iter().zip(&variable.shape).rev() {
+            let axis = self.axes.iter().position(|axis| axis.0 == name).expect("looked at when it was added");
             strides[axis] = stride;
-            stride *= lengths[axis];
+            stride *= length;
         }
         strides
     }
+}
 
-    fn values(&self, source: &Source, lengths: &[usize]) -> Result<Values> {
-        let shape: Vec<Option<usize>> = self.axes.iter().map(|&axis| Some(lengths[axis])).collect();
-        let kind = self.dataset.dtype().map_err(|error| source.damaged(&self.name, &error))?;
-        let dataset = &self.dataset;
-        let values = if kind.is::<f64>() {
-            Values::Real(source.values_of(dataset, &self.name, &shape)?)
-        } else if kind.is::<i64>() {
-            Values::Whole(source.values_of(dataset, &self.name, &shape)?)
-        } else if kind.is::<i32>() {
-            let numbers: Vec<i32> = source.values_of(dataset, &self.name, &shape)?;
-            self.words(source, &numbers)?
-                .unwrap_or_else(|| Values::Whole(numbers.into_iter().map(i64::from).collect()))
-        } else if kind.is::<u64>() {
-            let numbers: Vec<u64> = source.values_of(dataset, &self.name, &shape)?;
-            Values::Whole(numbers.into_iter().map(u64::cast_signed).collect())
-        } else {
-            Values::Words(source.words_of(dataset, &self.name, &shape)?)
-        };
-        Ok(values)
-    }
-
-    /// The words that numbers stand for, where there are any.
-    fn words(&self, source: &Source, numbers: &[i32]) -> Result<Option<Values>> {
-        if self.dataset.attr(FLAG_MEANINGS).is_err() {
-            return Ok(None);
-        }
-        let meanings = source.text(&self.dataset, FLAG_MEANINGS)?;
-        let meanings: Vec<&str> = meanings.split_whitespace().collect();
-        let word = |flag: &i32| {
-            let meaning = usize::try_from(*flag).ok().and_then(|place| meanings.get(place));
-            meaning.map_or_else(|| flag.to_string(), |word| (*word).to_owned())
-        };
-        Ok(Some(Values::Words(numbers.iter().map(word).collect())))
+/// `wear_volume [m3]`; the name alone where the unit is 1.
+fn head(variable: &Variable) -> String {
+    match variable.units.as_str() {
+        "1" => variable.name.clone(),
+        unit => format!("{} [{unit}]", variable.name),
     }
 }
 
-impl Values {
-    fn cell(&self, place: usize) -> String {
-        match self {
-            Self::Real(values) => cell(values[place]),
-            Self::Whole(values) => values[place].to_string(),
-            Self::Words(values) => quoted(&values[place]),
+/// How a value is written, by its place.
+fn cells(variable: &Variable) -> Box<dyn Fn(usize) -> String + '_> {
+    match &variable.values {
+        Values::Numbers(values) => Box::new(|place| cell(values[place])),
+        Values::Indices(values) => Box::new(|place| values[place].to_string()),
+        Values::Counts(values) => Box::new(|place| values[place].to_string()),
+        Values::Texts(words) => Box::new(|place| quoted(words.get(place))),
+        Values::Flags(flags) => {
+            let meanings: Vec<&str> =
+                variable.text(FLAG_MEANINGS).unwrap_or_default().split_whitespace().collect();
+            Box::new(move |place| {
+                let meaning = usize::try_from(flags[place]).ok().and_then(|flag| meanings.get(flag));
+                meaning.map_or_else(|| flags[place].to_string(), |word| (*word).to_owned())
+            })
         }
+        Values::Foreign => Box::new(|_| String::new()),
+    }
+}
+
+/// What a file of a study holds, without the values.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DatasetSummary {
+    /// The root attribute `format`.
+    pub format: String,
+    /// Title of the study.
+    pub title: String,
+    /// Version of the program that wrote the file.
+    pub program_version: String,
+    /// Whether everything is in it.
+    pub complete: bool,
+    /// The variables, by name.
+    pub arrays: Vec<VariableSummary>,
+}
+
+/// Name, meaning and shape of a variable.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VariableSummary {
+    /// Name.
+    pub name: String,
+    /// Lengths along its dimensions, slowest first.
+    pub shape: Vec<usize>,
+    /// Units.
+    pub units: String,
+    /// Meaning.
+    pub long_name: String,
+}
+
+impl DatasetSummary {
+    /// Reads what is in a file of a study; none if it is of a run or not one of this program's.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it is no HDF5 file or damaged.
+    pub fn read<'a>(file: impl Into<ResultPath<'a>>) -> Result<Option<Self>> {
+        let open = OpenFile::new(file)?;
+        let Some(format) = open.format(&open.file)?.filter(|format| *format != Format::Run) else {
+            return Ok(None);
+        };
+        let stored = open.dataset(&open.file, Wanted::Labels, &[RUNS])?;
+        let summary = |Variable { name, shape, units, long_name, .. }| VariableSummary {
+            name,
+            shape,
+            units,
+            long_name,
+        };
+        let mut arrays: Vec<_> = stored.variables.into_iter().map(summary).collect();
+        if open.file.link_exists(RUNS) {
+            let (name, units) = (RUNS.to_owned(), "1".to_owned());
+            let long_name = "whole runs, one group each".to_owned();
+            arrays.push(VariableSummary { name, shape: vec![kept_runs(&open)?.len()], units, long_name });
+        }
+        arrays.sort_by(|one, other| one.name.cmp(&other.name));
+        Ok(Some(Self {
+            format: format.name().into(),
+            title: open.text(&open.file, "title")?,
+            program_version: open.text(&open.file, "program_version")?,
+            complete: open.integer::<i32>(&open.file, "complete")? != 0,
+            arrays,
+        }))
     }
 }

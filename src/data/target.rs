@@ -1,9 +1,10 @@
-//! The file that a run is saved to.
+//! Files that are written: of a dataset at once, of a run with each of its saves.
 
 use std::path::{Path, PathBuf};
 
 use super::atomic::AtomicFile;
-use super::labelled::laid_out;
+use super::dataset::Dataset;
+use super::labelled::{laid_out, put_dataset};
 use super::save::Save;
 use super::seal::sealed;
 use crate::error::Result;
@@ -22,7 +23,7 @@ impl Target {
         AtomicFile::new(path, overwrite).map(Self::Ready)
     }
 
-    fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &Path {
         match self {
             Self::Ready(file) => file.path(),
             Self::Later(path) => path,
@@ -30,7 +31,7 @@ impl Target {
     }
 
     pub(super) fn save(&mut self, save: &Save) -> Result<()> {
-        let bytes = sealed(laid_out(self.path(), |file| save.put_into(file))?);
+        let bytes = sealed(laid_out(self.path(), |file| put_dataset(file, &save.dataset()))?);
         if let Self::Later(path) = self {
             *self = Self::Ready(AtomicFile::new(path, true)?);
         }
@@ -38,5 +39,19 @@ impl Target {
             Self::Ready(file) => file.write(&bytes),
             Self::Later(_) => unreachable!("made ready above"),
         }
+    }
+}
+
+impl Dataset {
+    /// Writes a file, as a whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::File`](crate::Error::File) if the file exists and `overwrite` is not given, or cannot be written.
+    ///
+    /// # Panics
+    /// If a variable runs along a dimension that has no coordinate before it.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
+        let mut file = AtomicFile::new(path, overwrite)?;
+        file.write(&sealed(laid_out(path, |file| put_dataset(file, self))?))
     }
 }

@@ -3,6 +3,8 @@
 #[cfg(feature = "hdf5")]
 use std::path::Path;
 
+#[cfg(feature = "hdf5")]
+use super::RunFile;
 use super::save::Save;
 #[cfg(feature = "hdf5")]
 use super::target::Target;
@@ -63,7 +65,7 @@ impl RunWriter {
         Self::with_snapshots(path, header, Vec::new(), overwrite)
     }
 
-    /// A writer that goes on after `snapshots`; see [`RunFile::into_writer`](super::RunFile::into_writer).
+    /// A writer that goes on after `snapshots`; see [`RunFile::into_writer`].
     pub(crate) fn with_snapshots(
         path: &Path,
         header: RunHeader,
@@ -77,6 +79,11 @@ impl RunWriter {
     /// A writer that does not look at its file before the first save, which replaces what is there.
     pub fn deferred(path: &Path, header: RunHeader) -> Self {
         Self { file: Some(Target::Later(path.to_owned())), ..Self::in_memory(header) }
+    }
+
+    /// The file that is written, behind all links; none for what stays in memory.
+    pub fn path(&self) -> Option<&Path> {
+        self.file.as_ref().map(Target::path)
     }
 }
 
@@ -154,5 +161,23 @@ impl RunWriter {
         let save =
             Save { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
         self.file.as_mut().map_or(Ok(()), |file| file.save(&save))
+    }
+}
+
+#[cfg(feature = "hdf5")]
+impl RunFile {
+    /// A writer that goes on after the snapshots of this file and replaces `path` at its first save.
+    ///
+    /// # Errors
+    /// [`Error::File`](crate::Error::File) if `path` cannot be written.
+    pub fn into_writer(self, path: &Path) -> Result<RunWriter> {
+        RunWriter::with_snapshots(path, self.header, self.snapshots, true)
+    }
+
+    /// As [`RunFile::into_writer`], without a look at `path` before the first save.
+    pub fn into_deferred_writer(self, path: &Path) -> RunWriter {
+        let mut writer = RunWriter::deferred(path, self.header);
+        self.snapshots.into_iter().for_each(|snapshot| writer.push(snapshot));
+        writer
     }
 }

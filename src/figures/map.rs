@@ -2,7 +2,7 @@
 
 use super::measure::points;
 use super::rings::Grid;
-use crate::data::StoredArrays;
+use crate::data::Dataset;
 use crate::error::Result;
 use crate::figures::drawing::{
     Axis, Bar, Colour, Dash, Figure, Label, Panel, Row, Series, Spacing, Style, graded, plain,
@@ -45,11 +45,12 @@ const FORMS: [Form; 2] = [
     },
 ];
 
-pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
+pub(super) fn figure(file: &Dataset) -> Result<Figure> {
     let mut panels = FORMS.iter().map(|form| panel(file, form)).collect::<Result<Vec<_>>>()?;
     panels[1].y.quantity = String::new();
     panels[1].bar = Some(bar());
-    let title = if file.title.is_empty() { "Worn volume of graded media".into() } else { plain(&file.title) };
+    let title =
+        if file.title().is_empty() { "Worn volume of graded media".into() } else { plain(file.title()) };
     let note = "Dots: the grading that wears least at an amplitude. Heavy line: as much wear as the homogeneous medium.";
     Ok(Figure {
         title: Some(title),
@@ -58,19 +59,19 @@ pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
     })
 }
 
-fn panel(file: &StoredArrays, form: &Form) -> Result<Panel> {
-    let gradings = file.coordinate("grading")?;
-    let amplitudes = file.coordinate("amplitude_ratio")?;
+fn panel(file: &Dataset, form: &Form) -> Result<Panel> {
+    let gradings = file.along("grading")?;
+    let amplitudes = file.along("amplitude_ratio")?;
     let values = file.numbers(form.values, &[gradings.len(), amplitudes.len()])?;
     let x = axis("grading *k*", Spacing::Linear, gradings)
-        .ok_or_else(|| file.unusable("grading has no range"))?;
+        .ok_or_else(|| file.damaged("grading", &"has no range"))?;
     let y = axis("amplitude *U*/(*μ*_{f}*d*)", Spacing::Logarithmic, amplitudes)
-        .ok_or_else(|| file.unusable("amplitude_ratio has no range"))?;
+        .ok_or_else(|| file.damaged("amplitude_ratio", &"has no range"))?;
     let mut panel = Panel::new(x, y).titled(form.title);
     add_bands(&mut panel, gradings, amplitudes, values);
     add_isolines(&mut panel, file, form)?;
     add_full_sliding(&mut panel, gradings, file.numbers("full_sliding_amplitude_ratio", &[gradings.len()])?);
-    let least = [file.coordinate("optimal_grading")?, file.coordinate("optimum_amplitude_ratio")?];
+    let least = [file.along("optimal_grading")?, file.along("optimum_amplitude_ratio")?];
     let inside = |point: &[f64; 2]| {
         let [low, high] = panel.x.range;
         point[0] > low && point[0] < high && point[1] >= panel.y.range[0]
@@ -138,9 +139,9 @@ fn without_gaps(values: &[f64], row: usize) -> Vec<f64> {
     filled
 }
 
-fn add_isolines(panel: &mut Panel, file: &StoredArrays, form: &Form) -> Result<()> {
+fn add_isolines(panel: &mut Panel, file: &Dataset, form: &Form) -> Result<()> {
     let [numbers, levels, gradings, amplitudes] = form.isolines;
-    let numbers = file.coordinate(numbers)?;
+    let numbers = file.along(numbers)?;
     let columns = [levels, gradings, amplitudes].map(|name| file.numbers(name, &[numbers.len()]));
     let [levels, gradings, amplitudes] = columns;
     let (levels, gradings, amplitudes) = (levels?, gradings?, amplitudes?);

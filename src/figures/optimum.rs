@@ -1,7 +1,7 @@
 //! The grading that wears least, over the amplitude.
 
 use super::measure::{Measure, points};
-use crate::data::StoredArrays;
+use crate::data::Dataset;
 use crate::error::Result;
 use crate::figures::drawing::{DISTINCT, Dash, Figure, Panel, Row, Series, Spacing, Style, plain};
 use crate::report::number;
@@ -10,13 +10,13 @@ use crate::report::number;
 const FORCE: [(&str, &str); 2] =
     [("_force", "same force"), ("_force_depth_only", "same force, amplitude as at the same depth")];
 
-pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
-    let amplitudes = file.coordinate("optimum_amplitude_ratio")?;
+pub(super) fn figure(file: &Dataset) -> Result<Figure> {
+    let amplitudes = file.along("optimum_amplitude_ratio")?;
     let mut curves = vec![(
         "same indentation".to_owned(),
         ["optimal_grading", "optimal_wear_volume_ratio"].map(|name| file.numbers(name, &[amplitudes.len()])),
     )];
-    let depths = file.coordinate("reference_depth")?;
+    let depths = file.along("reference_depth")?;
     for (ending, meaning) in FORCE {
         let shape = [depths.len(), amplitudes.len()];
         let rows = ["optimal_grading", "optimal_wear_volume_ratio"]
@@ -53,7 +53,7 @@ pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
     let upper = Panel { series: gradings, ..Panel::new(x.clone(), grading) };
     let mut lower = Panel { series: ratios, ..Panel::new(x, ratio) };
     lower.series.iter_mut().for_each(|series| series.in_legend = false);
-    let title = if file.title.is_empty() { "Optimal grading".into() } else { plain(&file.title) };
+    let title = if file.title().is_empty() { "Optimal grading".into() } else { plain(file.title()) };
     Ok(Figure {
         title: Some(title),
         rows: vec![Row { height: 190.0, panels: vec![upper] }, Row { height: 170.0, panels: vec![lower] }],

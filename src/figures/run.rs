@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use super::Kind;
 use super::measure::Measure;
-use super::{Kind, approach, history, loops, pressure, profile};
 use crate::contact::closed_form::LimitingShape;
 use crate::data::{RunFile, Snapshot, largest};
 use crate::error::Result;
-use crate::figures::drawing::{Axis, Bar, Colour, Figure, Spacing, graded, plain};
+use crate::figures::drawing::{Axis, Bar, Colour, Spacing, graded};
 use crate::report::Scale;
 use crate::scene::Scene;
 
@@ -56,22 +56,11 @@ impl RunResults {
         Kind::ALL.into_iter().filter(fits).collect()
     }
 
-    pub(super) fn figure(&self, kind: Kind) -> Result<Figure> {
-        let rows = match kind {
-            Kind::Pressure => pressure::rows(self),
-            Kind::History => history::rows(self),
-            Kind::Approach => approach::rows(self),
-            Kind::Loops => loops::rows(self),
-            _ => profile::rows(self),
-        };
-        Ok(Figure { title: self.run.header.title.as_deref().map(plain), rows, notes: self.notes() })
-    }
-
     pub(super) fn snapshots(&self) -> &[Snapshot] {
         &self.run.snapshots
     }
 
-    fn notes(&self) -> Vec<String> {
+    pub(super) fn notes(&self) -> Vec<String> {
         let last = self.snapshots().last().map_or(0.0, |snapshot| snapshot.cycles);
         match self.run.complete {
             true => vec![],

@@ -5,7 +5,7 @@ mod map;
 use std::collections::HashSet;
 
 use super::measure::Measure;
-use crate::data::{Column, SweepFile, Values};
+use crate::data::{SweepFile, Values, Variable};
 use crate::error::{Error, Result};
 use crate::figures::drawing::{
     Axis, Colour, DISTINCT, Dash, Figure, Panel, Row, Series, Shape, Spacing, Style, plain,
@@ -42,10 +42,13 @@ pub(super) fn figure(file: &SweepFile, quantity: Option<&str>) -> Result<Figure>
         return Err(Error::Inconsistent { what: "quantity", why });
     }
     let measure =
-        scale(&result.units).map_or(Measure::NUMBER, |scale| Measure::new(scale, values.iter().copied()));
+        Scale::of(&result.units).map_or(Measure::NUMBER, |scale| Measure::new(scale, values.iter().copied()));
     let values = measure.all(values);
-    let unit =
-        if scale(&result.units).is_some() || result.units == "1" { measure.symbol() } else { &result.units };
+    let unit = if Scale::of(&result.units).is_some() || result.units == "1" {
+        measure.symbol()
+    } else {
+        &result.units
+    };
     let meaning = plain(&result.long_name);
     let wanted = |values: &[f64]| {
         let axis = measure.axis(&meaning, spacing(values), values.iter().copied(), 0.06);
@@ -96,7 +99,7 @@ fn spacing(values: &[f64]) -> Spacing {
 }
 
 /// The column that is drawn.
-fn result<'a>(file: &'a SweepFile, quantity: Option<&str>) -> Result<&'a Column> {
+fn result<'a>(file: &'a SweepFile, quantity: Option<&str>) -> Result<&'a Variable> {
     let find = |name: &str| file.columns.iter().find(|column| column.name == name);
     match quantity {
         Some(name) => find(name).filter(|it| is_result(it)).ok_or_else(|| no_quantity(file, name)),
@@ -104,7 +107,7 @@ fn result<'a>(file: &'a SweepFile, quantity: Option<&str>) -> Result<&'a Column>
     }
 }
 
-fn is_result(column: &Column) -> bool {
+fn is_result(column: &Variable) -> bool {
     matches!(column.values, Values::Numbers(_)) && !column.name.starts_with("input_")
 }
 
@@ -120,8 +123,8 @@ fn inputs(file: &SweepFile) -> Vec<Input<'_>> {
     file.columns.iter().filter_map(input).collect()
 }
 
-fn input(column: &Column) -> Option<Input<'_>> {
-    let Column { name, long_name, values: Values::Numbers(values), .. } = column else { return None };
+fn input(column: &Variable) -> Option<Input<'_>> {
+    let Variable { name, long_name, values: Values::Numbers(values), .. } = column else { return None };
     // The file says "KEY of the scene, in SI".
     let key = long_name.split_once(" of the scene").map_or(name.as_str(), |(key, _)| key);
     let mut different: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
@@ -141,18 +144,6 @@ fn scale_of_key(key: &str) -> Option<Scale> {
         }
         "initial_force" | "normal_force" => Some(Scale::FORCE),
         "modulus" | "pressure" => Some(Scale::PRESSURE),
-        _ => None,
-    }
-}
-
-fn scale(units: &str) -> Option<Scale> {
-    match units {
-        "m" => Some(Scale::LENGTH),
-        "m3" => Some(Scale::VOLUME),
-        "N" => Some(Scale::FORCE),
-        "Pa" => Some(Scale::PRESSURE),
-        "J" => Some(Scale::ENERGY),
-        "s" => Some(Scale::TIME),
         _ => None,
     }
 }

@@ -1,7 +1,7 @@
 //! Error against cost, with the fronts and what the knob `accuracy` costs beside them.
 
 use super::measure::Measure;
-use crate::data::StoredArrays;
+use crate::data::{Dataset, Words};
 use crate::error::Result;
 use crate::figures::drawing::{
     Axis, Colour, DISTINCT, Dash, Figure, Label, Panel, Row, Series, Shape, Spacing, Style, plain,
@@ -22,14 +22,14 @@ const KNOB: Colour = Colour([200, 0, 60]);
 
 /// The candidates as far as figures need them.
 struct Candidates<'a> {
-    file: &'a StoredArrays,
-    steppers: &'a [String],
-    cycles: &'a [String],
+    file: &'a Dataset,
+    steppers: &'a Words,
+    cycles: &'a Words,
     accuracies: &'a [f64],
 }
 
-pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
-    let count = file.coordinate("candidate")?.len();
+pub(super) fn figure(file: &Dataset) -> Result<Figure> {
+    let count = file.along("candidate")?.len();
     let candidates = Candidates {
         file,
         steppers: file.words("stepper", count)?,
@@ -51,7 +51,7 @@ pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
         }
         rows.push(Row { height: 240.0, panels: panels.into_iter().collect::<Result<_>>()? });
     }
-    let title = if file.title.is_empty() { None } else { Some(plain(&file.title)) };
+    let title = if file.title().is_empty() { None } else { Some(plain(file.title())) };
     let note = "Largest error over the snapshots, over worn volume and largest depth of the limit. Diamonds: numerics.accuracy as written.";
     Ok(Figure { title, rows, notes: vec![note.into()] })
 }
@@ -102,8 +102,8 @@ impl Candidates<'_> {
             for cycle in [Cycle::ClosedForm, Cycle::Resolved] {
                 let is_one = |at: &usize| {
                     self.accuracies[*at].is_nan()
-                        && self.steppers[*at] == stepper.name()
-                        && self.cycles[*at] == cycle.name()
+                        && self.steppers.get(*at) == stepper.name()
+                        && self.cycles.get(*at) == cycle.name()
                 };
                 let points: Vec<[f64; 2]> = known.iter().copied().filter(is_one).map(point).collect();
                 if points.is_empty() {
@@ -133,7 +133,7 @@ impl Candidates<'_> {
 
     /// Uncertainty of the reference in volume and profile.
     fn uncertainty(&self, place: usize) -> Option<f64> {
-        let text = self.file.attribute("reference_uncertainty")?;
+        let text = self.file.text("reference_uncertainty")?;
         text.split(',')
             .nth(place)?
             .trim()

@@ -1,7 +1,7 @@
 //! Laws, modes and media against one limit, with the negative controls.
 
 use super::measure::{Measure, points};
-use crate::data::StoredArrays;
+use crate::data::Dataset;
 use crate::error::Result;
 use crate::figures::drawing::{
     Axis, Colour, DISTINCT, Dash, Figure, Label, Panel, Row, Series, Shape, Spacing, Style, plain,
@@ -22,26 +22,26 @@ struct Case<'a> {
     curve: Vec<[f64; 2]>,
 }
 
-pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
-    let count = file.coordinate("case")?.len();
-    let positions = file.coordinate("position")?.len();
+pub(super) fn figure(file: &Dataset) -> Result<Figure> {
+    let count = file.along("case")?.len();
+    let positions = file.along("position")?.len();
     let (names, predicted) = (file.words("name", count)?, file.words("predicted", count)?);
     let distances = file.numbers("distance", &[count])?;
     let shape = [count, positions];
     let [depth, limit] = ["profile_wear_depth", "profile_limit"].map(|name| file.numbers(name, &shape));
     let (depth, limit) = (depth?, limit?);
     let (mut inside, mut controls) = (vec![], vec![]);
-    for case in 0..count {
+    for (case, &distance) in distances.iter().enumerate() {
         let part = case * positions..(case + 1) * positions;
         let curve = points(&limit[part.clone()], &depth[part]);
-        let group = if predicted[case] == "within" { &mut inside } else { &mut controls };
-        group.push(Case { name: &names[case], distance: distances[case], curve });
+        let group = if predicted.get(case) == "within" { &mut inside } else { &mut controls };
+        group.push(Case { name: names.get(case), distance, curve });
     }
     let by_distance = |one: &Case, other: &Case| one.distance.total_cmp(&other.distance);
     inside.sort_by(by_distance);
     controls.sort_by(by_distance);
     let tolerances = ["tolerance_within", "tolerance_outside"].map(|name| {
-        file.attribute(name)
+        file.text(name)
             .and_then(|text| text.parse().ok())
             .filter(|value: &f64| *value > 0.0 && value.is_finite())
     });
@@ -49,7 +49,7 @@ pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
         Row { height: 230.0, panels: vec![overlay(&inside), outliers(&controls)] },
         Row { height: 215.0, panels: vec![order(&inside, &controls, tolerances)] },
     ];
-    let title = if file.title.is_empty() { None } else { Some(plain(&file.title)) };
+    let title = if file.title().is_empty() { None } else { Some(plain(file.title())) };
     let notes = vec![
         "Numbers tell the controls. Depths over the largest of the limit, at radii between *c* and *a*_{∞}."
             .into(),

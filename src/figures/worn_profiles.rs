@@ -1,7 +1,7 @@
 //! Worn profiles of media of several gradings at one amplitude [S, Fig. 1].
 
 use super::measure::{Measure, points};
-use crate::data::StoredArrays;
+use crate::data::Dataset;
 use crate::error::Result;
 use crate::figures::drawing::{Colour, Dash, Figure, Panel, Row, Series, Spacing, Style, graded, plain};
 use crate::report::number;
@@ -10,12 +10,12 @@ use crate::scene::MapScene;
 /// Lightest colour of a curve.
 const LIGHTEST: f64 = 0.12;
 
-pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
-    let gradings = file.coordinate("profile_grading")?;
-    let radii = file.coordinate("profile_radius")?;
+pub(super) fn figure(file: &Dataset) -> Result<Figure> {
+    let gradings = file.along("profile_grading")?;
+    let radii = file.along("profile_radius")?;
     let initial = file.numbers("profile_initial", &[radii.len()])?;
     let depths = file.numbers("profile_wear_depth", &[gradings.len(), radii.len()])?;
-    let map = MapScene::from_toml(file.attribute("map").unwrap_or_default(), "the map in the file")?;
+    let map = MapScene::from_toml(file.text("map").unwrap_or_default(), "the map in the file")?;
     let curves: Vec<&[f64]> = depths.chunks(radii.len().max(1)).collect();
     let slides = |depths: &&[f64]| depths.iter().any(|depth| !depth.is_finite());
     let sliding: Vec<String> =
@@ -52,8 +52,11 @@ pub(super) fn figure(file: &StoredArrays) -> Result<Figure> {
             sliding.join(", ").replace('-', "−")
         ));
     }
-    let title =
-        if file.title.is_empty() { "Limiting profiles of graded media".into() } else { plain(&file.title) };
+    let title = if file.title().is_empty() {
+        "Limiting profiles of graded media".into()
+    } else {
+        plain(file.title())
+    };
     Ok(Figure { title: Some(title), rows: vec![Row { height: 270.0, panels: vec![left, right] }], notes })
 }
 

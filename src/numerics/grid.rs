@@ -322,12 +322,7 @@ pub struct Local {
 impl Local {
     /// Its value there for what is given at the nodes.
     pub fn sum(&self, values: &[f64]) -> f64 {
-        self.sum_of(|node| values[node])
-    }
-
-    /// Its value there for what is known of every node, counted from the first one off the edge of stick on.
-    pub fn sum_of(&self, value: impl Fn(usize) -> f64) -> f64 {
-        self.weights.iter().zip(self.stencil.clone()).map(|(weight, node)| weight * value(node - 1)).sum()
+        self.weights.iter().zip(self.stencil.clone()).map(|(weight, node)| weight * values[node - 1]).sum()
     }
 }
 

@@ -12,7 +12,7 @@ use faer::{Accum, ColMut, ColRef, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 pub use cross::LowRank;
-pub use hodlr::{Halves, HodlrFactors, OffDiagonal, Sides, Split};
+pub use hodlr::{Halves, HodlrFactors, LeafColumns, OffDiagonal, Split};
 
 /// `y = A x` for the leading columns of `A`, as many as `x` is long.
 pub fn multiply(matrix: MatRef<'_, f64>, x: &[f64], y: &mut [f64]) {

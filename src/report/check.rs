@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::text::{Rows, Scale, indenter, number};
+use super::text::{Scale, TextTable, indenter, number};
 use super::{conditions, unsigned_zero};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
@@ -17,7 +17,7 @@ use crate::scene::Scene;
 /// Steepest flank at the edge of contact that is not worth a word.
 const STEEP: f64 = 0.3;
 
-/// Rows within the contact that describe a profile.
+/// TextTable within the contact that describe a profile.
 const FEW_ROWS: usize = 10;
 
 /// Dimensionless time of one cycle up to which the shape hardly changes within it.
@@ -164,9 +164,14 @@ impl CheckReport {
 
     /// A table for people.
     pub fn text(&self) -> String {
+        self.table().text()
+    }
+
+    /// Its lines.
+    pub(crate) fn table(&self) -> TextTable {
         let lengths = |value: Option<f64>| value.map(|value| Scale::LENGTH.show(value));
         let stiffness = |value: f64| format!("{} N/m^{}", number(value), number(2.0 + self.grading));
-        let mut rows = Rows::titled(self.title.as_deref());
+        let mut rows = TextTable::titled(self.title.as_deref());
         rows.row("indenter", &self.indenter);
         if let Some(smoothing) = &self.smoothing {
             put_smoothing(&mut rows, smoothing);
@@ -205,12 +210,12 @@ impl CheckReport {
         if let Some(rate) = self.until_rate {
             rows.row("planned until", format!("the rate of wear is {} of its first value", number(rate)));
         }
-        rows.finish()
+        rows
     }
 }
 
 /// What the rows of a measured profile were replaced by, and how far they lie from it.
-fn put_smoothing(rows: &mut Rows, smoothing: &Smoothing) {
+fn put_smoothing(rows: &mut TextTable, smoothing: &Smoothing) {
     let length = |value: f64| Scale::LENGTH.show(value);
     let by = match smoothing.by {
         SmoothedBy::Paraboloid => "the best paraboloid",

@@ -1,6 +1,6 @@
 //! Laws, mode, blocks and control in words.
 
-use super::text::{Rows, Scale, number, recorded_path};
+use super::text::{Scale, TextTable, number, recorded_path};
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::{Coulomb, FrictionLaw};
 use crate::laws::history::History;
@@ -10,8 +10,8 @@ use crate::laws::wear::{Archard, WearLaw};
 /// Blocks and times of which all are listed.
 const MOST_LISTED: usize = 6;
 
-/// Rows of a table for people.
-pub(super) fn put(rows: &mut Rows, conditions: &Conditions) {
+/// TextTable of a table for people.
+pub(super) fn put(rows: &mut TextTable, conditions: &Conditions) {
     let clock = match conditions.clock {
         Clock::Cycles => "cycles",
         Clock::Tau => "τ",
@@ -91,7 +91,7 @@ fn wear(law: &WearLaw) -> String {
     }
 }
 
-fn changing(rows: &mut Rows, what: &str, history: &History, clock: &str) {
+fn changing(rows: &mut TextTable, what: &str, history: &History, clock: &str) {
     match history {
         History::Constant => {}
         History::Exponential { last, time } => {

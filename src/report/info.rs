@@ -4,8 +4,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::text::{Rows, Scale, number, recorded_path, table};
-use crate::data::{ArraySummary, Checkpoint, LimitDistance, ResultPath, RunFile, Snapshot, largest};
+use super::text::{self, Scale, TextTable, recorded_path, shown, table};
+use crate::data::quantity::{Entries, Reading, Value, number, word};
+use crate::data::{Checkpoint, DatasetSummary, LimitDistance, ResultPath, RunFile, Snapshot, largest};
 use crate::error::Result;
 
 /// The content of a result file in SI; the fields are the keys of the JSON.
@@ -35,47 +36,75 @@ pub struct InfoReport {
     pub radius_last: Option<f64>,
     /// Number of snapshots.
     pub snapshots: usize,
-    /// Cycles at the last snapshot, as all that follows.
-    pub cycles: Option<f64>,
-    /// Dimensionless time.
-    pub tau: Option<f64>,
-    /// Indentation, m.
-    pub indentation: Option<f64>,
-    /// Normal force, N.
-    pub normal_force: Option<f64>,
-    /// Contact radius, m.
-    pub contact_radius: Option<f64>,
-    /// What the oscillation does to the contact: `stick`, `partial-slip` or `full-sliding`.
-    pub regime: Option<&'static str>,
-    /// Stick radius, m.
-    pub stick_radius: Option<f64>,
-    /// Radius within which nothing has slipped so far, m.
-    pub permanent_stick_radius: Option<f64>,
-    /// Worn volume, m³.
-    pub wear_volume: Option<f64>,
-    /// Largest wear depth, m.
-    pub wear_depth_max: Option<f64>,
-    /// Energy dissipated by friction since the start, J.
-    pub dissipated_energy: Option<f64>,
+    /// What [`LAST`] tells of the last snapshot; null without one.
+    #[serde(flatten)]
+    last: Entries,
     /// Distance to the limiting shape, where there is one.
     pub limit: Option<LimitDistance>,
-    /// Cycles done at the checkpoint; none without a checkpoint, as all that follows.
-    pub checkpoint_cycles: Option<f64>,
-    /// Steps accepted.
-    pub steps: Option<u64>,
-    /// Steps rejected.
-    pub rejected_steps: Option<u64>,
-    /// Evaluations of the wear rate.
-    pub rate_evaluations: Option<u64>,
-    /// Wall time used, s.
-    pub wall_seconds: Option<f64>,
-    /// Estimated error of worn volume and profile, relative to those of the limit, or to the largest of the run where there is none.
-    pub error_estimate: Option<f64>,
-    /// Whether that is as small as was asked for; none where springs were given by hand.
-    pub accuracy_met: Option<bool>,
+    /// What [`CHECKPOINT`] tells of the checkpoint; null without one.
+    #[serde(flatten)]
+    checkpoint: Entries,
     /// The scene as TOML text.
     pub scene: String,
 }
+
+/// What is told of the last snapshot.
+const LAST: [Reading<Snapshot>; 11] = [
+    number("cycles", "1", "number of fretting cycles", |it: &Snapshot| it.cycles.into()),
+    number("tau", "1", "dimensionless time", |it: &Snapshot| it.tau.into()).headed("dimensionless time τ"),
+    number("indentation", "m", "largest indentation depth", |it: &Snapshot| it.indentation.into()),
+    number("normal_force", "N", "normal force at the largest indentation", |it: &Snapshot| {
+        it.normal_force.into()
+    })
+    .headed("normal force"),
+    number("contact_radius", "m", "contact radius", |it: &Snapshot| it.contact_radius.into())
+        .headed("contact radius"),
+    word("regime", "what the oscillation does to the contact", |it: &Snapshot| it.regime.name().into()),
+    number("stick_radius", "m", "radius of the stick zone per cycle", |it: &Snapshot| it.stick_radius.into())
+        .headed("stick radius"),
+    number(
+        "permanent_stick_radius",
+        "m",
+        "radius within which nothing has slipped so far",
+        |it: &Snapshot| it.permanent_stick_radius.into(),
+    )
+    .headed("permanent stick radius"),
+    number("wear_volume", "m3", "worn volume", |it: &Snapshot| it.wear_volume.into()).headed("worn volume"),
+    number("wear_depth_max", "m", "largest wear depth", |it: &Snapshot| largest(&it.wear_depth).into())
+        .headed("largest wear depth"),
+    number("dissipated_energy", "J", "energy dissipated by friction since the start", |it: &Snapshot| {
+        it.dissipated_energy.into()
+    })
+    .headed("dissipated energy"),
+];
+
+/// What is told of a checkpoint.
+const CHECKPOINT: [Reading<Checkpoint>; 7] = [
+    number("checkpoint_cycles", "1", "number of fretting cycles done", |it: &Checkpoint| {
+        it.state.cycles.into()
+    })
+    .headed("cycles done"),
+    number("steps", "1", "steps accepted", |it: &Checkpoint| it.progress.steps.into()),
+    number("rejected_steps", "1", "steps rejected", |it: &Checkpoint| it.progress.rejected_steps.into())
+        .headed("rejected steps"),
+    number("rate_evaluations", "1", "evaluations of the wear rate", |it: &Checkpoint| {
+        it.progress.rate_evaluations.into()
+    })
+    .headed("evaluations of the wear rate"),
+    number("wall_seconds", "s", "wall time used", |it: &Checkpoint| it.wall_seconds.into())
+        .headed("wall time"),
+    number("error_estimate", "1", "estimated error of worn volume and profile", |it: &Checkpoint| {
+        it.error_estimate.into()
+    })
+    .headed("estimated error"),
+    number(
+        "accuracy_met",
+        "1",
+        "whether the estimated error is as small as was asked for",
+        |it: &Checkpoint| it.accuracy_met().into(),
+    )
+    .headed("accuracy asked for"),
+];
 
 impl InfoReport {
     /// Reads a result file.
@@ -90,9 +119,6 @@ impl InfoReport {
     /// Describes a run that has been read from `path`.
     pub fn new(path: &Path, run: &RunFile) -> Self {
         let last = run.snapshots.last();
-        let of_last = |value: fn(&Snapshot) -> f64| last.map(value);
-        let checkpoint = run.checkpoint.as_ref();
-        let count = |value: fn(&Checkpoint) -> u64| checkpoint.map(value);
         Self {
             file: path.display().to_string(),
             title: run.header.title.clone(),
@@ -105,38 +131,27 @@ impl InfoReport {
             radius_first: run.header.radius.first().copied(),
             radius_last: run.header.radius.last().copied(),
             snapshots: run.snapshots.len(),
-            cycles: of_last(|it| it.cycles),
-            tau: of_last(|it| it.tau),
-            indentation: of_last(|it| it.indentation),
-            normal_force: of_last(|it| it.normal_force),
-            contact_radius: of_last(|it| it.contact_radius),
-            regime: last.map(|it| it.regime.name()),
-            stick_radius: of_last(|it| it.stick_radius),
-            permanent_stick_radius: of_last(|it| it.permanent_stick_radius),
-            wear_volume: of_last(|it| it.wear_volume),
-            wear_depth_max: of_last(|it| largest(&it.wear_depth)),
-            dissipated_energy: of_last(|it| it.dissipated_energy),
+            last: Entries::of(&LAST, last),
             limit: run.header.limit.as_ref().zip(last).map(|(limit, last)| LimitDistance::new(limit, last)),
-            checkpoint_cycles: checkpoint.map(|it| it.state.cycles),
-            steps: count(|it| it.progress.steps),
-            rejected_steps: count(|it| it.progress.rejected_steps),
-            rate_evaluations: count(|it| it.progress.rate_evaluations),
-            wall_seconds: checkpoint.map(|it| it.wall_seconds),
-            error_estimate: checkpoint.and_then(|it| it.error_estimate),
-            accuracy_met: checkpoint.and_then(Checkpoint::accuracy_met),
+            checkpoint: Entries::of(&CHECKPOINT, run.checkpoint.as_ref()),
             scene: run.header.scene.clone(),
         }
     }
 
     /// A table for people, without the scene.
     pub fn text(&self) -> String {
-        let mut rows = Rows::titled(self.title.as_deref());
-        let stopped = match (self.complete, self.checkpoint_cycles) {
+        self.table().text()
+    }
+
+    /// Its lines.
+    pub(crate) fn table(&self) -> TextTable {
+        let mut rows = TextTable::titled(self.title.as_deref());
+        let stopped = match (self.complete, self.checkpoint.get("checkpoint_cycles")) {
             (true, _) => format!("yes ({})", self.stop_reason),
-            (false, Some(_)) => {
+            (false, Some(Value::Number(_))) => {
                 format!("no ({}); go on with fretwear run --resume {}", self.stop_reason, self.file)
             }
-            (false, None) => format!("no ({}), and without a checkpoint", self.stop_reason),
+            (false, _) => format!("no ({}), and without a checkpoint", self.stop_reason),
         };
         rows.row("file", &self.file);
         rows.row("complete", stopped);
@@ -152,52 +167,37 @@ impl InfoReport {
             rows.row("nodes", format!("{} from {} to {}", self.nodes, length(first), length(last)));
         }
         rows.row("snapshots", self.snapshots);
-        let values: [(&str, Option<String>); 11] = [
-            ("cycles", self.cycles.map(number)),
-            ("dimensionless time τ", self.tau.map(number)),
-            ("indentation", self.indentation.map(length)),
-            ("normal force", self.normal_force.map(|it| Scale::FORCE.show(it))),
-            ("contact radius", self.contact_radius.map(length)),
-            ("regime", self.regime.map(str::to_owned)),
-            ("stick radius", self.stick_radius.map(length)),
-            ("permanent stick radius", self.permanent_stick_radius.map(length)),
-            ("worn volume", self.wear_volume.map(|it| Scale::VOLUME.show(it))),
-            ("largest wear depth", self.wear_depth_max.map(length)),
-            ("dissipated energy", self.dissipated_energy.map(|it| Scale::ENERGY.show(it))),
-        ];
-        present(&mut rows, "at the last snapshot", &values);
+        put_readings(&mut rows, "at the last snapshot", &LAST, &self.last);
         let limit = self.limit.as_ref();
         present(
             &mut rows,
             "limiting shape",
             &[
                 ("largest wear depth", limit.map(|it| length(it.wear_depth_max))),
-                ("distance over indentation", limit.map(|it| number(it.distance))),
-                ("distance over that depth", limit.and_then(|it| it.distance_relative).map(number)),
+                ("distance over indentation", limit.map(|it| text::number(it.distance))),
+                ("distance over that depth", limit.and_then(|it| it.distance_relative).map(text::number)),
             ],
         );
-        present(
-            &mut rows,
-            "checkpoint",
-            &[
-                ("cycles done", self.checkpoint_cycles.map(number)),
-                ("steps", self.steps.map(|it| it.to_string())),
-                ("rejected steps", self.rejected_steps.map(|it| it.to_string())),
-                ("evaluations of the wear rate", self.rate_evaluations.map(|it| it.to_string())),
-                ("wall time", self.wall_seconds.map(|it| Scale::TIME.show(it))),
-                ("estimated error", self.error_estimate.map(number)),
-                (
-                    "accuracy asked for",
-                    self.accuracy_met.map(|met| if met { "reached" } else { "not reached" }.to_owned()),
-                ),
-            ],
-        );
-        rows.finish()
+        put_readings(&mut rows, "checkpoint", &CHECKPOINT, &self.checkpoint);
+        rows
     }
 }
 
+/// What was read off a record, under a heading.
+fn put_readings<R>(rows: &mut TextTable, heading: &str, readings: &[Reading<R>], entries: &Entries) {
+    let line = |it: &Reading<R>| {
+        let value = entries.get(it.quantity.name).unwrap_or(&Value::Missing);
+        let words = match value {
+            Value::Truth(holds) => Some(if *holds { "reached" } else { "not reached" }.to_owned()),
+            value => shown(value, it.quantity.units),
+        };
+        (it.heading, words)
+    };
+    present(rows, heading, &readings.iter().map(line).collect::<Vec<_>>());
+}
+
 /// The rows that have a value, under a heading.
-fn present(rows: &mut Rows, heading: &str, values: &[(&str, Option<String>)]) {
+fn present(rows: &mut TextTable, heading: &str, values: &[(&str, Option<String>)]) {
     if values.iter().all(|(_, value)| value.is_none()) {
         return;
     }
@@ -211,8 +211,9 @@ fn present(rows: &mut Rows, heading: &str, values: &[(&str, Option<String>)]) {
 }
 
 /// What is in a file of arrays, a table for people.
-pub fn arrays_text(summary: &ArraySummary) -> String {
-    let mut rows = Rows::titled(Some(&summary.title).filter(|title| !title.is_empty()).map(String::as_str));
+pub fn arrays_text(summary: &DatasetSummary) -> String {
+    let mut rows =
+        TextTable::titled(Some(&summary.title).filter(|title| !title.is_empty()).map(String::as_str));
     rows.row("format", &summary.format);
     rows.row("complete", if summary.complete { "yes" } else { "no" });
     rows.row("written by version", &summary.program_version);
@@ -222,5 +223,5 @@ pub fn arrays_text(summary: &ArraySummary) -> String {
         let unit = if array.units == "1" { String::new() } else { format!(", {}", array.units) };
         rows.row(&array.name, format!("{}{unit}: {}", shape.join(" x "), array.long_name));
     }
-    rows.finish()
+    rows.text()
 }

@@ -4,18 +4,20 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::text::{Rows, Scale, indenter, number};
+use super::text::{Scale, TextTable, indenter, number};
 use super::{bad_option, unsigned_zero};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::indenter::Indenter;
+use crate::data::quantity::Entries;
 use crate::error::Result;
+use crate::run::readings::{ClosedForm, LIMIT};
 use crate::scene::Scene;
 use crate::units::{Dimension, parse};
 
-/// The limiting shape of a scene, in SI; the serialised fields are the keys of the JSON.
+/// The limiting shape of a scene, in SI; the keys of the JSON are [`LIMIT`] and the profile.
 ///
-/// Under full sliding there is no limit, and what belongs to it is none.
+/// Under full sliding there is no limit, and what belongs to it is null.
 ///
 /// # Examples
 /// ```
@@ -26,7 +28,7 @@ use crate::units::{Dimension, parse};
 /// let scene = Scene::read(Path::new("data/scenes/paraboloid.toml"))?;
 /// let report = LimitReport::new(&scene, Some(&[0.0, 80e-6]))?;
 /// assert_eq!(report.profile.initial, [0.0, 80e-6 * 80e-6 / 0.02]);
-/// assert!(report.wear_volume_limit.is_some_and(|volume| volume > 0.0));
+/// assert!(report.form.limit.is_some_and(|shape| shape.wear_volume() > 0.0));
 /// # Ok::<(), fretwear::Error>(())
 /// ```
 #[derive(Debug, Clone, Serialize)]
@@ -37,40 +39,11 @@ pub struct LimitReport {
     /// The indenter in words.
     #[serde(skip)]
     pub indenter: String,
-    /// Grading `k`.
-    pub grading: f64,
-    /// `M`.
-    pub stiffness_ratio: f64,
-    /// `c_N`, N/m^(2+k).
-    pub normal_stiffness: f64,
-    /// `μ_f`.
-    pub friction_coefficient: f64,
-    /// `d`, m.
-    pub indentation: f64,
-    /// `F_N` before any wear, N.
-    pub normal_force: f64,
-    /// `U`, m.
-    pub amplitude: f64,
-    /// `μ_f d/M`, m.
-    pub amplitude_full_sliding: f64,
-    /// `stick`, `partial-slip` or `full-sliding`.
-    pub regime: &'static str,
-    /// `a0`, m.
-    pub contact_radius_initial: f64,
-    /// `c`, m.
-    pub stick_radius: Option<f64>,
-    /// `a∞`, m.
-    pub contact_radius_limit: Option<f64>,
-    /// `a∞ - c`, m.
-    pub slip_width_limit: Option<f64>,
-    /// `a∞ - a0`, m.
-    pub contact_growth_limit: Option<f64>,
-    /// `ΔV∞`, m³.
-    pub wear_volume_limit: Option<f64>,
-    /// `ΔV∞` by the leading term for small amplitudes, m³.
-    pub wear_volume_asymptotic: Option<f64>,
-    /// Largest depth, m.
-    pub wear_depth_max: Option<f64>,
+    #[serde(flatten)]
+    readings: Entries,
+    /// What they are read off.
+    #[serde(skip)]
+    pub form: ClosedForm,
     /// The profile before and after.
     pub profile: ProfileTable,
 }
@@ -101,68 +74,34 @@ impl LimitReport {
     /// As [`InitialContact::new`] and [`LimitingShape::from_contact`]; [`Error::Inconsistent`](crate::Error::Inconsistent) for a
     /// radius that is negative or lies beyond the equator of a sphere.
     pub fn new(scene: &Scene, radii: Option<&[f64]>) -> Result<Self> {
-        let contact = scene.contact()?;
-        let limit = LimitingShape::from_contact(&contact)?;
+        let form = ClosedForm::new(scene)?;
         let profile = match radii {
-            Some(radii) => ProfileTable::at(contact.indenter(), limit.as_ref(), radii)?,
-            None => ProfileTable::graded(&contact, limit.as_ref()),
+            Some(radii) => ProfileTable::at(form.contact.indenter(), form.limit.as_ref(), radii)?,
+            None => ProfileTable::graded(&form.contact, form.limit.as_ref()),
         };
-        let of_limit =
-            |value: fn(&LimitingShape) -> f64| limit.as_ref().map(|shape| unsigned_zero(value(shape)));
-        Ok(Self {
-            title: scene.title().map(str::to_owned),
-            indenter: indenter(contact.indenter()),
-            grading: contact.half_space().grading(),
-            stiffness_ratio: contact.half_space().stiffness_ratio(),
-            normal_stiffness: contact.half_space().normal_stiffness(),
-            friction_coefficient: contact.friction().coefficient,
-            indentation: contact.indentation(),
-            normal_force: contact.normal_force(),
-            amplitude: contact.amplitude(),
-            amplitude_full_sliding: contact.amplitude_full_sliding(),
-            regime: contact.regime().name(),
-            contact_radius_initial: contact.contact_radius(),
-            stick_radius: contact.stick_radius(),
-            contact_radius_limit: of_limit(LimitingShape::contact_radius_limit),
-            slip_width_limit: of_limit(LimitingShape::slip_width_limit),
-            contact_growth_limit: of_limit(LimitingShape::contact_growth_limit),
-            wear_volume_limit: of_limit(LimitingShape::wear_volume),
-            wear_volume_asymptotic: of_limit(LimitingShape::wear_volume_asymptotic),
-            wear_depth_max: of_limit(LimitingShape::wear_depth_max),
-            profile,
-        })
+        let indenter = indenter(form.contact.indenter());
+        let readings = Entries::new(&LIMIT, &form);
+        Ok(Self { title: scene.title().map(str::to_owned), indenter, readings, form, profile })
     }
 
     /// A table for people, without the profile.
     pub fn text(&self) -> String {
-        let length = |value: f64| Scale::LENGTH.show(value);
-        let mut rows = Rows::titled(self.title.as_deref());
+        let mut rows = TextTable::titled(self.title.as_deref());
         rows.row("indenter", &self.indenter);
-        rows.row("grading k", number(self.grading));
-        rows.row("stiffness ratio M", number(self.stiffness_ratio));
-        rows.row(
-            "normal stiffness c_N",
-            format!("{} N/m^{}", number(self.normal_stiffness), number(2.0 + self.grading)),
-        );
-        rows.row("friction coefficient", number(self.friction_coefficient));
-        rows.row("indentation d", length(self.indentation));
-        rows.row("normal force F_N, unworn", Scale::FORCE.show(self.normal_force));
-        rows.row("amplitude U", length(self.amplitude));
-        rows.row("amplitude of full sliding", length(self.amplitude_full_sliding));
-        rows.row("regime", self.regime);
-        rows.gap();
-        rows.row("contact radius a0, unworn", length(self.contact_radius_initial));
-        rows.optional("stick radius c", self.stick_radius.map(length));
-        rows.optional("contact radius a∞, limit", self.contact_radius_limit.map(length));
-        rows.optional("width of the worn annulus a∞ - c", self.slip_width_limit.map(length));
-        rows.optional("growth of the contact a∞ - a0", self.contact_growth_limit.map(length));
-        rows.optional("worn volume ΔV∞", self.wear_volume_limit.map(|it| Scale::VOLUME.show(it)));
-        rows.optional(
-            "worn volume, small amplitudes",
-            self.wear_volume_asymptotic.map(|it| Scale::VOLUME.show(it)),
-        );
-        rows.optional("largest wear depth", self.wear_depth_max.map(length));
-        rows.finish()
+        for reading in &LIMIT {
+            match reading.quantity.name {
+                "normal_stiffness" => {
+                    let half_space = self.form.contact.half_space();
+                    let unit = format!("N/m^{}", number(2.0 + half_space.grading()));
+                    rows.row(reading.heading, format!("{} {unit}", number(half_space.normal_stiffness())));
+                    continue;
+                }
+                "contact_radius_initial" => rows.gap(),
+                _ => {}
+            }
+            rows.reading(reading, &self.form);
+        }
+        rows.text()
     }
 
     /// The profile as a table for people, one row per radius.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::contact::indenter::{Indenter, TabulatedProfile};
+use crate::data::quantity::{Reading, Value};
 use crate::laws::loading::RecordedPath;
 
 /// A kind of quantity and the units it is shown in, by growing size in SI.
@@ -21,6 +22,19 @@ impl Scale {
     pub(crate) const ENERGY: Self =
         Self(&[(1e-9, "nJ"), (1e-6, "µJ"), (1e-3, "mJ"), (1.0, "J"), (1e3, "kJ"), (1e6, "MJ")]);
     pub(crate) const TIME: Self = Self(&[(1e-3, "ms"), (1.0, "s")]);
+
+    /// The scale of units as files have them; none for pure numbers and other units.
+    pub(crate) fn of(units: &str) -> Option<Self> {
+        match units {
+            "m" => Some(Self::LENGTH),
+            "m3" => Some(Self::VOLUME),
+            "N" => Some(Self::FORCE),
+            "Pa" => Some(Self::PRESSURE),
+            "J" => Some(Self::ENERGY),
+            "s" => Some(Self::TIME),
+            _ => None,
+        }
+    }
 
     /// A value in SI with the largest unit of which there is at least one.
     pub(crate) fn show(self, value: f64) -> String {
@@ -99,34 +113,22 @@ pub(super) fn recorded_path(path: &RecordedPath) -> String {
 /// Width of the names in a table.
 const WIDTH: usize = 34;
 
-/// Names and values of a table that [`Rows`] made, without its title; both are empty at a gap.
-pub(crate) fn cells(table: &str) -> Vec<(&str, &str)> {
-    let split = |line: &'_ str| line.char_indices().nth(WIDTH).map_or(line.len(), |(at, _)| at);
-    let rows = table.lines().map(|line| {
-        let (name, value) = line.split_at(split(line));
-        (name.trim_end(), value.trim())
-    });
-    let mut rows: Vec<(&str, &str)> = rows.collect();
-    // A title is a line by itself with a gap below.
-    if rows.get(1) == Some(&("", "")) {
-        rows.drain(..2);
-    }
-    rows
+/// Lines of a name and a value, for people.
+#[derive(Debug, Default)]
+pub(crate) struct TextTable {
+    title: Option<String>,
+    /// Both are empty at a gap; the value alone at a heading.
+    pub lines: Vec<(String, String)>,
 }
 
-/// Rows of a name and a value.
-#[derive(Debug, Default)]
-pub(crate) struct Rows(String);
-
-impl Rows {
+impl TextTable {
     /// Begins with a title, if there is one.
     pub(crate) fn titled(title: Option<&str>) -> Self {
-        Self(title.map_or(String::new(), |title| format!("{title}\n\n")))
+        Self { title: title.map(str::to_owned), lines: vec![] }
     }
 
     pub(crate) fn row(&mut self, name: &str, value: impl std::fmt::Display) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "{name:<WIDTH$} {value}");
+        self.lines.push((name.to_owned(), value.to_string()));
     }
 
     /// A row whose value may have no meaning.
@@ -134,13 +136,37 @@ impl Rows {
         self.row(name, value.as_deref().unwrap_or("none"));
     }
 
-    pub(crate) fn gap(&mut self) {
-        self.0.push('\n');
+    /// A row of what was read off a record.
+    pub(crate) fn reading<R>(&mut self, reading: &Reading<R>, record: &R) {
+        self.optional(reading.heading, shown(&(reading.of)(record), reading.quantity.units));
     }
 
-    pub(crate) fn finish(self) -> String {
-        self.0
+    pub(crate) fn gap(&mut self) {
+        self.lines.push(Default::default());
     }
+
+    pub(crate) fn text(&self) -> String {
+        let mut text = self.title.as_ref().map_or(String::new(), |title| format!("{title}\n\n"));
+        for (name, value) in &self.lines {
+            // Writing to a string cannot fail.
+            let _ = match name.as_str() {
+                "" => writeln!(text),
+                name => writeln!(text, "{name:<WIDTH$} {value}"),
+            };
+        }
+        text
+    }
+}
+
+/// A value with its unit; none where there is none.
+pub(crate) fn shown(value: &Value, units: &str) -> Option<String> {
+    Some(match value {
+        Value::Number(value) => Scale::of(units).map_or_else(|| number(*value), |scale| scale.show(*value)),
+        Value::Count(count) => count.to_string(),
+        Value::Truth(holds) => if *holds { "yes" } else { "no" }.to_owned(),
+        Value::Word(word) => word.clone(),
+        Value::Missing => return None,
+    })
 }
 
 #[cfg(test)]
@@ -152,17 +178,6 @@ mod tests {
         let shown = [0.0, -0.0, 1.0, 0.1, 0.8235294117647058, 123456.7, 1234567.8, 1e-5, -2.5e-4, 999999.7];
         let expected = ["0", "0", "1", "0.1", "0.823529", "123457", "1.23457e6", "1e-5", "-0.00025", "1e6"];
         assert_eq!(shown.map(number), expected);
-    }
-
-    #[test]
-    fn a_table_is_split_into_the_cells_it_was_made_of() {
-        let mut rows = Rows::titled(Some("A title that is longer than the names of a table may be"));
-        rows.row("dimensionless time τ", 3);
-        rows.gap();
-        rows.row("  worn volume", "1324 µm³ of 1325 µm³");
-        let table = rows.finish();
-        let expected = [("dimensionless time τ", "3"), ("", ""), ("  worn volume", "1324 µm³ of 1325 µm³")];
-        assert_eq!(cells(&table), expected);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::data::{Checkpoint, ResultPath, RunFile, RunWriter, scene_hash};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::solver::simulation::{self as stepping, Observer};
-use crate::solver::stepper::Multistep;
+use crate::solver::stepper::Bdf;
 
 /// A run with a file that is ready to go.
 pub struct Run(Simulation<'static>);
@@ -59,7 +59,8 @@ impl Run {
     /// [`Error::Exists`] if `output` exists and `overwrite` is not given, [`Error::File`] if it cannot be written; as [`Simulation::new`].
     pub fn new(scene: &Scene, output: &Path, overwrite: bool, stop: &Stop) -> Result<Self> {
         let shared = Shared { stop: stop.clone(), ..Shared::default() };
-        Simulation::begin(scene, &shared, |header| RunWriter::create(output, header, overwrite)).map(Self)
+        let run = Simulation::begin(scene, &shared, |header| RunWriter::create(output, header, overwrite))?;
+        Ok(Self(run.warned()))
     }
 
     /// Prepares the run of one scene of many, which writes a file only when it takes longer than its checkpoint interval or is stopped.
@@ -144,12 +145,12 @@ impl Run {
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
             || checkpoint.state.stick.is_some() != parts.model.moving().is_some()
-            || !checkpoint.state.past.fits(&checkpoint.state, Multistep::HIGHEST_ORDER)
+            || !checkpoint.state.past.fits(&checkpoint.state, Bdf::HIGHEST_ORDER)
             || !checkpoint
                 .state
                 .compression
                 .iter()
-                .chain([&checkpoint.state.edge])
+                .chain([&checkpoint.state.slip_area])
                 .all(|value| value.is_finite())
         {
             return Err(unusable(
@@ -203,6 +204,11 @@ impl Run {
     /// The loop over cycles, at its start or where it goes on.
     pub fn stepping(&self) -> &stepping::Simulation {
         self.0.stepping()
+    }
+
+    /// The result file, behind all links.
+    pub fn path(&self) -> Option<&Path> {
+        self.0.writer.path()
     }
 
     /// Runs to the end, or to a checkpoint when it is stopped, and writes the result file.

@@ -1,6 +1,6 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
-use super::knob::{smallness, springs_for};
+use super::accuracy::budget::{MOST_RAISED, smallness, springs_for};
 use super::memory::memory_figure;
 use super::parts::SPRINGS_TO_SLIDE;
 use crate::contact::InitialContact;
@@ -31,7 +31,7 @@ const COARSEST_VOLUME: f64 = 0.1;
 /// numbers.
 const ROUND_OFF: f64 = 1e-2;
 
-/// By how much the number of springs is raised that do not do.
+/// Factor by which the number of springs is raised when they do not carry the scene.
 const RAISE: f64 = 1.3;
 
 /// Bytes held per pair of springs: two transforms, the factors of one, and Newton's matrix with its factors.
@@ -39,9 +39,6 @@ const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 
 /// Bytes held per spring where operators are hierarchical.
 const BYTES_PER_SPRING: f64 = 12e3;
-
-/// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
-pub(super) const MOST_RAISED: usize = 600;
 
 /// How well a mesh carries what is known beforehand.
 struct Quality {
@@ -124,7 +121,7 @@ impl Quality {
         };
         let most = contact.slip_compression();
         let nodes = &model.operators().nodes()[1..];
-        let exact = |x: f64| most - contact.equivalent_profile().rise(stick_radius, state.edge * x);
+        let exact = |x: f64| most - contact.equivalent_profile().rise(stick_radius, state.slip_area * x);
         let errors = state.compression.iter().zip(nodes).map(|(q, x)| (q - exact(*x)).abs() / most);
         let fields = model.fields(&state);
         let limit = LimitingShape::from_contact(contact)?;

@@ -1,15 +1,16 @@
 //! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
 
-use super::{knob, mesh};
+use super::accuracy::budget;
+use super::mesh;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::loading::Mode;
-use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice, WearFrom};
+use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
 use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::solver::simulation::Plan;
-use crate::solver::stepper::{CycleJump, EveryCycle, Implicit, MovingStickImplicit, Multistep, Stepper};
+use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, Sdirk, Stepper};
 
 /// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
 pub(super) const SPRINGS_TO_SLIDE: usize = 60;
@@ -47,21 +48,17 @@ impl Parts {
     ) -> Result<Self> {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
-        check_start(numerics)?;
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
         let model = mesh::model(&contact, &schedule, numerics, wanted, store)?;
         let unlimited = model.slides() || scene.conditions().holds_normal_force;
         let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
         check_stepper(numerics.stepper, &model)?;
-        let tolerance = numerics.tolerance.unwrap_or_else(|| knob::tolerance_for(numerics.accuracy));
+        let tolerance = numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
-            StepperChoice::Implicit if model.moving().is_some() => {
-                Box::new(MovingStickImplicit::new(tolerance))
-            }
-            StepperChoice::Implicit if model.wears_smoothly() => Box::new(Multistep::new(tolerance)),
-            StepperChoice::Implicit => Box::new(Implicit::new(tolerance)),
+            StepperChoice::Implicit if model.wears_smoothly() => Box::new(Bdf::new(tolerance)),
+            StepperChoice::Implicit => Box::new(Sdirk::new(tolerance)),
         };
         let whole = numerics.stepper == StepperChoice::EveryCycle;
         let plan =
@@ -92,19 +89,6 @@ fn check_sliding(model: &Model) -> Result<()> {
     Err(Error::Inconsistent { what: "numerics.springs", why })
 }
 
-/// Refuses what would have to wear springs that only slip while the contact settles.
-fn check_start(numerics: &Numerics) -> Result<()> {
-    if numerics.wear_from == WearFrom::Shakedown {
-        return Ok(());
-    }
-    Err(Error::Inconsistent {
-        what: "numerics.wear_from",
-        why: "\"first-cycle\" is not offered by this version: springs that slip only before the cycle repeats itself lie within the \
-              edge of stick, where the mesh begins; leave it out (the difference is of the order of the wear of one cycle)"
-            .into(),
-    })
-}
-
 /// Refuses explicit steps where the edge of stick moves.
 fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
     if model.moving().is_none() || stepper == StepperChoice::Implicit {
@@ -123,7 +107,7 @@ fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
 /// How periods are passed through.
 pub(super) fn resolution(scene: &Scene, numerics: &Numerics) -> Resolution {
     let sampled = scene.conditions().mode != Mode::Tangential && numerics.springs.is_none();
-    let chosen = sampled.then(|| knob::substeps_for(numerics.accuracy));
+    let chosen = sampled.then(|| budget::substeps_for(numerics.accuracy));
     let resolved = numerics.cycle == Some(Cycle::Resolved);
     Resolution { resolved, substeps: numerics.substeps.or(chosen) }
 }

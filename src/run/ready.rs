@@ -1,6 +1,6 @@
 //! What a run comes to before its first step. What it refuses is refused here, for `run` and for `check`.
 
-use super::effort::{self, Expected};
+use super::cost;
 use super::parts::Parts;
 use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
@@ -13,7 +13,6 @@ use crate::solver::simulation::Simulation;
 pub(super) struct Ready {
     pub simulation: Simulation,
     pub limit: Option<LimitingShape>,
-    pub expected: Expected,
 }
 
 impl Ready {
@@ -26,8 +25,8 @@ impl Ready {
     fn unkeyed(scene: &Scene, store: &OperatorStore) -> Result<Self> {
         let parts = Parts::new(scene, scene.numerics(), None, store)?;
         let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
-        let expected = effort::check(scene.numerics().stepper, &mut simulation)?;
-        Ok(Self { simulation, limit: parts.limit, expected })
+        cost::check(scene.numerics().stepper, &mut simulation)?;
+        Ok(Self { simulation, limit: parts.limit })
     }
 }
 

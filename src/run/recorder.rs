@@ -1,12 +1,12 @@
-//! What a run leaves behind: snapshots, checkpoints, and how far off it is.
+//! What a run records: snapshots, checkpoints, and the estimate of its error.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::Shared;
-use super::knob::{self, Pilot};
-use super::ladder::{self, Ladder, Shares};
+use super::accuracy::budget;
+use super::accuracy::estimate::Companions;
 use super::limit::worn_profile;
 use crate::data::{Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
@@ -59,9 +59,9 @@ pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
 fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
     let (model, state) = (simulation.model(), simulation.state());
     let schedule = model.schedule();
-    let drive = model.drive_in(state, schedule.drive(state.cycles, state.cycles));
+    let loading = model.loading_in(state, schedule.loading(state.cycles, state.cycles));
     let mut found =
-        model.cycle_loop(&drive, simulation.cycle(), &state.compression, simulation.fields(), LOOP_STEPS);
+        model.cycle_loop(&loading, simulation.cycle(), &state.compression, simulation.fields(), LOOP_STEPS);
     let points = 1 + schedule.loop_steps(LOOP_STEPS);
     for values in found.displacement.iter_mut().chain(&mut found.force) {
         let end = values[0];
@@ -78,23 +78,16 @@ pub(super) struct Recorder {
     saved: Instant,
     wall_seconds_before: f64,
     stop: Arc<AtomicBool>,
-    /// Whether a file is to hold the result; else only checkpoints are written.
+    /// Whether the result is written to a file; else only checkpoints are.
     pub(super) saves_result: bool,
-    judge: Option<Judge>,
+    /// Coarser runs, where the program chose the springs.
+    companions: Option<Companions>,
     /// The accuracy asked for, where the program chooses the springs.
     accuracy: Option<f64>,
 }
 
-/// What tells the error of a run whose springs the program chose.
-enum Judge {
-    /// On a smooth mesh; none if it came to no end.
-    Pilot(Option<Pilot>),
-    /// On any other.
-    Ladder(Ladder),
-}
-
 impl Recorder {
-    /// A run stopped before it took so long, s, is begun anew rather than kept.
+    /// A run that is stopped earlier than this, s, is not worth a file.
     const WORTH_KEEPING: f64 = 0.2;
 
     pub(super) fn new(scene: &Scene, writer: RunWriter, wall_seconds_before: f64, shared: &Shared) -> Self {
@@ -109,7 +102,7 @@ impl Recorder {
             wall_seconds_before,
             stop,
             saves_result: true,
-            judge: None,
+            companions: None,
             accuracy: scene.numerics().accuracy_asked(),
         }
     }
@@ -120,50 +113,32 @@ impl Recorder {
         self.saves_result || (!complete && !failed && long)
     }
 
-    /// Lets coarser runs go before one whose springs the program chose.
+    /// Runs the coarser companions of a run whose springs the program chose.
     ///
     /// # Arguments
     /// * `limited` -- whether the scene has a limit in closed form
-    pub(super) fn follow_judge(
+    pub(super) fn run_companions(
         &mut self,
         scene: &Scene,
         store: &OperatorStore,
         simulation: &Simulation,
         limited: bool,
     ) {
-        let (numerics, model) = (scene.numerics(), simulation.model());
-        self.judge = numerics.springs.is_none().then(|| {
-            if knob::serves(numerics, model) {
-                let tolerance = simulation.tolerance();
-                Judge::Pilot(Pilot::run(scene, store, model.springs(), tolerance, &self.stop))
-            } else {
-                Judge::Ladder(Ladder::climb(scene, numerics, simulation, limited, store, &self.stop))
-            }
-        });
+        let chosen = scene.numerics().springs.is_none();
+        self.companions = chosen.then(|| Companions::run(scene, simulation, limited, store, &self.stop));
     }
 
-    /// What the error of a run is made up of, where its mesh is not smooth.
-    fn shares(&self, simulation: &Simulation) -> Option<Shares> {
-        match &self.judge {
-            Some(Judge::Ladder(ladder)) => ladder.shares(simulation, self.writer.snapshots()),
-            _ => None,
-        }
-    }
-
-    /// By coarser runs where the program chose the springs and there is a snapshot, else by the balance of the worn volume.
+    /// By coarser runs where the program chose the springs, else by the balance of the worn volume, as before the first snapshot that a companion
+    /// on a smooth mesh saw.
     fn error_estimate(&self, simulation: &Simulation) -> Option<f64> {
-        let snapshots = self.writer.snapshots();
-        let balance = || balance_error(simulation);
-        match &self.judge {
-            None => balance(),
-            Some(Judge::Pilot(Some(pilot))) => pilot.error_of(simulation, snapshots).or_else(balance),
-            Some(Judge::Pilot(None)) => Some(balance().map_or(ladder::UNKNOWN, |it| it.max(ladder::UNKNOWN))),
-            Some(Judge::Ladder(_)) => self.shares(simulation).map(|shares| shares.error()),
-        }
+        let Some(companions) = &self.companions else { return balance_error(simulation) };
+        let shares = companions.shares(simulation, self.writer.snapshots());
+        let balance = || if companions.is_smooth() { balance_error(simulation) } else { None };
+        shares.map(|shares| shares.error()).or_else(balance)
     }
 
-    /// Springs with which a run is to be made anew: where the program chose them, and the run found no end or may be off by more than was asked for.
-    pub(super) fn wanting(
+    /// Springs with which to repeat a run, where the program chose them and the run found no end or may be off by more than was asked for.
+    pub(super) fn more_springs(
         &self,
         scene: &Scene,
         simulation: &Simulation,
@@ -171,23 +146,19 @@ impl Recorder {
         checkpoint: &Checkpoint,
     ) -> Option<usize> {
         let (accuracy, springs) = (scene.numerics().accuracy, simulation.model().springs());
-        let error = match (&self.judge, outcome) {
-            (None, _) | (_, Ok(Outcome::Interrupted)) => return None,
-            // Without a pilot, its finer one may come to an end.
-            (Some(Judge::Pilot(None)), _) => None,
-            (_, Ok(_)) => checkpoint.error_estimate,
-            // More springs may find an end where few do not.
-            (_, Err(Error::NotConverged { .. })) => None,
-            (_, Err(_)) => return None,
-        };
-        match &self.judge {
-            Some(Judge::Ladder(_)) if outcome.is_ok() => {
-                knob::worth_refining(springs, self.shares(simulation)?, accuracy)
+        let companions = self.companions.as_ref()?;
+        match outcome {
+            Ok(Outcome::Interrupted) => None,
+            // The companion of a finer run may come to an end.
+            _ if companions.is_smooth() && companions.is_lost() => budget::refined(springs, None, accuracy),
+            Ok(_) if companions.is_smooth() => budget::refined(springs, checkpoint.error_estimate, accuracy),
+            Ok(_) => {
+                let shares = companions.shares(simulation, self.writer.snapshots())?;
+                budget::refined_by_order(springs, shares, accuracy)
             }
-            _ => match error {
-                Some(error) if error <= knob::SURE * accuracy => None,
-                _ => knob::refined(springs, error, accuracy),
-            },
+            // More springs may find an end where few do not.
+            Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
+            Err(_) => None,
         }
     }
 

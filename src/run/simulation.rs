@@ -1,11 +1,12 @@
 //! A scene simulated in memory: no file, no signal, nothing printed.
 
-use super::effort::Expected;
+use super::accuracy::budget;
+use super::cost::{self, Expected};
 use super::limit::{distance, header};
 use super::parts::Parts;
 use super::ready::Ready;
 use super::recorder::{Recorder, snapshot};
-use super::{Results, Shared, Stop, knob};
+use super::{Results, Shared, Stop};
 use crate::contact::closed_form::LimitingShape;
 use crate::data::{Checkpoint, RunHeader, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
@@ -61,10 +62,16 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// Those of the physics where in the scene nothing slips, or it needs more memory than there is. Each names a key of the scene.
     pub fn new(scene: &Scene) -> Result<Self> {
-        Self::sharing(scene, &Shared::default())
+        Ok(Self::sharing(scene, &Shared::default())?.warned())
     }
 
-    /// Prepares one scene of many.
+    /// With a word about what it will take, where that is long.
+    pub(super) fn warned(mut self) -> Self {
+        self.warning = cost::expected(self.scene.numerics().stepper, &mut self.stepping).warning;
+        self
+    }
+
+    /// Prepares one scene of many, whose cost nobody asks for.
     ///
     /// # Errors
     /// As [`Simulation::new`].
@@ -77,7 +84,7 @@ impl<'a> Simulation<'a> {
         shared: &Shared,
         writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
     ) -> Result<Self> {
-        let Ready { simulation: stepping, limit, expected } = Ready::new(scene, &shared.operators)?;
+        let Ready { simulation: stepping, limit } = Ready::new(scene, &shared.operators)?;
         if scene.numerics().stepper == Stepper::Implicit {
             stepping.model().release_factors();
         }
@@ -85,7 +92,7 @@ impl<'a> Simulation<'a> {
             writer: writer(header(scene, stepping.model(), limit.as_ref()))?,
             stepping,
             limit,
-            warning: expected.warning,
+            warning: None,
             scene: scene.clone(),
             shared: shared.clone(),
             saves_result: true,
@@ -99,7 +106,8 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// As [`Simulation::new`].
     pub fn check(scene: &Scene) -> Result<Expected> {
-        Ready::new(scene, &Shared::default().operators).map(|ready| ready.expected)
+        let mut ready = Ready::new(scene, &Shared::default().operators)?;
+        Ok(cost::expected(scene.numerics().stepper, &mut ready.simulation))
     }
 
     /// Stops at the next step once the token says so; the results are then those up to there.
@@ -188,16 +196,18 @@ fn to_the_end(
     // Springs on which the run came to an end, if less accurately than was asked for.
     let mut ended = None;
     loop {
-        recorder.follow_judge(scene, store, &stepping, limit.is_some());
+        recorder.run_companions(scene, store, &stepping, limit.is_some());
         let outcome = stepping.run(&mut [&mut *recorder, &mut *onlookers]);
         let checkpoint = recorder.checkpoint(&stepping);
         let springs = match (&outcome, ended) {
             // Finer ones do not.
             (Err(Error::NotConverged { .. }), Some(springs)) => {
-                refinements = knob::REFINEMENTS;
+                refinements = budget::REFINEMENTS;
                 Some(springs)
             }
-            _ if refinements < knob::REFINEMENTS => recorder.wanting(scene, &stepping, &outcome, &checkpoint),
+            _ if refinements < budget::REFINEMENTS => {
+                recorder.more_springs(scene, &stepping, &outcome, &checkpoint)
+            }
             _ => None,
         };
         if let Some(springs) = springs

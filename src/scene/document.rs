@@ -8,7 +8,7 @@ use serde_spanned::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{Error, Result, most_alike};
-use crate::units::{self, Dimension};
+use crate::units::{self, Dimension, Table};
 
 /// The text of a document and its name in messages.
 #[derive(Debug, Clone, Copy)]
@@ -170,6 +170,27 @@ impl<'a> Section<'a> {
         Err(self.source.error(place, format_args!("{name} is not a key of {}; {cure}", self.source.kind)))
     }
 
+    /// Refuses keys that a table does not have.
+    pub(super) fn only_of(&self, table: &Table) -> Result<()> {
+        let mut keys: Vec<_> = self.table.keys().collect();
+        keys.sort_by_key(|key| key.span().start);
+        let Some(stranger) = keys.iter().find(|key| table.key(key.get_ref()).is_none()) else {
+            return Ok(());
+        };
+        let (word, place) = (stranger.get_ref(), stranger.span());
+        let cure = match table.keys.iter().find(|key| key.aliases.contains(&&**word)) {
+            Some(key) => format!("did you mean {}?", key.name),
+            None => suggestion(word, &table.keys.iter().map(|key| key.name).collect::<Vec<_>>()),
+        };
+        let message = format!("{} is not a key of {}; {cure}", self.name(word), self.source.kind);
+        Err(self.source.error(place, message))
+    }
+
+    /// Names of keys of this table: `a, b or c`.
+    pub(super) fn listed(&self, keys: &[&str]) -> String {
+        listed(keys.iter().map(|key| self.name(key)))
+    }
+
     /// The value of a key, if given.
     pub(super) fn optional(&self, key: &str) -> Option<Entry<'a>> {
         let (name, value) = self.table.get_key_value(key)?;
@@ -198,14 +219,12 @@ impl<'a> Section<'a> {
         &self,
         alternatives: &[&'static str],
     ) -> Result<(Option<(&'static str, Entry<'a>)>, String)> {
-        let choice = listed(alternatives.iter().map(|key| self.name(key)));
+        let choice = self.listed(alternatives);
         let mut given: Vec<_> =
             alternatives.iter().filter_map(|&key| self.optional(key).map(|entry| (key, entry))).collect();
         given.sort_by_key(|(_, entry)| entry.key_place.start);
         if let [(_, first), (_, second), ..] = &given[..] {
-            let message =
-                format!("{} and {} exclude each other; give one of {choice}", first.path, second.path);
-            return Err(self.source.error(second.key_place.clone(), message));
+            return Err(second.excludes(first, &choice));
         }
         Ok((given.pop(), choice))
     }
@@ -213,10 +232,7 @@ impl<'a> Section<'a> {
     /// Refuses keys that have no meaning beside another.
     pub(super) fn refuse_beside(&self, keys: &[&str], other: &Entry) -> Result<()> {
         match keys.iter().find_map(|key| self.optional(key)) {
-            Some(stray) => {
-                let message = format!("has no meaning beside {}; remove one of the two", other.path);
-                Err(stray.misplaced(message))
-            }
+            Some(stray) => Err(stray.without_meaning_beside(other)),
             None => Ok(()),
         }
     }
@@ -320,9 +336,20 @@ impl<'a> Entry<'a> {
         self.error(format_args!("is outside {range}"))
     }
 
-    /// The error that the key has no place beside another.
+    /// An error shown under the key: what is wrong with its being there.
     pub(super) fn misplaced(&self, message: impl Display) -> Error {
         self.source.error(self.key_place.clone(), format_args!("{} {message}", self.path))
+    }
+
+    /// The error that the key has no place beside another.
+    pub(super) fn without_meaning_beside(&self, other: &Entry) -> Error {
+        self.misplaced(format_args!("has no meaning beside {}; remove one of the two", other.path))
+    }
+
+    /// The error that one of several keys alone may be given; `other` was given before.
+    pub(super) fn excludes(&self, other: &Entry, choice: &str) -> Error {
+        let message = format!("{} and {} exclude each other; give one of {choice}", other.path, self.path);
+        self.source.error(self.key_place.clone(), message)
     }
 
     /// Where the value stands.
@@ -406,12 +433,17 @@ impl<'a> Entry<'a> {
         })
     }
 
-    /// The value as a whole number in a range.
-    pub(super) fn whole(&self, range: std::ops::RangeInclusive<usize>) -> Result<usize> {
+    /// The value as a whole number; None for one that is negative or too large.
+    pub(super) fn whole_number(&self) -> Result<Option<usize>> {
         let DeValue::Integer(integer) = self.value else {
             return Err(self.wrong_type("expected a whole number"));
         };
-        let number = usize::from_str_radix(integer.as_str(), integer.radix()).ok();
+        Ok(usize::from_str_radix(integer.as_str(), integer.radix()).ok())
+    }
+
+    /// The value as a whole number in a range.
+    pub(super) fn whole(&self, range: std::ops::RangeInclusive<usize>) -> Result<usize> {
+        let number = self.whole_number()?;
         let shown = || match *range.end() {
             usize::MAX => format!("[{}, inf)", range.start()),
             end => format!("{} to {end}", range.start()),

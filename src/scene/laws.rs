@@ -1,15 +1,13 @@
 //! The tables `[friction]` and `[wear]`: the laws and how they change along the cycles.
 
 use super::document::{Entry, Section};
+use super::keys::MOST_TIMES;
 use crate::error::Result;
 use crate::laws::friction::{Coulomb, FrictionLaw};
 use crate::laws::history::History;
 use crate::laws::loading::Clock;
 use crate::laws::wear::{Archard, WearLaw};
 use crate::units::Dimension;
-
-/// Most times of a history, and most blocks.
-pub(super) const MOST_TIMES: usize = 10_000;
 
 /// The one clock of all times in histories and blocks, and the first key that used it.
 #[derive(Default)]

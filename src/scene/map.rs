@@ -3,15 +3,14 @@
 use std::path::Path;
 
 use super::document::{Entry, Section, Source};
+use super::keys::{self, MOST_ALONG_AXIS};
+use super::reading::Read;
 use super::sections;
 use super::spacing::Spacing;
 use super::{LARGEST, read_text};
 use crate::contact::half_space::{HalfSpace, Poisson};
 use crate::error::Result;
-use crate::units::Dimension;
-
-/// Most gradings or amplitudes along one axis.
-pub const MOST_ALONG_AXIS: usize = 20_000;
+use crate::units::{Key, Kind};
 
 /// Most points of a map.
 pub const MOST_POINTS: usize = 10_000_000;
@@ -85,58 +84,49 @@ impl MapScene {
 }
 
 fn map(root: &Section, text: &str) -> Result<MapScene> {
-    root.only(&["title", "indenter", "half_space", "map", "optimum", "profiles"], &[])?;
-    let title = root.optional("title").map(|entry| sections::title(&entry)).transpose()?;
-    let table = |key: &str| root.optional(key).map(|entry| entry.section()).transpose();
+    root.check(&keys::MAP)?;
+    let title = root.read_optional(&keys::TITLE)?;
+    let table = |key: &str| -> Result<Option<Section>> {
+        let Some(entry) = root.optional(key) else { return Ok(None) };
+        let section = entry.section()?;
+        match keys::MAP.key(key).map(|it| it.kind) {
+            Some(Kind::Table(table)) => section.check(table).map(|()| Some(section)),
+            _ => unreachable!("{key} is a table of a map"),
+        }
+    };
 
     let mut exponent = 2.0;
     if let Some(indenter) = table("indenter")? {
-        indenter.only(&["exponent"], &[])?;
-        let entry = indenter.required("exponent", "2 is a paraboloid, 1 a cone")?;
-        exponent = entry.quantity_in(Dimension::NUMBER, "[0.1, 20]", |n| (0.1..=20.0).contains(&n))?;
+        exponent = indenter.read(&keys::MAP_EXPONENT)?;
     }
     let mut poisson = Poisson::Similar;
     if let Some(half_space) = table("half_space")? {
-        half_space.only(&["poisson_ratio"], &[])?;
         poisson = sections::poisson(&half_space)?;
         HalfSpace::from_modulus(0.0, 1.0, 1.0, poisson).map_err(|error| half_space.locate(error))?;
     }
-
-    let grading = Axis { range: "(-1, 1)", holds: |k| k > -1.0 && k < 1.0, least: f64::NEG_INFINITY };
-    let amplitude = Axis { range: "[1e-12, 1e3]", holds: |u| (1e-12..=1e3).contains(&u), least: 0.0 };
-    let level = Axis { range: "(0, inf)", holds: |level| level > 0.0, least: 0.0 };
-    let depth = Axis { range: "[1e-6, 1e6]", holds: |depth| (1e-6..=1e6).contains(&depth), least: 0.0 };
 
     let mut gradings: Vec<f64> = (0..190).map(|i| (i as f64 - 90.0) / 100.0).collect();
     let mut amplitude_ratios: Vec<f64> = Spacing::Geometric.values(1e-4, 1.0, 161);
     let mut levels =
         vec![0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0];
     if let Some(section) = table("map")? {
-        section.only(&["grading", "amplitude_ratio", "levels"], &[])?;
-        replace(&mut gradings, section.optional("grading"), &grading)?;
-        replace(&mut amplitude_ratios, section.optional("amplitude_ratio"), &amplitude)?;
-        replace(&mut levels, section.optional("levels"), &level)?;
+        replace(&mut gradings, &section, &keys::MAP_GRADINGS)?;
+        replace(&mut amplitude_ratios, &section, &keys::MAP_AMPLITUDES)?;
+        replace(&mut levels, &section, &keys::LEVELS)?;
         bounded(&section, gradings.len(), amplitude_ratios.len())?;
     }
     let mut optimum_amplitude_ratios = Spacing::Geometric.values(1e-6, 1.4, 124);
     let mut reference_depths = vec![1.0];
     if let Some(section) = table("optimum")? {
-        section.only(&["amplitude_ratio", "reference_depth"], &[])?;
-        replace(&mut optimum_amplitude_ratios, section.optional("amplitude_ratio"), &amplitude)?;
-        replace(&mut reference_depths, section.optional("reference_depth"), &depth)?;
+        replace(&mut optimum_amplitude_ratios, &section, &keys::OPTIMUM_AMPLITUDES)?;
+        replace(&mut reference_depths, &section, &keys::REFERENCE_DEPTHS)?;
     }
     let mut profile_gradings = vec![-0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 0.9];
     let (mut profile_amplitude_ratio, mut profile_points) = (0.5, 401);
     if let Some(section) = table("profiles")? {
-        section.only(&["grading", "amplitude_ratio", "points"], &[])?;
-        replace(&mut profile_gradings, section.optional("grading"), &grading)?;
-        if let Some(entry) = section.optional("amplitude_ratio") {
-            profile_amplitude_ratio =
-                entry.quantity_in(Dimension::NUMBER, amplitude.range, amplitude.holds)?;
-        }
-        if let Some(entry) = section.optional("points") {
-            profile_points = entry.whole(2..=MOST_ALONG_AXIS)?;
-        }
+        replace(&mut profile_gradings, &section, &keys::MAP_GRADINGS)?;
+        profile_amplitude_ratio = section.read(&keys::PROFILE_AMPLITUDE)?;
+        profile_points = section.read(&keys::PROFILE_POINTS)?;
         bounded(&section, profile_gradings.len(), profile_points)?;
     }
     Ok(MapScene {
@@ -163,24 +153,15 @@ fn bounded(section: &Section, rows: usize, columns: usize) -> Result<()> {
         .error(format_args!("{rows} x {columns} points are more than {MOST_POINTS}; make the steps coarser")))
 }
 
-/// What the values along an axis must satisfy.
-struct Axis {
-    range: &'static str,
-    holds: fn(f64) -> bool,
-    /// Above which geometric spacing makes sense.
-    least: f64,
-}
-
-fn replace(values: &mut Vec<f64>, entry: Option<Entry>, axis: &Axis) -> Result<()> {
-    if let Some(entry) = entry {
-        *values = axis_values(&entry, axis)?;
-    }
+fn replace(values: &mut Vec<f64>, section: &Section, key: &Key) -> Result<()> {
+    let (Some(entry), Kind::Axis(item, _)) = (section.optional(key.name), key.kind) else { return Ok(()) };
+    *values = axis_values(&entry, item)?;
     Ok(())
 }
 
 /// A list of values, in any order, or `{ from, to, count, spacing }`.
-fn axis_values(entry: &Entry, axis: &Axis) -> Result<Vec<f64>> {
-    let number = |entry: &Entry| entry.quantity_in(Dimension::NUMBER, axis.range, axis.holds);
+fn axis_values(entry: &Entry, item: &Key) -> Result<Vec<f64>> {
+    let number = |entry: &Entry| f64::read(entry, item);
     if !entry.is_table() {
         let entries = entry.array(MOST_ALONG_AXIS)?;
         if entries.is_empty() {
@@ -192,24 +173,21 @@ fn axis_values(entry: &Entry, axis: &Axis) -> Result<Vec<f64>> {
         return Ok(values);
     }
     let section = entry.section()?;
-    section.only(&["from", "to", "count", "spacing"], &[])?;
-    let cure = "an axis is a list or { from = ..., to = ..., count = ... }";
-    let (from, to) = (section.required("from", cure)?, section.required("to", cure)?);
+    section.check(&keys::STEPS)?;
+    let [from, to] = [section.required_key(&keys::FIRST)?, section.required_key(&keys::LAST)?];
     let (low, high) = (number(&from)?, number(&to)?);
     if low >= high {
         return Err(to.error(format_args!("is not above {} = {low}", from.path())));
     }
-    let count = section.required("count", cure)?.whole(2..=MOST_ALONG_AXIS)?;
-    let spacing = match section.optional("spacing") {
-        Some(entry) => {
-            let chosen = Spacing::of_word(entry.word(&Spacing::WORDS)?);
-            if chosen == Spacing::Geometric && low <= axis.least.max(0.0) {
-                return Err(entry.error("needs values above zero; use \"linear\""));
-            }
-            chosen
-        }
-        None if axis.least == 0.0 => Spacing::Geometric,
+    // Values that are never negative are spread in equal ratios.
+    let positive = item.range.from.0 >= 0.0;
+    let spacing = match section.read_optional::<usize>(&keys::SPACING)? {
+        Some(place) => Spacing::ALL[place],
+        None if positive => Spacing::Geometric,
         None => Spacing::Linear,
     };
-    Ok(spacing.values(low, high, count))
+    if spacing == Spacing::Geometric && low <= 0.0 {
+        return Err(section.required_key(&keys::SPACING)?.error("needs values above zero; use \"linear\""));
+    }
+    Ok(spacing.values(low, high, section.read(&keys::MAP_COUNT)?))
 }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::document::{Entry, Section};
-use super::laws::{MOST_TIMES, OneClock, clock_of};
+use super::keys::MOST_TIMES;
+use super::laws::{OneClock, clock_of};
 use super::{Rows, path_file};
 use crate::contact::InitialContact;
 use crate::error::Result;

@@ -2,31 +2,9 @@
 
 use toml::{Table, Value};
 
-use super::{FINEST_ACCURACY, Scene};
+use super::{FINEST_ACCURACY, Numerics, Scene, keys};
 use crate::error::Error;
-
-/// Sets of keys of a table of the scene of which a scene has one at most: a patch that sets a key of one set removes the others.
-const ALTERNATIVES: [(&str, &[&[&str]]); 11] = [
-    ("indenter", &[&["paraboloid"], &["sphere"], &["cone"], &["power-law"], &["table"]]),
-    ("half_space", STIFFNESS),
-    ("counter_body", STIFFNESS),
-    ("friction", &[&["coulomb"], &["static-kinetic"], &["load-dependent"]]),
-    ("wear", &[&["archard"], &["dissipated-energy"], &["power-law"], &["threshold"], &["non-local"]]),
-    ("loading", &[&["indentation"], &["initial_force"], &["normal_force"]]),
-    ("loading", &[&["amplitude"], &["amplitude_ratio"], &["stick_ratio"]]),
-    ("loading", &[AMPLITUDE, &["path"]]),
-    ("loading", DURATION),
-    ("loading", &[&["normal_oscillation"], &["orbit"], &["path"]]),
-    ("output", &[&["snapshots"], &["at_cycles"], &["at_tau"]]),
-];
-
-const STIFFNESS: &[&[&str]] =
-    &[&["modulus", "reference_depth", "poisson_ratio"], &["normal_stiffness", "stiffness_ratio"]];
-
-/// A recorded path says how far the indenter goes.
-const AMPLITUDE: &[&str] = &["amplitude", "amplitude_ratio", "stick_ratio"];
-
-const DURATION: &[&[&str]] = &[&["cycles"], &["tau"], &["until_rate"]];
+use crate::units::Kind;
 
 /// A value of a scene and where it stands.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,18 +21,18 @@ impl Setting {
     }
 
     /// Keys of the same table that exclude this one.
-    fn rivals(&self) -> impl Iterator<Item = &'static str> {
-        let of_table = ALTERNATIVES.iter().filter(|(table, _)| *table == self.table);
-        let with_key = of_table.filter(|(_, sets)| sets.iter().any(|set| set.contains(&self.key.as_str())));
-        let others = with_key.flat_map(|(_, sets)| *sets).filter(|set| !set.contains(&self.key.as_str()));
-        others.flat_map(|set| set.iter().copied())
+    fn rivals(&self) -> Vec<&'static str> {
+        match keys::SCENE.key(&self.table).map(|key| key.kind) {
+            Some(Kind::Table(table)) => table.rivals(&self.key),
+            _ => vec![],
+        }
     }
 
     /// Whether no scene can have both.
     fn excludes(&self, other: &Self) -> bool {
         let same = self.table == other.table;
         let contradicts = self.key == other.key && self.value != other.value;
-        same && (contradicts || self.rivals().any(|rival| rival == other.key))
+        same && (contradicts || self.rivals().contains(&other.key.as_str()))
     }
 }
 
@@ -94,7 +72,7 @@ impl Patch {
                 "" => &mut *scene,
                 name => table_of(scene, name)?,
             };
-            setting.rivals().for_each(|rival| {
+            setting.rivals().into_iter().for_each(|rival| {
                 table.remove(rival);
             });
             table.insert(setting.key.clone(), setting.value.clone());
@@ -110,8 +88,8 @@ impl Patch {
 pub(super) fn last_until(scene: &mut Table, tau: f64) -> Result<(), String> {
     let loading = table_of(scene, "loading")?;
     let own = loading.get("tau").and_then(float).unwrap_or(0.0);
-    DURATION.iter().copied().flatten().for_each(|key| {
-        loading.remove(*key);
+    keys::LOADING.rivals("tau").into_iter().for_each(|rival| {
+        loading.remove(rival);
     });
     loading.insert("tau".into(), Value::Float(own.max(tau)));
     Ok(())
@@ -123,9 +101,8 @@ pub(super) fn last_until(scene: &mut Table, tau: f64) -> Result<(), String> {
 /// # Errors
 /// As [`Patch::apply`].
 pub(super) fn refine(scene: &mut Table) -> Result<(), String> {
-    const DEFAULT_ACCURACY: f64 = 1e-4;
     let numerics = table_of(scene, "numerics")?;
-    let accuracy = numerics.get("accuracy").and_then(float).unwrap_or(DEFAULT_ACCURACY);
+    let accuracy = numerics.get("accuracy").and_then(float).unwrap_or(Numerics::default().accuracy);
     numerics.insert("accuracy".into(), Value::Float((accuracy / 8.0).max(FINEST_ACCURACY)));
     if let Some(springs) = numerics.get("springs").and_then(Value::as_integer) {
         numerics.insert("springs".into(), Value::Integer(springs.saturating_mul(2)));

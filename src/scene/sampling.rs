@@ -21,14 +21,8 @@ impl Method {
     /// All methods, in the order of their names.
     pub const ALL: [Self; 3] = [Self::Random, Self::Sobol, Self::LatinHypercube];
 
-    /// The word of the study: `random`, `sobol` or `latin-hypercube`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Random => "random",
-            Self::Sobol => "sobol",
-            Self::LatinHypercube => "latin-hypercube",
-        }
-    }
+    /// Their words in a study, in the same order.
+    pub const WORDS: [&'static str; 3] = ["random", "sobol", "latin-hypercube"];
 }
 
 /// Points in the unit cube.

@@ -3,12 +3,13 @@
 //! A schema takes every file that the program takes, and refuses unknown keys, wrong types, values outside their ranges and alternatives given
 //! together. What needs physics or other files is left to `fretwear check`. Draft 7, which editors of TOML know.
 
-mod keys;
-mod loading;
-mod studies;
-mod tables;
+use std::collections::BTreeSet;
 
-use serde_json::Value;
+use serde_json::{Map, Value, json};
+
+use super::keys;
+pub use super::keys::{is_key, unit_of};
+use crate::units::{Dimension, Form, Key, Kind, Range, Rule, Table};
 
 /// Kinds of files that have a schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,12 +30,12 @@ impl FileKind {
 
     /// The word of the command line: `scene`, `study`, `map` or `universality`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Scene => "scene",
-            Self::Study => "study",
-            Self::Map => "map",
-            Self::Universality => "universality",
-        }
+        ["scene", "study", "map", "universality"][self as usize]
+    }
+
+    /// The keys of the file.
+    pub(super) fn table(self) -> &'static Table {
+        [&keys::SCENE, &keys::STUDY, &keys::MAP, &keys::UNIVERSALITY][self as usize]
     }
 
     /// The JSON Schema of the file.
@@ -48,58 +49,163 @@ impl FileKind {
     /// assert_eq!(radius["description"], "Radius of curvature R of f = r²/(2R), m.");
     /// ```
     pub fn schema(self) -> Value {
-        let mut schema = match self {
-            Self::Scene => tables::scene().whole(),
-            Self::Study => studies::study().whole(),
-            Self::Map => studies::map().whole(),
-            Self::Universality => studies::universality(),
-        };
+        let mut schema = of_table(self.table());
         schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
         schema["title"] = format!("fretwear {}", self.name()).into();
+        if self == Self::Universality {
+            schema["definitions"] = json!({ PATCH: patch() });
+        }
         schema
     }
 }
 
-/// Unit in SI of the number that a dotted key of a scene stands for, in the spelling of UDUNITS; "1" for plain numbers, words and what has a
-/// unit that depends on an exponent.
-///
-/// ```
-/// use fretwear::scene::schema::unit_of;
-///
-/// assert_eq!(unit_of("loading.amplitude"), "m");
-/// assert_eq!(unit_of("wear.archard.coefficient"), "Pa-1");
-/// assert_eq!(unit_of("friction.coulomb.coefficient"), "1");
-/// ```
-pub fn unit_of(key: &str) -> String {
-    let scene = FileKind::Scene.schema();
-    let entry = key.split('.').fold(&scene, |table, key| &table["properties"][key]);
-    entry[keys::UNIT].as_str().unwrap_or("1").to_owned()
+/// Annotation of a quantity: the unit of its number, in the spelling of UDUNITS.
+const UNIT: &str = "x-unit";
+/// Name of a part of a scene among the definitions.
+const PATCH: &str = "patch";
+/// A number as text begins so; what follows is left to the reader of units.
+const NUMBER: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)";
+/// Something must follow the number.
+const AND_UNIT: &str = r"(\s+\S|[^0-9\s.+-])";
+
+/// The schema of what a key takes.
+fn of_key(key: &Key) -> Value {
+    let number_or = |pattern: String| json!({ "anyOf": [bounded("number", key.range), { "type": "string", "pattern": pattern }] });
+    let mut value = match key.kind {
+        Kind::Quantity(Dimension::NUMBER) | Kind::Magnitude => number_or(NUMBER.into()),
+        Kind::Quantity(_) | Kind::Scaled => {
+            let mut value = number_or(format!("{NUMBER}{AND_UNIT}"));
+            value[UNIT] = key.si_unit().into();
+            value
+        }
+        Kind::NumberOr(word) => json!({ "anyOf": [bounded("number", key.range), { "const": word }] }),
+        Kind::Ratio => number_or(r"^\s*\+?[0-9.]".into()),
+        Kind::Whole => bounded("integer", key.range),
+        Kind::Word(words) => json!({ "enum": words }),
+        Kind::Switch => json!({ "type": "boolean" }),
+        Kind::Text => {
+            json!({ "type": "string", "maxLength": 1000, "pattern": "^[^\u{0}-\u{1f}\u{7f}-\u{9f}]*$" })
+        }
+        Kind::Name => json!({ "type": "string", "minLength": 1 }),
+        Kind::KeyOfScene => {
+            json!({ "type": "string", "pattern": r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)+$", "maxLength": 199 })
+        }
+        Kind::Literal => json!({ "type": ["number", "string", "boolean", "array"] }),
+        Kind::Patch => return json!({ "$ref": format!("#/definitions/{PATCH}") }),
+        Kind::List(item, counts) => array(of_key(item), counts),
+        Kind::Axis(item, most) => {
+            let steps = keys::STEPS.keys.iter().map(|key| match key.kind {
+                Kind::Quantity(_) => Key { range: item.range, ..*key },
+                _ => *key,
+            });
+            let steps = whole(part(steps.map(|key| (key.name, of_key(&key))), key.about), &keys::STEPS);
+            json!({ "anyOf": [array(of_key(item), [1, most]), steps] })
+        }
+        Kind::Table(table) => of_table(table),
+        Kind::Tables(table, counts) => array(of_table(table), counts),
+        Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(of_key).collect::<Vec<_>>() }),
+    };
+    if let Some(example) =
+        key.example_in_toml().filter(|_| !matches!(key.kind, Kind::Table(_) | Kind::Tables(..)))
+    {
+        value["examples"] = json!([from_toml(&example)]);
+    }
+    if let Some(default) = key.default {
+        value["default"] = from_toml(default);
+    }
+    value["description"] = key.about.into();
+    value
 }
 
-/// Whether a dotted name is that of a table or a key of a scene.
-///
-/// ```
-/// use fretwear::scene::schema::is_key;
-///
-/// assert!(is_key("loading.amplitude") && is_key("wear.threshold") && !is_key("slip annulus"));
-/// ```
-pub fn is_key(name: &str) -> bool {
-    let scene = FileKind::Scene.schema();
-    name.split('.').try_fold(&scene, |table, key| table["properties"].get(key)).is_some()
+/// The schema of a table as it stands in a file.
+fn of_table(table: &Table) -> Value {
+    whole(part(table.keys.iter().map(|key| (key.name, of_key(key))), table.about), table)
 }
 
-/// Dotted keys of a scene that have values, as studies vary them; those of arrays of tables by the array alone.
-pub(super) fn keys_of_scene() -> Vec<String> {
-    fn add(schema: &Value, path: &str, keys: &mut Vec<String>) {
-        match schema["properties"].as_object() {
-            Some(inner) => inner.iter().for_each(|(key, schema)| {
-                let dot = if path.is_empty() { "" } else { "." };
-                add(schema, &format!("{path}{dot}{key}"), keys);
-            }),
-            None => keys.push(path.to_owned()),
+/// The schema of any part of a scene, which is laid over another: tables need not be complete, laws and shapes are replaced as a whole.
+fn patch() -> Value {
+    let part_of = |key: &Key| match key.kind {
+        Kind::Table(table) => part(table.keys.iter().map(|key| (key.name, of_key(key))), table.about),
+        _ => of_key(key),
+    };
+    part(keys::SCENE.keys.iter().map(|key| (key.name, part_of(key))), keys::PATCH.about)
+}
+
+/// Any part of a table of these keys.
+fn part<'a>(keys: impl Iterator<Item = (&'a str, Value)>, about: &str) -> Value {
+    let keys: Map<String, Value> = keys.map(|(name, schema)| (name.to_owned(), schema)).collect();
+    json!({ "type": "object", "properties": keys, "additionalProperties": false, "description": about })
+}
+
+/// The schema of a table with what it must have and what goes together.
+fn whole(mut schema: Value, table: &Table) -> Value {
+    let required: Vec<_> = table.keys.iter().filter(|key| key.required).map(|key| key.name).collect();
+    if !required.is_empty() {
+        schema["required"] = required.into();
+    }
+    if !table.rules.is_empty() {
+        schema["allOf"] = table.rules.iter().map(of_rule).collect();
+    }
+    schema
+}
+
+fn of_rule(rule: &Rule) -> Value {
+    let list = |values: Vec<Value>| Value::Array(values);
+    match rule {
+        Rule::OneOf(keys) => {
+            json!({ "oneOf": list(keys.iter().map(|key| json!({ "required": [key] })).collect()) })
+        }
+        Rule::AtMostOneOf(keys) => {
+            let pairs = keys.iter().enumerate().flat_map(|(place, one)| {
+                keys[place + 1..].iter().map(move |two| json!({ "not": { "required": [one, two] } }))
+            });
+            json!({ "allOf": list(pairs.collect()) })
+        }
+        Rule::Forms(forms) => {
+            json!({ "oneOf": list(forms.iter().map(|form| alone(form, forms.iter())).collect()) })
+        }
+        Rule::Needs(key, other) => json!({ "dependencies": { *key: [other] } }),
+        Rule::Words(key, words) => {
+            let word = |(word, form): &(&str, Form)| {
+                let given = json!({ "properties": { *key: { "const": word } }, "required": [key] });
+                json!({ "if": given, "then": alone(form, words.iter().map(|(_, form)| form)) })
+            };
+            json!({ "allOf": list(words.iter().map(word).collect()) })
         }
     }
-    let mut keys = vec![];
-    add(&FileKind::Scene.schema(), "", &mut keys);
-    keys
+}
+
+/// One of several forms, without keys of the others.
+fn alone<'a>(form: &Form, all: impl Iterator<Item = &'a Form>) -> Value {
+    let strays: BTreeSet<&str> = all.flat_map(Form::keys).filter(|key| !form.has(key)).collect();
+    let mut schema = json!({ "required": form.needs });
+    if !strays.is_empty() {
+        let strays: Vec<_> = strays.iter().map(|key| json!({ "required": [key] })).collect();
+        schema["not"] = json!({ "anyOf": strays });
+    }
+    schema
+}
+
+fn array(items: Value, [fewest, most]: [usize; 2]) -> Value {
+    json!({ "type": "array", "items": items, "minItems": fewest, "maxItems": most })
+}
+
+fn bounded(kind: &str, range: Range) -> Value {
+    let mut value = json!({ "type": kind });
+    let mut limit = |(end, belongs): (f64, bool), names: [&str; 2]| {
+        if end.is_finite() {
+            let whole = end == end.trunc() && end.abs() < 1e15;
+            value[names[usize::from(belongs)]] = if whole { json!(end as i64) } else { json!(end) };
+        }
+    };
+    limit(range.from, ["exclusiveMinimum", "minimum"]);
+    limit(range.to, ["exclusiveMaximum", "maximum"]);
+    value
+}
+
+/// A value in TOML, or the text itself where it is none.
+fn from_toml(text: &str) -> Value {
+    let value = format!("value = {text}").parse::<toml::Table>();
+    let value = value.ok().and_then(|mut table| table.remove("value"));
+    value.and_then(|value| serde_json::to_value(value).ok()).unwrap_or_else(|| text.into())
 }

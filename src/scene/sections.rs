@@ -4,12 +4,10 @@ use std::cell::OnceCell;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use super::document::{Entry, Section};
+use super::document::{Entry, Section, Source};
 use super::laws::{self, OneClock};
-use super::{
-    Cycle, FINEST_ACCURACY, MOST_SNAPSHOTS, MOST_SUBSTEPS, Numerics, Output, Rows, Scene, Stepper, WearFrom,
-};
-use super::{motion, profile_file};
+use super::reading::Read;
+use super::{Cycle, MOST_SNAPSHOTS, Numerics, Output, Rows, Scene, Stepper, keys, motion, profile_file};
 use crate::contact::InitialContact;
 use crate::contact::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
 use crate::contact::indenter::{Indenter, TabulatedProfile};
@@ -17,38 +15,30 @@ use crate::error::{Error, Result};
 use crate::laws::conditions::Conditions;
 use crate::laws::loading::{Duration, Loading, Mode};
 use crate::laws::wear::{Archard, WearLaw};
-use crate::solver::model::FEWEST_SPRINGS;
-use crate::units::Dimension;
+use crate::units::{Dimension, Table};
 
 /// Reads the whole document; the text is kept as it is.
 pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
-    const TABLES: [&str; 9] = [
-        "title",
-        "indenter",
-        "half_space",
-        "counter_body",
-        "friction",
-        "wear",
-        "loading",
-        "numerics",
-        "output",
-    ];
-    root.only(&TABLES, &[])?;
+    root.check(&keys::SCENE)?;
     let mut warnings = Vec::new();
-    let title = root.optional("title").map(|entry| title(&entry)).transpose()?;
-    let shape = table(root, "indenter", "add for example [indenter.paraboloid] with radius")?;
+    let title = root.read_optional(&keys::TITLE)?;
+    let shape = table(root, &keys::INDENTER)?;
     let indenter = indenter(&shape, rows, &mut warnings)?;
-    let bodies = table(root, "half_space", "add [half_space] with grading, modulus and poisson_ratio")?;
-    let half_space = contact(root, &bodies, &mut warnings)?;
+    let half_space = contact(root, &mut warnings)?;
     let Physics { loading, wear, conditions } = physics(root, &indenter, &half_space, rows)?;
     let friction = conditions.friction.reference();
     let numerics = match root.optional("numerics") {
-        Some(entry) => numerics(&entry.section()?, &conditions, &mut warnings)?,
+        Some(entry) => {
+            let section = entry.section()?;
+            let numerics = numerics(&section)?;
+            check_numerics(&section, &numerics, &conditions, &mut warnings)?;
+            numerics
+        }
         None => Numerics::default(),
     };
     warnings.extend(warning_of_another_limit(&conditions));
     let output = match root.optional("output") {
-        Some(entry) => output(&entry.section()?, loading.duration)?,
+        Some(entry) => output(&entry.section()?, Some(loading.duration))?,
         None => Output::default(),
     };
     Ok(Scene {
@@ -75,13 +65,13 @@ struct Physics {
 
 fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &Rows) -> Result<Physics> {
     let mut clock = OneClock::default();
-    let friction_table = table(root, "friction", "add [friction.coulomb] with coefficient")?;
+    let friction_table = table(root, &keys::FRICTION)?;
     let friction = laws::friction(&friction_table)?;
     let friction_history = laws::history(&friction_table, false, &mut clock)?;
-    let wear_table = table(root, "wear", "add [wear.archard] with coefficient")?;
+    let wear_table = table(root, &keys::WEAR)?;
     let wear = laws::wear(&wear_table)?;
     let wear_history = laws::history(&wear_table, true, &mut clock)?;
-    let section = table(root, "loading", "add [loading] with load, amplitude and duration")?;
+    let section = table(root, &keys::LOADING)?;
     let motion = motion::motion(&section, rows, &mut clock)?;
 
     // Formed only where something refers to it. Whatever the wear coefficient, it is the same contact.
@@ -137,21 +127,8 @@ fn warning_of_another_limit(conditions: &Conditions) -> Option<String> {
     })
 }
 
-fn table<'a>(root: &Section<'a>, key: &str, cure: &str) -> Result<Section<'a>> {
-    root.required(key, cure)?.section()
-}
-
-/// One line: a title goes into files and figures.
-pub(super) fn title(entry: &Entry) -> Result<String> {
-    const LONGEST: usize = 1000;
-    let title = entry.string()?;
-    if title.chars().any(char::is_control) {
-        return Err(entry.error("holds a line break or another control character; a title is one line"));
-    }
-    if title.len() > LONGEST {
-        return Err(entry.error(format_args!("is longer than {LONGEST} bytes")));
-    }
-    Ok(title.to_string())
+fn table<'a>(root: &Section<'a>, table: &Table) -> Result<Section<'a>> {
+    root.required_key(keys::SCENE.key(table.name).expect("a table of the scene"))?.section()
 }
 
 fn indenter(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Indenter> {
@@ -231,65 +208,66 @@ fn slope((key, entry): (&str, Entry)) -> Result<f64> {
 }
 
 /// The half-space, in series with the counter-body if that is elastic too.
-fn contact(root: &Section, first: &Section, warnings: &mut Vec<String>) -> Result<HalfSpace> {
-    let half_space = body(first, None, warnings)?;
-    let Some(entry) = root.optional("counter_body") else { return Ok(half_space) };
+fn contact(root: &Section, warnings: &mut Vec<String>) -> Result<HalfSpace> {
+    let half_space = body(&table(root, &keys::HALF_SPACE)?, &keys::HALF_SPACE, None, warnings)?;
+    let Some(entry) = root.optional(keys::COUNTER_BODY.name) else { return Ok(half_space) };
     let second = entry.section()?;
-    let counter_body = body(&second, Some(half_space.grading()), warnings)?;
+    let counter_body = body(&second, &keys::COUNTER_BODY, Some(half_space.grading()), warnings)?;
     HalfSpace::in_series(&half_space, &counter_body).map_err(|error| second.locate(error))
 }
 
 /// One elastic body; a counter-body may leave out the grading, which is that of the half-space.
-fn body(section: &Section, grading: Option<f64>, warnings: &mut Vec<String>) -> Result<HalfSpace> {
-    const MODULUS: [&str; 2] = ["reference_depth", "poisson_ratio"];
-    let keys = ["grading", "modulus", MODULUS[0], MODULUS[1], "normal_stiffness", "stiffness_ratio"];
-    section.only(&keys, &[])?;
-    let grading = match (section.optional("grading"), grading) {
-        (None, Some(same)) => same,
-        (None, None) => {
-            section.required("grading", "0 is a homogeneous body")?.quantity(Dimension::NUMBER)?
-        }
-        (Some(entry), same) => {
-            let own = entry.quantity_in(Dimension::NUMBER, "(-1, 1)", |k| k > -1.0 && k < 1.0)?;
-            match same {
-                Some(same) if same != own => {
-                    return Err(entry.error(format_args!(
-                        "differs from half_space.grading = {same}; both must be equal"
-                    )));
-                }
-                _ => own,
-            }
-        }
+fn body(
+    section: &Section,
+    table: &Table,
+    half_space: Option<f64>,
+    warnings: &mut Vec<String>,
+) -> Result<HalfSpace> {
+    section.check(table)?;
+    let grading = match half_space {
+        Some(same) => section.read_optional(&keys::GRADING)?.unwrap_or(same),
+        None => section.read(&keys::GRADING)?,
     };
-    let (form, entry) = section.one_of(&["modulus", "normal_stiffness"])?;
-    let foreign: &[&str] = if form == "modulus" { &["stiffness_ratio"] } else { &MODULUS };
-    section.refuse_beside(foreign, &entry)?;
-    let body = match form {
-        "modulus" => {
-            let modulus = entry.positive(Dimension::PRESSURE)?;
-            let depth =
-                section.optional("reference_depth").map(|z| z.positive(Dimension::LENGTH)).transpose()?;
-            let poisson = poisson(section)?;
-            warn_if_formal(section, poisson, grading, warnings);
-            HalfSpace::from_modulus(grading, modulus, depth.unwrap_or(1.0), poisson)
-        }
-        _ => {
-            let normal = entry.positive(Dimension::spring_stiffness(grading))?;
-            let ratio = match section.optional("stiffness_ratio") {
-                Some(ratio) => ratio.positive(Dimension::NUMBER)?,
-                None => {
-                    warn_if_formal(section, Poisson::Similar, grading, warnings);
-                    similar_stiffness_ratio(grading)
-                }
-            };
-            HalfSpace::from_stiffness(grading, normal, ratio)
-        }
+    if let Some(same) = half_space.filter(|same| *same != grading) {
+        let entry = section.required_key(&keys::GRADING)?;
+        let message = format!("differs from half_space.grading = {same}; both must be equal");
+        return Err(entry.error(message));
+    }
+    let body = if let Some(modulus) = section.read_optional(&keys::MODULUS)? {
+        let depth = reference_depth(section, grading)?;
+        let poisson = poisson(section)?;
+        warn_if_formal(section, poisson, grading, warnings);
+        HalfSpace::from_modulus(grading, modulus, depth, poisson)
+    } else {
+        let normal = section.read(&keys::NORMAL_STIFFNESS.of(Dimension::spring_stiffness(grading)))?;
+        let ratio = match section.read_optional(&keys::STIFFNESS_RATIO)? {
+            Some(ratio) => ratio,
+            None => {
+                warn_if_formal(section, Poisson::Similar, grading, warnings);
+                similar_stiffness_ratio(grading)
+            }
+        };
+        HalfSpace::from_stiffness(grading, normal, ratio)
     };
     body.map_err(|error| section.locate(error))
 }
 
+/// The depth at which the modulus counts, m; any where it is the same at all depths.
+fn reference_depth(section: &Section, grading: f64) -> Result<f64> {
+    match section.read_optional(&keys::REFERENCE_DEPTH)? {
+        Some(depth) => Ok(depth),
+        None if grading == 0.0 => Ok(1.0),
+        None => Err(section.error(format_args!(
+            "{} is missing; where {} is not 0 the modulus counts at that depth: give it, for example {:?}",
+            section.name(keys::REFERENCE_DEPTH.name),
+            section.name(keys::GRADING.name),
+            keys::REFERENCE_DEPTH.example
+        ))),
+    }
+}
+
 pub(super) fn poisson(section: &Section) -> Result<Poisson> {
-    let entry = section.required("poisson_ratio", "a number such as 0.3, or \"similar\"")?;
+    let entry = section.required_key(&keys::POISSON_RATIO)?;
     match entry.string() {
         Ok("similar") => Ok(Poisson::Similar),
         Ok(_) => Err(entry.error("is neither a number nor \"similar\"")),
@@ -308,78 +286,57 @@ fn warn_if_formal(section: &Section, poisson: Poisson, grading: f64, warnings: &
     }
 }
 
-fn numerics(section: &Section, conditions: &Conditions, warnings: &mut Vec<String>) -> Result<Numerics> {
-    const SPACE: [&str; 2] = ["accuracy", "springs"];
-    const TIME: [&str; 3] = ["stepper", "tolerance", "checkpoint_interval"];
-    const CYCLE: [&str; 3] = ["cycle", "substeps", "wear_from"];
-    section.only(&[&SPACE[..], &TIME, &CYCLE].concat(), &[])?;
-    let mut numerics = Numerics::default();
-    let fraction = |entry: &Entry, range: &str, least: f64| {
-        entry.quantity_in(Dimension::NUMBER, range, |value| value > 0.0 && value >= least && value <= 0.1)
-    };
-    let accuracy = section.optional("accuracy");
-    if let Some(entry) = &accuracy {
-        numerics.accuracy = fraction(entry, "[1e-10, 0.1]", FINEST_ACCURACY)?;
+pub(super) fn numerics(section: &Section) -> Result<Numerics> {
+    section.check(&keys::NUMERICS)?;
+    section.read::<usize>(&keys::WEAR_FROM)?;
+    Ok(Numerics {
+        accuracy: section.read(&keys::ACCURACY)?,
+        springs: section.read_optional(&keys::SPRINGS)?,
+        stepper: Stepper::ALL[section.read::<usize>(&keys::STEPPER)?],
+        tolerance: section.read_optional(&keys::TOLERANCE)?,
+        cycle: section.read_optional(&keys::CYCLE)?.map(|place: usize| Cycle::ALL[place]),
+        substeps: section.read_optional(&keys::SUBSTEPS)?,
+        checkpoint_interval: section.read(&keys::CHECKPOINT_INTERVAL)?,
+    })
+}
+
+/// What of the numerics does not go together, or not with the conditions.
+fn check_numerics(
+    section: &Section,
+    numerics: &Numerics,
+    conditions: &Conditions,
+    warnings: &mut Vec<String>,
+) -> Result<()> {
+    if numerics.cycle == Some(Cycle::ClosedForm) && conditions.mode != Mode::Tangential {
+        return Err(section.required_key(&keys::CYCLE)?.error(
+            "holds for tangential oscillation alone; leave it out or write \"resolved\" beside another mode",
+        ));
     }
-    if let Some(entry) = section.optional("springs") {
-        numerics.springs = Some(entry.whole(FEWEST_SPRINGS..=usize::MAX)?);
-    }
-    if let Some(entry) = section.optional("stepper") {
-        numerics.stepper = Stepper::ALL[entry.word(&Stepper::ALL.map(Stepper::name))?];
-    }
-    if let Some(entry) = section.optional("tolerance") {
-        numerics.tolerance = Some(fraction(&entry, "(0, 0.1]", 0.0)?);
-    }
-    if let Some(entry) = section.optional("cycle") {
-        let cycles = [Cycle::ClosedForm, Cycle::Resolved];
-        let cycle = cycles[entry.word(&cycles.map(Cycle::name))?];
-        if cycle == Cycle::ClosedForm && conditions.mode != Mode::Tangential {
-            return Err(entry.error(
-                "holds for tangential oscillation alone; leave it out or write \"resolved\" beside another mode",
-            ));
-        }
-        numerics.cycle = Some(cycle);
-    }
-    if let Some(entry) = section.optional("substeps") {
-        numerics.substeps = Some(entry.whole(2..=MOST_SUBSTEPS)?);
-    }
-    if let Some(entry) = section.optional("wear_from") {
-        let starts = [WearFrom::Shakedown, WearFrom::FirstCycle];
-        numerics.wear_from = starts[entry.word(&starts.map(WearFrom::name))?];
-    }
-    if let Some(entry) = section.optional("checkpoint_interval") {
-        // The upper end, some thirty years, keeps it within what a clock can count.
-        numerics.checkpoint_interval =
-            entry.quantity_in(Dimension::TIME, "[0, 1e9] s", |time| (0.0..=1e9).contains(&time))?;
-    }
-    if accuracy.is_some() && numerics.springs.is_some() && numerics.tolerance.is_some() {
+    let by_hand = numerics.springs.is_some() && numerics.tolerance.is_some();
+    if by_hand && section.optional(keys::ACCURACY.name).is_some() {
         warnings
             .push("numerics.accuracy decides nothing where springs and tolerance are given by hand".into());
     }
-    Ok(numerics)
+    Ok(())
 }
 
-fn output(section: &Section, duration: Duration) -> Result<Output> {
-    let keys = ["snapshots", "at_cycles", "at_tau"];
-    section.only(&keys, &[])?;
-    match section.at_most_one_of(&keys)?.0 {
-        None => Ok(Output::default()),
-        Some(("snapshots", entry)) => Ok(Output::Snapshots(entry.whole(1..=MOST_SNAPSHOTS)?)),
-        Some(("at_cycles", entry)) => {
-            let end = if let Duration::Cycles(end) = duration { Some(("loading.cycles", end)) } else { None };
-            Ok(Output::AtCycles(times(&entry, end)?))
-        }
-        Some((_, entry)) => {
-            let end = if let Duration::Tau(end) = duration { Some(("loading.tau", end)) } else { None };
-            Ok(Output::AtTau(times(&entry, end)?))
-        }
+pub(super) fn output(section: &Section, duration: Option<Duration>) -> Result<Output> {
+    section.check(&keys::OUTPUT)?;
+    if let Some(entry) = section.optional(keys::AT_CYCLES.name) {
+        let end = duration.and_then(|it| if let Duration::Cycles(end) = it { Some(end) } else { None });
+        return Ok(Output::AtCycles(times(&entry, end.map(|end| ("loading.cycles", end)))?));
     }
+    if let Some(entry) = section.optional(keys::AT_TAU.name) {
+        let end = duration.and_then(|it| if let Duration::Tau(end) = it { Some(end) } else { None });
+        return Ok(Output::AtTau(times(&entry, end.map(|end| ("loading.tau", end)))?));
+    }
+    Ok(Output::Snapshots(section.read(&keys::SNAPSHOTS)?))
 }
 
 /// Times in increasing order, none twice, none after the end of the run where that is known.
 fn times(entry: &Entry, end: Option<(&str, f64)>) -> Result<Vec<f64>> {
-    let read = |entry: &Entry| -> std::result::Result<f64, Error> {
-        let time = entry.quantity_in(Dimension::NUMBER, "[0, inf)", |time| time >= 0.0)?;
+    let read = |entry: &Entry| {
+        let time = f64::read(entry, &keys::TIME)?;
         match end {
             Some((key, last)) if time > last => {
                 Err(entry.error(format_args!("lies after the end of the run, {key} = {last}")))
@@ -391,4 +348,24 @@ fn times(entry: &Entry, end: Option<(&str, f64)>) -> Result<Vec<f64>> {
     times.sort_by(f64::total_cmp);
     times.dedup();
     Ok(times)
+}
+
+/// The tables of a scene that says nothing of them.
+impl Default for Numerics {
+    fn default() -> Self {
+        nothing(numerics)
+    }
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        nothing(|section| output(section, None))
+    }
+}
+
+/// What is read from an empty table.
+fn nothing<T>(read: impl Fn(&Section) -> Result<T>) -> T {
+    let source = Source { name: "", text: "", kind: "a scene" };
+    let document = source.parse().expect("no text is TOML");
+    read(&Section::root(source, document.get_ref())).expect("every key has a default that serves")
 }

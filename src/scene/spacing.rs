@@ -10,13 +10,11 @@ pub(super) enum Spacing {
 }
 
 impl Spacing {
-    /// The words of a file, in the order of [`Spacing::of_word`].
-    pub(super) const WORDS: [&'static str; 2] = ["linear", "geometric"];
+    /// Both.
+    pub(super) const ALL: [Self; 2] = [Self::Linear, Self::Geometric];
 
-    /// The spacing of one of the [`WORDS`](Spacing::WORDS), by its position.
-    pub(super) fn of_word(position: usize) -> Self {
-        [Self::Linear, Self::Geometric][position]
-    }
+    /// Their words in a file, in the same order.
+    pub(super) const WORDS: [&'static str; 2] = ["linear", "geometric"];
 
     /// Values from one end to the other, both met exactly.
     ///

@@ -8,8 +8,10 @@ use toml::{Table, Value};
 
 use super::document::{Section, Source};
 use super::input::{self, Pipes};
+use super::keys;
 use super::sampling::{Distribution, UnitCube};
-use super::{LARGEST, Rows, Scene, columns, read_text};
+use super::settings::set;
+use super::{LARGEST, Rows, Scene, base_table, columns, read_text};
 #[cfg(feature = "hdf5")]
 use crate::data::layout::FORMAT_VERSION;
 #[cfg(feature = "hdf5")]
@@ -17,9 +19,6 @@ use crate::data::{Fingerprint, SweepFile};
 use crate::error::{Error, Result};
 use crate::units::Unit;
 use crate::units::split_number;
-
-/// Most scenes of a study.
-pub const MOST_SCENES: u64 = 10_000_000;
 
 /// What is done with each scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -37,10 +36,7 @@ impl Task {
 
     /// The word of the study: `run` or `limit`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Run => "run",
-            Self::Limit => "limit",
-        }
+        keys::TASKS[self as usize]
     }
 }
 
@@ -185,7 +181,7 @@ impl Study {
         &self.snapshots
     }
 
-    /// Number of scenes, from 1 to [`MOST_SCENES`].
+    /// Number of scenes, from 1 to [`MOST_SCENES`](super::MOST_SCENES).
     pub fn count(&self) -> u64 {
         self.count
     }
@@ -307,15 +303,6 @@ impl Study {
     }
 }
 
-/// The values of a base scene.
-///
-/// # Errors
-/// [`Error::Scene`] shows the line that is not TOML.
-pub(super) fn base_table(text: &str, path: &Path) -> Result<Table> {
-    let name = path.display().to_string();
-    Source { name: &name, text, kind: "a scene" }.values()
-}
-
 impl Input {
     fn new(value: &Value) -> Self {
         match value {
@@ -333,22 +320,6 @@ fn quantity(text: &str) -> Option<f64> {
     let unit = unit.trim();
     let unit = if unit.is_empty() { Unit::ONE } else { Unit::read(unit).ok()? };
     unit.scale(digits, exponent)
-}
-
-/// Sets a dotted key.
-fn set(table: &mut Table, key: &str, value: Value) -> std::result::Result<(), String> {
-    match key.split_once('.') {
-        None => {
-            table.insert(key.into(), value);
-            Ok(())
-        }
-        Some((first, rest)) => {
-            let inner = table.entry(first).or_insert_with(|| Value::Table(Table::new()));
-            let inner =
-                inner.as_table_mut().ok_or_else(|| format!("{first} is no table in the base scene"))?;
-            set(inner, rest, value)
-        }
-    }
 }
 
 impl Sampling {

@@ -37,13 +37,11 @@ mod cover;
 mod reading;
 
 pub use cover::covering_design;
-pub(super) use reading::MOST_ENTRIES;
 
 use std::path::{Path, PathBuf};
 
 use super::document::{Section, Source};
-use super::study::base_table;
-use super::{LARGEST, Rows, Scene, read_text};
+use super::{LARGEST, Rows, Scene, base_table, keys, read_text};
 use crate::error::{Error, Result, most_alike};
 
 /// Most combinations of the levels of a study, before a covering design is chosen among them.
@@ -67,10 +65,7 @@ impl Prediction {
 
     /// The word of the study: `within` or `outside`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Within => "within",
-            Self::Outside => "outside",
-        }
+        keys::PREDICTIONS[self as usize]
     }
 }
 
@@ -81,13 +76,6 @@ pub struct Tolerances {
     pub within: f64,
     /// From here on it violates it, above `within`.
     pub outside: f64,
-}
-
-impl Default for Tolerances {
-    /// 1e-6 and 1e-3.
-    fn default() -> Self {
-        Self { within: 1e-6, outside: 1e-3 }
-    }
 }
 
 /// One run of a study and what is predicted of it.

@@ -12,6 +12,8 @@
 
 mod cycle;
 mod derivatives;
+mod envelope;
+mod first_force;
 mod jacobian;
 mod loops;
 mod motion;
@@ -19,8 +21,8 @@ mod moving;
 mod operators;
 mod output;
 mod past;
-mod reach;
 mod schedule;
+mod stage;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -36,22 +38,23 @@ use crate::numerics::grid::Clustering;
 use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
 pub use cycle::CycleFields;
+use envelope::Envelope;
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
-pub use moving::{MovingStick, StickEdge, StickTarget, StickTrial};
+pub use moving::{MovingStick, StickEdge, StickStage, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;
+use output::OutputRadii;
 pub use output::RadialFields;
-use output::Shown;
 pub use past::{Linearised, Past, PastPoint};
-use reach::Reach;
-pub use schedule::{Demand, Drive, Resolution, Schedule};
+pub use schedule::{AmplitudeControl, CycleLoading, Resolution, Schedule};
+pub use stage::{Target, Unknowns};
 
-/// Part of the annulus, next to the edge of stick, of which the springs of a [`Clustering::Smooth`] mesh are not shown: the front in which wear
-/// proceeds towards the edge is followed well as long as some springs are left before it.
+/// Part of the annulus, next to the edge of stick, whose springs the output of a [`Clustering::Smooth`] mesh leaves out. Wear proceeds towards the
+/// edge in a front, which is followed well as long as some springs are left before it.
 const HIDDEN: f64 = 3e-5;
 
-/// Springs from which on hierarchical operators serve wear without kinks.
+/// Fewest springs for which operators are hierarchical where wear has no kinks.
 const HIERARCHICAL: usize = 1000;
 
 /// Fewest springs on which the local polynomials fit.
@@ -63,7 +66,7 @@ pub struct State {
     /// Cycles done.
     pub cycles: f64,
     /// `Z = a² - c²`, m², of the contact edge `a`.
-    pub edge: f64,
+    pub slip_area: f64,
     /// Compression `q`, m, of the springs inside the contact edge, shape `(springs - 1,)`, outwards.
     pub compression: Vec<f64>,
     /// Energy dissipated by friction since the start, J.
@@ -73,22 +76,22 @@ pub struct State {
     /// Smallest stick radius of the cycles so far, m; infinite before the first.
     pub least_stick_radius: f64,
     /// Mean rate of the edge in the last step, m² per cycle; zero at the start. A first guess for the next step.
-    pub edge_rate: f64,
+    pub slip_area_rate: f64,
     /// Mean rates of the compressions in the last step, m per cycle, shape `(springs - 1,)`; zero at the start.
     pub compression_rate: Vec<f64>,
     /// The edge of stick, where that moves.
     pub stick: Option<StickEdge>,
-    /// What a method of several steps remembers.
+    /// The times before, for a multistep method.
     pub past: Past,
 }
 
 /// What follows from a state, on the springs `ξ_1 ... ξ_n` of which the last is the contact edge.
 #[derive(Debug, Clone, Default)]
 pub struct Fields {
-    /// Where the mesh begins.
-    pub place: Place,
+    /// The stick zone, at whose edge the mesh begins.
+    pub stick_zone: StickZone,
     /// `Z = a² - c²`, m².
-    pub edge: f64,
+    pub slip_area: f64,
     /// `x^(k-1)`, the factor from compression to density.
     pub density_factor: Vec<f64>,
     /// `F q`, m.
@@ -106,9 +109,9 @@ pub struct Fields {
     density: Vec<f64>,
 }
 
-/// The edge of stick, where the mesh begins.
+/// The stick zone, at whose edge the mesh begins.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Place {
+pub struct StickZone {
     /// `c²`, m².
     pub stick_area: f64,
     /// Compression `q_c` below which springs slip, m: that of the springs there, and more where the contact slides as a whole.
@@ -118,7 +121,7 @@ pub struct Place {
 }
 
 impl Fields {
-    /// Whether slip is positive at every spring and every number finite: a state may exist that is none of a contact.
+    /// Whether slip is positive at every spring and every number is finite. Compressions can be such that no contact has them.
     pub fn are_physical(&self) -> bool {
         self.slip_depth.iter().all(|s| *s > 0.0 && s.is_finite())
             && self.pressure.iter().all(|p| p.is_finite())
@@ -137,9 +140,9 @@ pub struct Model {
     /// Springs next to the edge of stick that the output does not show.
     hidden: usize,
     /// Where the output shows the fields.
-    shown: Shown,
-    /// The edge of stick, its innermost place where it moves.
-    place: Place,
+    output: OutputRadii,
+    /// The stick zone; the smallest one where its edge moves.
+    stick_zone: StickZone,
     moving: Option<MovingStick>,
     depth_scale: f64,
     slides: bool,
@@ -150,7 +153,7 @@ impl Model {
     ///
     /// # Arguments
     /// * `contact` -- the contact of the first cycle
-    /// * `conditions` -- those of its scene: the laws in the contact are but stand-ins of theirs
+    /// * `conditions` -- those of its scene, whose laws replace the ones in the contact
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if nothing slips or the conditions do not go together; [`Error::OutOfRange`] for too few springs; those of the transforms.
@@ -180,10 +183,10 @@ impl Model {
     ) -> Result<Self> {
         let backend = Self::backend(contact, &schedule, springs);
         let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
-        let Reach { contact, slides, surplus } = if uniform {
-            Reach { contact: contact.clone(), slides: false, surplus: 0.0 }
+        let Envelope { contact, slides, surplus } = if uniform {
+            Envelope { contact: contact.clone(), slides: false, surplus: 0.0 }
         } else {
-            schedule.reach(contact)?
+            schedule.envelope(contact)?
         };
         let contact = &contact;
         let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
@@ -203,14 +206,13 @@ impl Model {
         }
         let profile = contact.equivalent_profile();
         let grading = profile.grading();
-        // Where no stick is left in the end, the mesh reaches to the core from the start.
         let moving = MovingStick::new(&schedule, contact, slides)?;
         let farthest = match &moving {
             Some(moving) => moving.farthest(contact)?,
             None => contact.clone(),
         };
         if moving.is_some() && profile.end_of_table().is_some() {
-            // Where there is a closed form, that looks for rings.
+            // The closed form refuses profiles that lose contact in rings.
             LimitingShape::from_contact(&farthest)?;
         }
         let unworn = UnwornSlip::new(
@@ -222,18 +224,18 @@ impl Model {
         )?;
         let stick_radius_squared = stick_radius * stick_radius;
         let first = contact.contact_radius().powi(2);
-        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_edge()));
+        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
-        // Next to the core of a contact that slides as a whole nothing is singular that finer cells would resolve.
+        // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
         let clustering = match clustering {
             Clustering::Cubic if surplus > 0.0 => Clustering::CreepingStick,
             clustering => clustering,
         };
-        let natural = (unworn.limit_edge() / stick_radius_squared).ln_1p();
+        let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
         let stretch = clustering.stretch(natural, grading);
         let operators = store.get(grading, stretch, springs, clustering, backend)?;
         let radial_unworn: Vec<_> =
-            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_edge() * x)).collect();
+            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_slip_area() * x)).collect();
         let compression = contact.slip_compression();
         let stick_load = 0.5 * profile.load_integral(stick_radius)
             + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
@@ -245,12 +247,12 @@ impl Model {
         Ok(Self {
             contact: contact.clone(),
             schedule,
-            shown: Shown::new(&unworn, operators.abel.mesh(), hidden),
+            output: OutputRadii::new(&unworn, operators.abel.mesh(), hidden),
             unworn,
             operators,
             radial_unworn,
             hidden,
-            place: Place {
+            stick_zone: StickZone {
                 stick_area: stick_radius_squared,
                 slip_compression: compression + surplus,
                 stick_load,
@@ -261,8 +263,7 @@ impl Model {
         })
     }
 
-    /// The operators that serve a contact on a number of springs: hierarchical ones where those are many, wear has no kinks and the edge of
-    /// stick stays where it is.
+    /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
     pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
         let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
         let serve = springs >= HIERARCHICAL && schedule.wears_smoothly() && stays;
@@ -274,7 +275,7 @@ impl Model {
         &self.contact
     }
 
-    /// Whether the contact slides as a whole in some cycle, so that only the core of the mesh is not worn.
+    /// Whether there is gross slip in some cycle, so that only the core of the mesh is not worn.
     pub fn slides(&self) -> bool {
         self.slides
     }
@@ -284,9 +285,9 @@ impl Model {
         self.schedule.wears_smoothly() && self.moving.is_none() && !self.slides
     }
 
-    /// What the core that stays unworn under full sliding makes the worn volume uncertain by, relative; zero where a stick zone is left.
+    /// Relative uncertainty of the worn volume by the core that stays unworn in gross slip; zero where a stick zone is left.
     pub fn core_uncertainty(&self) -> f64 {
-        if self.slides { reach::core_share(self.contact.half_space().grading()) } else { 0.0 }
+        if self.slides { envelope::core_share(self.contact.half_space().grading()) } else { 0.0 }
     }
 
     /// What acts when.
@@ -294,7 +295,7 @@ impl Model {
         &self.schedule
     }
 
-    /// Cycles in which wear at the first pressures comes to the compression at the edge of stick.
+    /// Cycles in which wear at the first pressures would be as deep as the compression at the edge of stick.
     pub fn cycles_of_wear(&self) -> f64 {
         self.contact.indentation() / (self.contact.slip_compression() * self.contact.tau_per_cycle())
     }
@@ -309,7 +310,7 @@ impl Model {
         &self.unworn
     }
 
-    /// Gives back memory that only explicit steps and the search for a state need, where it is much.
+    /// Frees memory that only explicit steps and the search for a state need, where it is much.
     pub fn release_factors(&self) {
         self.operators.release_factors();
     }
@@ -326,12 +327,12 @@ impl Model {
 
     /// Radii of the output, m, shape `(node,)`, increasing from just outside the stick radius to the limiting contact radius.
     pub fn radii(&self) -> Vec<f64> {
-        self.offsets().iter().map(|offset| (self.place.stick_area + offset).sqrt()).collect()
+        self.offsets().iter().map(|offset| (self.stick_zone.stick_area + offset).sqrt()).collect()
     }
 
     /// `r² - c²`, m², at [`Model::radii`], without the rounding of the radii.
     pub fn offsets(&self) -> Vec<f64> {
-        self.shown.offsets().to_vec()
+        self.output.offsets().to_vec()
     }
 
     /// The unworn state: the edge and the compressions whose wear depth is zero at every spring.
@@ -340,13 +341,12 @@ impl Model {
     /// [`Error::NotConverged`] if no edge is found.
     pub fn initial_state(&self) -> Result<State> {
         let stick = self.moving.as_ref().map(|moving| moving.start(self)).transpose()?;
-        let place =
-            stick.as_ref().map_or(self.place, |stick| self.place_of(stick, &self.schedule.drive(0.0, 0.0)));
-        let guess = self.contact.contact_radius().powi(2) - place.stick_area;
+        let stick_zone = self.stick_zone_in(stick.as_ref(), &self.schedule.loading(0.0, 0.0));
+        let guess = self.contact.contact_radius().powi(2) - stick_zone.stick_area;
         let guess = if stick.is_some() { guess } else { self.contact.slip_area_offset() };
-        let limit = self.unworn.limit_edge() + self.place.stick_area - place.stick_area;
-        let mismatch = |edge: f64| self.mismatch_at(&place, edge, |_, values| values.slip);
-        let edge = match self.operators.abel.backend() {
+        let limit = self.unworn.limit_slip_area() + self.stick_zone.stick_area - stick_zone.stick_area;
+        let mismatch = |slip_area: f64| self.mismatch_at(&stick_zone, slip_area, |_, values| values.slip);
+        let slip_area = match self.operators.abel.backend() {
             Backend::Dense => {
                 let (mut low, mut high) = (0.98 * guess, (1.02 * guess).min(limit));
                 while mismatch(low) < 0.0 && low > 0.5 * guess {
@@ -360,16 +360,16 @@ impl Model {
             // On so many springs the guess is nearly right, and an evaluation takes long.
             Backend::Hierarchical => next_to(mismatch, guess),
         };
-        let compression = self.compression_at(&place, edge, |_, values| values.slip);
+        let compression = self.compression_at(&stick_zone, slip_area, |_, values| values.slip);
         Ok(self.close_force(State {
             cycles: 0.0,
-            edge,
+            slip_area,
             compression_rate: vec![0.0; compression.len()],
             compression,
             dissipated_energy: 0.0,
             volume_by_rate: 0.0,
             least_stick_radius: f64::INFINITY,
-            edge_rate: 0.0,
+            slip_area_rate: 0.0,
             stick,
             past: Past::default(),
         }))
@@ -377,40 +377,40 @@ impl Model {
 
     /// Wear depth at the edge, m, of the compressions that give the inner springs the slip depth `slip(spring, unworn)`; zero at the
     /// true contact edge.
-    pub fn edge_mismatch(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> f64 {
-        self.mismatch_at(&self.place, edge, slip)
+    pub fn contact_edge_mismatch(&self, slip_area: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> f64 {
+        self.mismatch_at(&self.stick_zone, slip_area, slip)
     }
 
     pub(super) fn mismatch_at(
         &self,
-        place: &Place,
-        edge: f64,
+        stick_zone: &StickZone,
+        slip_area: f64,
         slip: impl Fn(usize, &UnwornValues) -> f64,
     ) -> f64 {
         let inner = self.springs() - 1;
-        let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
+        let values: Vec<_> = self.unworn_on_springs(stick_zone, slip_area).collect();
         let elastic = |(i, values): (usize, &UnwornValues)| values.limit_slip - slip(i, values);
         let carried = self.operators.depth_at_edge(values.iter().take(inner).enumerate().map(elastic));
         values[inner].limit_slip - values[inner].slip - carried
     }
 
     /// Compressions, m, that give the inner springs the slip depth `slip(spring, unworn)` with the contact edge at `edge`.
-    pub fn compression(&self, edge: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> Vec<f64> {
-        self.compression_at(&self.place, edge, slip)
+    pub fn compression(&self, slip_area: f64, slip: impl Fn(usize, &UnwornValues) -> f64) -> Vec<f64> {
+        self.compression_at(&self.stick_zone, slip_area, slip)
     }
 
     pub(super) fn compression_at(
         &self,
-        place: &Place,
-        edge: f64,
+        stick_zone: &StickZone,
+        slip_area: f64,
         slip: impl Fn(usize, &UnwornValues) -> f64,
     ) -> Vec<f64> {
         let inner = self.springs() - 1;
-        let values: Vec<_> = self.unworn_on_springs(place, edge).collect();
+        let values: Vec<_> = self.unworn_on_springs(stick_zone, slip_area).collect();
         let depth = |(i, v): (usize, &UnwornValues)| v.limit_slip - slip(i, v);
         let mut solution: Vec<f64> = values.iter().take(inner).enumerate().map(depth).collect();
         self.operators.solve_profile(&mut solution);
-        let (scale, at_stick) = (edge.powf(-self.mu()), self.density_factor_at_stick(place));
+        let (scale, at_stick) = (slip_area.powf(-self.mu()), self.density_factor_at_stick(stick_zone));
         for (q, v) in solution.iter_mut().zip(&values) {
             *q *= scale / (at_stick * self.density_ratio(v));
         }
@@ -418,16 +418,22 @@ impl Model {
     }
 
     /// Recomputes everything that follows from an edge, m², and the compressions, m, shape `(springs - 1,)`.
-    pub fn evaluate(&self, edge: f64, compression: &[f64], fields: &mut Fields) {
-        self.evaluate_at(&self.place, edge, compression, fields);
+    pub fn evaluate(&self, slip_area: f64, compression: &[f64], fields: &mut Fields) {
+        self.evaluate_at(&self.stick_zone, slip_area, compression, fields);
     }
 
     /// As [`Model::evaluate`], with the mesh beginning at another edge of stick.
-    pub fn evaluate_at(&self, place: &Place, edge: f64, compression: &[f64], fields: &mut Fields) {
+    pub fn evaluate_at(
+        &self,
+        stick_zone: &StickZone,
+        slip_area: f64,
+        compression: &[f64],
+        fields: &mut Fields,
+    ) {
         let n = self.springs();
-        fields.place = *place;
+        fields.stick_zone = *stick_zone;
         let (mu, stiffness) = (self.mu(), self.contact.half_space().normal_stiffness());
-        fields.edge = edge;
+        fields.slip_area = slip_area;
         for part in [
             &mut fields.density_factor,
             &mut fields.elastic_depth,
@@ -440,8 +446,8 @@ impl Model {
         }
         let nodes = &self.operators.abel.nodes()[1..];
         fields.unworn.resize(n, UnwornValues::default());
-        self.on_springs(&mut fields.unworn, |i| self.unworn_at(place, edge * nodes[i]));
-        let at_stick = self.density_factor_at_stick(place);
+        self.on_springs(&mut fields.unworn, |i| self.unworn_at(stick_zone, slip_area * nodes[i]));
+        let at_stick = self.density_factor_at_stick(stick_zone);
         let unworn = &fields.unworn;
         self.on_springs(&mut fields.density_factor, |i| at_stick * self.density_ratio(&unworn[i]));
         fields.density.clear();
@@ -449,7 +455,7 @@ impl Model {
         let [profile, pressure] = self.operators.abel.transforms();
         profile.apply(&fields.density, &mut fields.elastic_depth);
         pressure.apply(compression, &mut fields.pressure);
-        let (profile_scale, pressure_scale) = (edge.powf(mu), stiffness / PI * edge.powf(-mu));
+        let (profile_scale, pressure_scale) = (slip_area.powf(mu), stiffness / PI * slip_area.powf(-mu));
         for (i, values) in fields.unworn.iter().enumerate() {
             fields.elastic_depth[i] *= profile_scale;
             fields.pressure[i] *= pressure_scale;
@@ -474,34 +480,38 @@ impl Model {
     /// The fields of a state.
     pub fn fields(&self, state: &State) -> Fields {
         let mut fields = Fields::default();
-        let drive = self.schedule.drive(state.cycles, state.cycles);
-        let place = state.stick.as_ref().map_or(self.place, |stick| self.place_of(stick, &drive));
-        self.evaluate_at(&place, state.edge, &state.compression, &mut fields);
+        let loading = self.schedule.loading(state.cycles, state.cycles);
+        let stick_zone = self.stick_zone_in(state.stick.as_ref(), &loading);
+        self.evaluate_at(&stick_zone, state.slip_area, &state.compression, &mut fields);
         fields
     }
 
     /// Contact radius `a`, m.
     pub fn contact_radius(&self, state: &State) -> f64 {
-        let stick_area = state.stick.as_ref().map_or(self.place.stick_area, |stick| stick.area);
-        (stick_area + state.edge).sqrt()
+        let stick_area = state.stick.as_ref().map_or(self.stick_zone.stick_area, |stick| stick.area);
+        (stick_area + state.slip_area).sqrt()
     }
 
     /// Depth that the limit takes away at [`Model::radii`] by the program's own quadrature, m.
     pub fn limit_depth(&self) -> Vec<f64> {
-        self.shown.limit_depth()
+        self.output.limit_depth()
     }
 
     /// The unworn slip on every spring, with the contact edge at `edge`.
-    fn unworn_on_springs(&self, place: &Place, edge: f64) -> impl Iterator<Item = UnwornValues> {
-        let place = *place;
-        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn_at(&place, edge * x))
+    fn unworn_on_springs(
+        &self,
+        stick_zone: &StickZone,
+        slip_area: f64,
+    ) -> impl Iterator<Item = UnwornValues> {
+        let stick_zone = *stick_zone;
+        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn_at(&stick_zone, slip_area * x))
     }
 
-    /// The unworn slip at `z = r² - c²`, m², of the edge of stick at `place`.
-    fn unworn_at(&self, place: &Place, z: f64) -> UnwornValues {
+    /// The unworn slip at `z = r² - c²`, m², of the edge of a stick zone.
+    fn unworn_at(&self, stick_zone: &StickZone, z: f64) -> UnwornValues {
         match &self.moving {
             None => self.unworn.at(z),
-            Some(_) => self.unworn.at_stick(place.stick_area, place.slip_compression, z),
+            Some(_) => self.unworn.at_stick(stick_zone.stick_area, stick_zone.slip_compression, z),
         }
     }
 
@@ -511,8 +521,8 @@ impl Model {
     }
 
     /// `c^(k-1)`.
-    fn density_factor_at_stick(&self, place: &Place) -> f64 {
-        place.stick_area.powf(-self.mu())
+    fn density_factor_at_stick(&self, stick_zone: &StickZone) -> f64 {
+        stick_zone.stick_area.powf(-self.mu())
     }
 
     /// `(x/c)^(k-1)`.

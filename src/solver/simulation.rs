@@ -26,30 +26,30 @@ const FIRST_GROWTH: f64 = 1e-3;
 /// Compression, relative to `q_c`, below which no pressure is left but round-off.
 const WORN_OUT: f64 = 1e-13;
 
-/// Loss of wear depth, relative to the limit's largest, that the output's interpolation between moving springs may show: at least this, and
-/// `(3/n)^4` on few springs of a smooth mesh. Explicit steps are rejected by it before they are unstable.
+/// Largest loss of wear depth in a step, relative to the limit's largest depth, that is taken for an error of interpolation between moving
+/// springs: this, or `(3/n)^4` if that is larger, on a smooth mesh. It rejects explicit steps before they are unstable.
 const INTERPOLATION: f64 = 1e-6;
 const COARSE_INTERPOLATION: f64 = 3.0;
 
-/// The same where the edge of stick moves through the mesh.
+/// The same where wear has kinks.
 const KINKED_INTERPOLATION: f64 = 1e-2;
 
-/// How far the rate may fall below the one asked for in the last step.
+/// Least rate at the end of the last step, over the one asked for.
 const OVERSHOT: f64 = 0.5;
 
-/// Part of the rate of worn volume by trapezoids that is wear for certain: the quadrature of the volume, which is more accurate, has weights
-/// that are not all positive, and where the ground next to the edge of stick wears long after the rest it may come to nothing.
+/// Part of the rate of worn volume by trapezoids that is certainly worn. The quadrature of the volume is more accurate, but some of its weights
+/// are negative, and where only the ground next to the edge of stick still wears its sum may vanish.
 const CERTAIN_WEAR: f64 = 0.5;
 
-/// How far a compression, over `q_c`, may leave the range from 0 to 1 in which that of the slip annulus lies. Where the pressure at the edge of
-/// stick blows up it passes below nothing for a while, by more than 0.1 as `k → -1`; meshes that are unstable swing by more than one.
+/// How far a compression, over `q_c`, may lie outside the range from 0 to 1. Where the pressure at the edge of stick blows up it is negative for a
+/// while, by more than 0.1 as `k → -1`; on unstable meshes it swings by more than one.
 const BEYOND_CONTACT: f64 = 0.3;
 
-/// Rejected steps beyond which a run is given up if they are also more than half of the accepted ones: where a held force loses its stick
-/// zone the edge of stick is followed in ever smaller steps.
+/// Rejected steps after which a run is given up if they are more than half of the accepted ones as well. Where a held force loses its stick
+/// zone, the edge of stick is followed in ever smaller steps.
 const MOST_REJECTED: u64 = 4000;
 
-/// Dimensionless time for which wear without end is followed when a run is to last until its rate has fallen.
+/// Dimensionless time at which a run ends that would last until its rate has fallen, where wear goes on without end.
 const SHOWN_UNENDING: f64 = 1.0;
 
 /// When to stop.
@@ -85,7 +85,7 @@ pub enum Outcome {
     Interrupted,
 }
 
-/// Part of a step that was wanted below which the one to an output or a break tells nothing about the next.
+/// Steps shorter than this part of the planned one, because they end at an output or a break, do not decide the next.
 const CUT_SHORT: f64 = 1e-3;
 
 /// What an observer wants after a step.
@@ -97,7 +97,7 @@ pub enum Flow {
     Stop,
 }
 
-/// Whoever looks on: snapshots, checkpoints, a progress bar.
+/// Observer of a simulation: snapshots, checkpoints, a progress bar.
 pub trait Observer {
     /// Called where the plan asks for output, the start and the end included.
     ///
@@ -179,8 +179,8 @@ impl Simulation {
         let mut first_rate = 0.0_f64;
         let mut growth = 0.0_f64;
         let mut finite = true;
-        for drive in model.schedule().first_cycles() {
-            let cycle = model.cycle(&model.drive_in(&state, drive), &state.compression, &fields);
+        for loading in model.schedule().first_cycles() {
+            let cycle = model.cycle(&model.loading_in(&state, loading), &state.compression, &fields);
             first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
             growth = growth.max(largest(&cycle.growth));
             finite &= cycle.volume.is_finite() && cycle.growth.iter().all(|it| it.is_finite());
@@ -241,7 +241,7 @@ impl Simulation {
 
     /// Wear depth at the radii of the output, m, shape `(node,)`.
     pub fn wear_depth(&self) -> Vec<f64> {
-        self.radial_fields().wear_depth
+        self.model.radial_wear_depth(&self.state, &self.fields)
     }
 
     /// The plan.
@@ -259,17 +259,19 @@ impl Simulation {
         self.tolerance
     }
 
-    /// Worn volume per cycle, m³: by the quadrature of the worn volume, where that is less than half of what trapezoids find by the latter.
+    /// Worn volume per cycle, m³, by the quadrature of the worn volume, but at least half of what trapezoids give.
     pub fn wear_rate(&self) -> f64 {
         self.rate
     }
 
-    /// Tries a step of so many cycles and forgets it, for its cost.
+    /// Tries a step of so many cycles and forgets it.
     ///
     /// # Errors
     /// Those of the stepper.
-    pub fn measure_step(&mut self, cycles: f64) -> Result<()> {
-        self.stepper.step(&self.model, &self.state, cycles).map(|_| ())
+    pub fn try_step(&mut self, cycles: f64) -> Result<()> {
+        let tried = self.stepper.step(&self.model, &self.state, cycles).map(|_| ());
+        self.stepper.forget();
+        tried
     }
 
     /// Steps to the end of the plan or until an observer stops it. The start is an output too, unless steps were made before.
@@ -285,7 +287,7 @@ impl Simulation {
                 return Ok(outcome);
             }
             let landed = self.advance(observers).map_err(|error| match error {
-                // A search within a step knows nothing of the moment.
+                // A search within a step does not know the time.
                 Error::NotConverged { what, why } if what != STEPPING => {
                     self.stuck(&format!("{what}: {why}"))
                 }
@@ -307,7 +309,7 @@ impl Simulation {
         }
     }
 
-    /// States at the outputs that lie within a step; none if one of them is that of no contact.
+    /// States at the outputs that lie within a step; none if one of them is not possible.
     fn passed(&self, state: &State) -> Option<Vec<(State, Fields)>> {
         let outputs = &self.plan.outputs[self.progress.next_output as usize..];
         let within = outputs.iter().take_while(|output| **output < state.cycles);
@@ -356,7 +358,7 @@ impl Simulation {
                 (tau >= SHOWN_UNENDING).then_some(Outcome::Unending)
             }
             End::Rate(fraction) => {
-                // A step that went beyond the limit wears back: that is none of the rates asked for.
+                // After a step beyond the limit the rate is negative for a while.
                 let spent = self.cycle.volume >= 0.0
                     && self.wear_rate() <= fraction * self.progress.first_rate
                     && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
@@ -427,7 +429,7 @@ impl Simulation {
             _ => self.plan.outputs.get(self.progress.next_output as usize).copied(),
         };
         let target = match (self.model.schedule().next_break(now), output) {
-            // Where the two are one, at the time that was asked for.
+            // Where they differ by rounding, the step lands on the output.
             (Some(kink), Some(output)) => Some(if has_come(output, kink) { output } else { kink }),
             (kink, output) => kink.or(output),
         };
@@ -436,7 +438,7 @@ impl Simulation {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
         let growth = largest(&self.cycle.growth);
-        let at_rest = || self.model.schedule().drive(now, now).asked() == 0.0;
+        let at_rest = || self.model.schedule().loading(now, now).asked() == 0.0;
         if let Some(target) = target.filter(|_| growth == 0.0 && at_rest()) {
             return Ok(landing(target - now, Some(target)));
         }
@@ -468,7 +470,7 @@ impl Simulation {
             .then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
     }
 
-    /// Takes a state over if it is one that wear can lead to.
+    /// Accepts a state if wear can lead to it.
     fn accept(
         &mut self,
         mut state: State,
@@ -487,13 +489,14 @@ impl Simulation {
         let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
         let mut pairs = depth.iter().zip(&self.depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);
-        if !(grew && fields.are_physical() && self.presses(&state)) {
+        if !(grew && fields.are_physical() && self.compressions_are_possible(&state)) {
             self.healed_at =
                 depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed).map(|at| {
                     let stick = self.model.contact().stick_radius().unwrap_or_default();
                     let nodes = self.model.operators().nodes();
-                    (stick * stick + self.model.unworn().limit_edge() * nodes[(at + 1).min(nodes.len() - 1)])
-                        .sqrt()
+                    (stick * stick
+                        + self.model.unworn().limit_slip_area() * nodes[(at + 1).min(nodes.len() - 1)])
+                    .sqrt()
                 });
             return Ok(false);
         }
@@ -519,9 +522,9 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Whether the springs press no less than not at all and no more than where they stick, under the plain laws: beside others single
-    /// springs next to the edge of stick swing further and come back.
-    fn presses(&self, state: &State) -> bool {
+    /// Whether compressions are between zero and that at the edge of stick, with some room. Asked under the plain laws only: under others single
+    /// springs next to the edge of stick swing farther and come back.
+    fn compressions_are_possible(&self, state: &State) -> bool {
         let most = self.model.contact().slip_compression();
         let within = |q: &f64| (-BEYOND_CONTACT..=1.0 + BEYOND_CONTACT).contains(&(q / most));
         !self.model.schedule().conditions().is_plain() || state.compression.iter().all(within)
@@ -543,7 +546,7 @@ impl Simulation {
     }
 }
 
-/// Worn volume per cycle, m³, at least the part of it that is certain.
+/// Worn volume per cycle, m³, at least what is certainly worn.
 fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
     let nodes = model.operators().nodes();
     let wear = |i: usize| (cycle.growth[i] * fields.slip_depth[i]).max(0.0);
@@ -551,7 +554,7 @@ fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
     // No wear at the edge of stick.
     let first = 0.5 * wear(0) * nodes[1];
     let cells = (1..last).map(|i| 0.5 * (wear(i - 1) + wear(i)) * (nodes[i + 1] - nodes[i]));
-    let trapezoids = PI * fields.edge * (first + cells.sum::<f64>());
+    let trapezoids = PI * fields.slip_area * (first + cells.sum::<f64>());
     cycle.volume.max(CERTAIN_WEAR * trapezoids)
 }
 
@@ -560,8 +563,8 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m: f64, value| m.max(*value))
 }
 
-/// What the cycle does that follows a state, in the block that is under way at `start`.
+/// The cycle that follows a state, in the block that is under way at `start`.
 fn cycle_of(model: &Model, state: &State, fields: &Fields, start: f64) -> CycleFields {
-    let drive = model.drive_in(state, model.schedule().drive(start, state.cycles));
-    model.cycle(&drive, &state.compression, fields)
+    let loading = model.loading_in(state, model.schedule().loading(start, state.cycles));
+    model.cycle(&loading, &state.compression, fields)
 }

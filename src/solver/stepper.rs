@@ -1,18 +1,20 @@
 //! Methods that carry a state over cycles; each in its own file behind one trait.
 
+mod bdf;
+mod contact;
 mod cycle_jump;
 mod every_cycle;
-mod implicit;
 mod mixing;
-mod moving_stick;
-mod multistep;
+mod moving;
 mod newton;
+mod resting;
+mod sdirk;
+mod tableau;
 
+pub use bdf::Bdf;
 pub use cycle_jump::CycleJump;
 pub use every_cycle::EveryCycle;
-pub use implicit::Implicit;
-pub use moving_stick::MovingStickImplicit;
-pub use multistep::Multistep;
+pub use sdirk::Sdirk;
 
 use crate::error::{Error, Result};
 use crate::solver::model::{Fields, Model, State};
@@ -20,7 +22,7 @@ use crate::solver::model::{Fields, Model, State};
 /// A step that was tried; accepting it is an assignment, so a failed one changes nothing.
 #[derive(Debug, Clone)]
 pub struct Trial {
-    /// The state after the step, `None` if none was found or it is none of a contact.
+    /// The state after the step, `None` if no contact was found.
     pub state: Option<State>,
     /// The fields of that state, where the method has them.
     pub fields: Option<Fields>,
@@ -47,10 +49,13 @@ pub trait Stepper {
     /// Only what no smaller step can cure.
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial>;
 
+    /// Forgets the steps made so far, as far as the next one depends on more of them than its state.
+    fn forget(&mut self) {}
+
     /// Order of the error estimate in the step, for the choice of the next one.
     fn estimate_order(&self) -> f64;
 
-    /// Whether it follows an edge of stick that moves, and nothing else.
+    /// Whether it follows an edge of stick that moves.
     fn follows_stick(&self) -> bool {
         false
     }
@@ -72,17 +77,15 @@ pub trait Stepper {
     }
 }
 
-/// Refuses a method that does not follow the edge of stick of a model as it moves or stays.
+/// Refuses a method that does not follow the edge of stick of a model that moves.
 pub(crate) fn check_stick(stepper: &dyn Stepper, moves: bool) -> Result<()> {
-    if stepper.follows_stick() == moves {
+    if stepper.follows_stick() || !moves {
         return Ok(());
     }
-    let why = if moves {
-        "does not follow the edge of stick of this contact, which moves; step it by MovingStickImplicit"
-    } else {
-        "follows an edge of stick that moves, and that of this contact stays; step it by Implicit"
-    };
-    Err(Error::Inconsistent { what: "numerics.stepper", why: why.into() })
+    Err(Error::Inconsistent {
+        what: "numerics.stepper",
+        why: "does not follow the edge of stick of this contact, which moves; step it by Sdirk".into(),
+    })
 }
 
 /// Largest of some errors of the wear depth, m, over the largest depth of the limit.

@@ -33,14 +33,14 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::data::{RunFile, SweepHeader};
+use crate::data::{RunFile, SweepHeader, Value};
 use crate::error::{Error, Result};
-use crate::report::{LimitReport, RunReport};
+use crate::run::readings::{self, ClosedForm};
 use crate::run::{Resumed, Run, Shared, Stop};
 use crate::scene::{Study, Task};
 use crate::study::batch::{Batch, End, Progress, check_valid};
 use folder::Folder;
-use rows::{Row, Schema};
+use rows::{SceneResult, Schema};
 
 /// Kept runs in memory after which a part is written.
 const MOST_RUNS: usize = 100;
@@ -190,18 +190,17 @@ impl<'a> Sweep<'a> {
     }
 
     /// What is stored of a scene.
-    fn row(&self, scene: u64, end: End<Computed>) -> Row {
-        let nothing = || (self.schema.results(None::<&RunReport>), None);
-        let (((texts, numbers), run), error) = match end {
-            Ok(computed) => (computed, None),
-            Err(error) => (nothing(), Some(error)),
+    fn row(&self, scene: u64, end: End<Computed>) -> SceneResult {
+        let (results, run, error) = match end {
+            Ok((results, run)) => (Some(results), run, None),
+            Err(error) => (None, None, Some(error)),
         };
-        Row { scene, inputs: self.study.inputs(scene), numbers, texts, run, error }
+        SceneResult { scene, inputs: self.study.inputs(scene), results, run, error }
     }
 
     fn limit(&self, scene: u64) -> Result<Computed> {
-        let report = LimitReport::new(&self.study.scene(scene)?, Some(&[]))?;
-        Ok((self.schema.results(Some(&report)), None))
+        let form = ClosedForm::new(&self.study.scene(scene)?)?;
+        Ok((readings::LIMIT.iter().map(|it| (it.of)(&form)).collect(), None))
     }
 
     /// None if it was stopped.
@@ -223,7 +222,7 @@ impl<'a> Sweep<'a> {
         if !results.is_complete() {
             return Ok(None);
         }
-        let columns = self.schema.results(Some(&RunReport::new(&results, &own)));
+        let columns = readings::RUN.iter().map(|it| (it.of)(&results)).collect();
         let kept = self.study.snapshots().contain(number).then(|| results.into_file());
         Ok(Some((columns, kept)))
     }
@@ -258,8 +257,8 @@ fn validate(study: &Study, scenes: impl ParallelIterator<Item = u64>, total: u64
     check_valid(&wrong, total)
 }
 
-/// Texts and numbers of a row, and its run where that is kept.
-type Computed = ((Vec<String>, Vec<f64>), Option<RunFile>);
+/// Results of a row, and its run where that is kept.
+type Computed = (Vec<Value>, Option<RunFile>);
 
 /// Takes rows from all threads and writes parts.
 struct Collector<'a> {
@@ -271,7 +270,7 @@ struct Collector<'a> {
 }
 
 struct Waiting {
-    rows: Vec<Row>,
+    rows: Vec<SceneResult>,
     /// How many of them have a run.
     runs: usize,
     saved: Instant,
@@ -286,7 +285,7 @@ impl<'a> Collector<'a> {
         Self { study, folder, schema, interval, waiting }
     }
 
-    fn add(&self, row: Row) -> Result<()> {
+    fn add(&self, row: SceneResult) -> Result<()> {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.done += 1;
         waiting.failed += u64::from(row.error.is_some());
@@ -303,7 +302,7 @@ impl<'a> Collector<'a> {
         self.write(rows)
     }
 
-    fn write(&self, rows: Vec<Row>) -> Result<()> {
+    fn write(&self, rows: Vec<SceneResult>) -> Result<()> {
         if rows.is_empty() {
             return Ok(());
         }

@@ -15,14 +15,14 @@ mod judge;
 mod measure;
 mod profile;
 mod reference;
-
-pub(crate) use files::OBJECT;
+mod report;
 
 pub use candidates::{Candidate, Choice, Ladders};
 pub use front::{cheapest, pareto_front};
-pub use judge::{Errors, Measured, Source, Worst};
+pub use judge::{Errors, Measured, ReferenceKind, Worst};
 pub use measure::{Cost, Measurement};
 pub use reference::Reference;
+pub use report::TradeoffReport;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -78,7 +78,7 @@ impl Default for Options {
 
 /// A candidate and what came of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct CandidateResult {
     /// The candidate.
     pub candidate: Candidate,
     /// What it cost, or why it was not run to its end.
@@ -93,7 +93,7 @@ pub struct Row {
     pub over_front: [Option<f64>; 4],
 }
 
-impl Row {
+impl CandidateResult {
     fn new(candidate: Candidate, measurement: Measurement, errors: Vec<Errors>) -> Self {
         let worst = Worst::of(&errors);
         Self { candidate, measurement, errors, worst, on_front: [false; 4], over_front: [None; 4] }
@@ -141,7 +141,7 @@ pub const FRONTS: [Front; 4] = [
 
 impl Front {
     /// Cost and error of a candidate; not numbers where it has none.
-    pub fn point(&self, row: &Row) -> (f64, f64) {
+    pub fn point(&self, row: &CandidateResult) -> (f64, f64) {
         match (row.measurement.cost(), &row.worst) {
             (Some(cost), Some(worst)) => ((self.cost)(cost), (self.error)(worst).value),
             _ => (f64::NAN, f64::NAN),
@@ -149,7 +149,7 @@ impl Front {
     }
 
     /// The error of a candidate.
-    pub fn error(&self, row: &Row) -> Option<Measured> {
+    pub fn error(&self, row: &CandidateResult) -> Option<Measured> {
         row.worst.as_ref().map(self.error)
     }
 }
@@ -160,7 +160,7 @@ pub struct Outcome {
     /// Title of the scene.
     pub title: Option<String>,
     /// One row for each candidate.
-    pub rows: Vec<Row>,
+    pub rows: Vec<CandidateResult>,
     /// What judged them.
     pub reference: Reference,
     /// Volume, m³, that errors of the volume are relative to: that of the limit, or of the end where there is no limit.
@@ -263,7 +263,7 @@ impl<'a> Tradeoff<'a> {
                 Some(_) => judge.errors(&runs.read(&name(number))?),
                 None => vec![],
             };
-            rows.push(Row::new(candidate, measurement, errors));
+            rows.push(CandidateResult::new(candidate, measurement, errors));
         }
         place_on_fronts(&mut rows);
         let mut outcome = Outcome {
@@ -363,9 +363,9 @@ fn too_dear(
 }
 
 /// Finds the fronts, and where the knob stands against them.
-fn place_on_fronts(rows: &mut [Row]) {
+fn place_on_fronts(rows: &mut [CandidateResult]) {
     for (number, front) in FRONTS.iter().enumerate() {
-        let by_hand = |row: &Row| match row.candidate.choice {
+        let by_hand = |row: &CandidateResult| match row.candidate.choice {
             Choice::Hand { .. } => front.point(row),
             Choice::Knob(_) => (f64::NAN, f64::NAN),
         };

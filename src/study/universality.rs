@@ -11,9 +11,11 @@
 
 mod files;
 mod judge;
+mod report;
 mod runs;
 
 pub use judge::{Judgement, Verdict};
+pub use report::UniversalityReport;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -38,7 +40,7 @@ pub struct Options {
 
 /// A case and what came of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct CaseResult {
     /// The case.
     pub case: Case,
     /// Where its run ended, or why it has no end.
@@ -49,7 +51,7 @@ pub struct Row {
     pub verdict: Verdict,
 }
 
-impl Row {
+impl CaseResult {
     /// Whether the verdict is the one that was predicted.
     pub fn agrees(&self) -> bool {
         self.verdict
@@ -57,6 +59,14 @@ impl Row {
                 Prediction::Within => Verdict::Obeys,
                 Prediction::Outside => Verdict::Violates,
             }
+    }
+
+    /// Why its run or the finer one failed.
+    pub fn error(&self) -> Option<&str> {
+        match (&self.end, &self.finer) {
+            (Err(why), _) | (_, Some(Err(why))) => Some(why),
+            _ => None,
+        }
     }
 
     /// Distance and worn volume of the finer run against those of the run itself: `(D' - D, V'/V - 1)`.
@@ -70,7 +80,7 @@ impl Row {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// One row for each case, in the order of the study.
-    pub rows: Vec<Row>,
+    pub rows: Vec<CaseResult>,
     /// The files written.
     pub files: Vec<PathBuf>,
     /// Wall time of this call, s.
@@ -147,8 +157,8 @@ fn rows(
     study: &UniversalityStudy,
     jobs: &[Job],
     ends: Vec<std::result::Result<Judgement, String>>,
-) -> Vec<Row> {
-    let mut rows: Vec<Row> = vec![];
+) -> Vec<CaseResult> {
+    let mut rows: Vec<CaseResult> = vec![];
     // The finer run of a case follows it.
     for (job, end) in jobs.iter().zip(ends) {
         if job.finer {
@@ -156,7 +166,7 @@ fn rows(
             continue;
         }
         let verdict = Verdict::new(&end, study.tolerances());
-        rows.push(Row { case: study.cases()[job.case].clone(), end, finer: None, verdict });
+        rows.push(CaseResult { case: study.cases()[job.case].clone(), end, finer: None, verdict });
     }
     rows
 }

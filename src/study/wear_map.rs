@@ -10,12 +10,14 @@ mod isolines;
 mod medium;
 mod optimum;
 mod profiles;
+mod report;
 
 pub use files::{check_folder, write};
 pub use isolines::{Isoline, isolines};
 pub use medium::Medium;
 pub use optimum::{Control, End, Optimum, OptimumCurve, Thresholds};
 pub use profiles::WornProfiles;
+pub use report::{MapReport, OptimumRow};
 
 use rayon::prelude::*;
 

@@ -31,6 +31,16 @@ impl Dimension {
     /// Radian.
     pub const ANGLE: Self = Self { angle: 1.0, ..Self::NUMBER };
 
+    /// Hertz.
+    pub const FREQUENCY: Self = Self::new(0.0, 0.0, -1.0);
+    /// W/m².
+    pub const POWER_PER_AREA: Self = Self::new(0.0, 1.0, -3.0);
+    /// m²/W.
+    pub const AREA_PER_POWER: Self = Self::new(0.0, -1.0, 3.0);
+    /// J/m².
+    pub const ENERGY_PER_AREA: Self = Self::new(0.0, 1.0, -2.0);
+
+    pub(crate) const POWER: Self = Self::new(2.0, 1.0, -3.0);
     pub(crate) const MASS: Self = Self::new(0.0, 1.0, 0.0);
     pub(crate) const ENERGY: Self = Self::new(2.0, 1.0, -2.0);
 
@@ -67,9 +77,26 @@ impl Dimension {
         }
     }
 
+    /// Its unit in SI in the spelling of UDUNITS; "1" where it depends on an exponent.
+    pub fn udunits(self) -> &'static str {
+        const UNITS: [(Dimension, &str); 10] = [
+            (Dimension::LENGTH, "m"),
+            (Dimension::TIME, "s"),
+            (Dimension::STIFFNESS, "N m-1"),
+            (Dimension::FORCE, "N"),
+            (Dimension::PRESSURE, "Pa"),
+            (Dimension::INVERSE_PRESSURE, "Pa-1"),
+            (Dimension::ANGLE, "rad"),
+            (Dimension::FREQUENCY, "Hz"),
+            (Dimension::POWER_PER_AREA, "W m-2"),
+            (Dimension::AREA_PER_POWER, "m2 W-1"),
+        ];
+        UNITS.iter().find(|(dimension, _)| dimension.is(self)).map_or("1", |(_, unit)| unit)
+    }
+
     /// What a user calls it, and an example.
     fn name(self) -> Option<(&'static str, &'static str)> {
-        const NAMES: [(Dimension, &str, &str); 12] = [
+        const NAMES: [(Dimension, &str, &str); 16] = [
             (Dimension::NUMBER, "a plain number", "0.6"),
             (Dimension::LENGTH, "a length", "5 mm"),
             (Dimension::TIME, "a time", "30 s"),
@@ -78,6 +105,10 @@ impl Dimension {
             (Dimension::PRESSURE, "a pressure", "210 GPa"),
             (Dimension::INVERSE_PRESSURE, "an inverse pressure", "1e-14 1/Pa"),
             (Dimension::ANGLE, "an angle", "80 deg"),
+            (Dimension::FREQUENCY, "a frequency", "10 Hz"),
+            (Dimension::POWER, "a power", "1 W"),
+            (Dimension::POWER_PER_AREA, "a power per area", "1 W/mm^2"),
+            (Dimension::AREA_PER_POWER, "an area per power", "11 mm^2/W"),
             (Dimension::MASS, "a mass", "1 kg"),
             (Dimension::ENERGY, "an energy", "1 J"),
             (Dimension::new(2.0, 0.0, 0.0), "an area", "1 mm^2"),

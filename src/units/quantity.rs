@@ -1,8 +1,9 @@
 //! Quantities with units: `"10 mm"`, `"210 GPa"`, `"1e-5 mm^3/(N m)"`, read exactly.
 //!
-//! The unit is a product or quotient of `m g s N Pa J rad` with the SI prefixes from f (femto) to T (tera), and of
+//! The unit is a product or quotient of `m g s N Pa J W Hz rad` with the SI prefixes from f (femto) to T (tera), and of
 //! `min h deg °` without. A space, `*` or `·` multiplies, `/` divides, `^` or a superscript raises to a decimal power or,
-//! in parentheses, to a fraction. What is divided by a product stands in parentheses.
+//! in parentheses, to a fraction; digits behind a symbol are a power too: `mm3`. What is divided by a product stands in parentheses, but for
+//! newtons times a length written as one word: `mm3/Nm`.
 
 use super::dimension::{Dimension, wanted};
 use super::unit::Unit;

@@ -57,13 +57,15 @@ impl Unit {
     }
 }
 
-const PREFIXED: [(&str, Unit); 7] = [
+const PREFIXED: [(&str, Unit); 9] = [
     ("m", Unit::decimal(Dimension::LENGTH, 0.0)),
     ("g", Unit::decimal(Dimension::MASS, -3.0)),
     ("s", Unit::decimal(Dimension::TIME, 0.0)),
     ("N", Unit::decimal(Dimension::FORCE, 0.0)),
     ("Pa", Unit::decimal(Dimension::PRESSURE, 0.0)),
     ("J", Unit::decimal(Dimension::ENERGY, 0.0)),
+    ("W", Unit::decimal(Dimension::POWER, 0.0)),
+    ("Hz", Unit::decimal(Dimension::FREQUENCY, 0.0)),
     ("rad", Unit::decimal(Dimension::ANGLE, 0.0)),
 ];
 
@@ -93,7 +95,16 @@ const PREFIXES: [(&str, f64); 15] = [
     ("T", 12.0),
 ];
 
+/// The unit of a symbol; newtons may stand before a length without a space: `Nm`, `N/Nmm`.
 fn lookup(symbol: &str) -> Option<Unit> {
+    single(symbol).or_else(|| {
+        let end = symbol.find('N')? + 1;
+        let (force, length) = (single(&symbol[..end])?, single(&symbol[end..])?);
+        (length.dimension == Dimension::LENGTH).then(|| force.times(length, 1.0))
+    })
+}
+
+fn single(symbol: &str) -> Option<Unit> {
     if let Some((_, unit)) = PLAIN.iter().find(|(name, _)| *name == symbol) {
         return Some(*unit);
     }
@@ -124,7 +135,7 @@ fn suggestion(symbol: &str) -> String {
     }
     alike.extend(PLAIN.iter().filter(|(name, _)| *name == folded).map(|(name, _)| name.to_string()));
     match alike.is_empty() {
-        true => "; known are m g s N Pa J rad with SI prefixes, min h deg".to_string(),
+        true => "; known are m g s N Pa J W Hz rad with SI prefixes, min h deg".to_string(),
         false => format!("; did you mean {}?", alike.join(" or ")),
     }
 }
@@ -169,7 +180,7 @@ impl Parser<'_> {
             }
             let divides = self.take("/");
             if !divides {
-                let _ = self.take("·") || self.take("*");
+                let _ = ["·", "\u{22c5}", "*"].into_iter().any(|sign| self.take(sign));
                 if divided {
                     return self.fail("after a division a product is ambiguous, write a/(b c)");
                 }
@@ -182,6 +193,7 @@ impl Parser<'_> {
 
     /// A symbol, `1` or a product in parentheses, with its power.
     fn factor(&mut self) -> Result<Unit, String> {
+        let symbol = self.rest.starts_with(char::is_alphabetic);
         let unit = if self.take("(") {
             let unit = self.product()?;
             if !self.take(")") {
@@ -205,16 +217,18 @@ impl Parser<'_> {
                 None => return self.fail(&format!("{symbol:?} is no known unit{}", suggestion(symbol))),
             }
         };
-        let power = self.power()?;
+        let power = self.power(symbol)?;
         Ok(Unit::ONE.times(unit, power))
     }
 
-    /// `^2`, `^-1`, `^2.2`, `^(1/3)` or a superscript; 1 without any.
-    fn power(&mut self) -> Result<f64, String> {
-        if !self.take("^") {
+    /// `^2`, `^-1`, `^2.2`, `^(1/3)`, a superscript, or digits that follow the symbol as in `mm3` and `s-1`; 1 without any.
+    fn power(&mut self, symbol: bool) -> Result<f64, String> {
+        let follows = symbol
+            && self.rest.strip_prefix('-').unwrap_or(self.rest).starts_with(|c: char| c.is_ascii_digit());
+        if !follows && !self.take("^") {
             return self.superscript();
         }
-        let parentheses = self.take("(");
+        let parentheses = !follows && self.take("(");
         let mut power = self.plain_number()?;
         if parentheses {
             if self.take("/") {

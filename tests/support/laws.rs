@@ -8,7 +8,7 @@ use fretwear::laws::loading::{Block, Mode};
 use fretwear::laws::wear::WearLaw;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Outcome, Plan, Simulation};
-use fretwear::solver::stepper::Implicit;
+use fretwear::solver::stepper::Sdirk;
 
 use super::{Case, distance};
 
@@ -112,7 +112,7 @@ pub struct Ending {
 pub fn end(case: &Case, conditions: &Conditions, end: End) -> Ending {
     let tolerance = 1e-4;
     let plan = Plan { outputs: vec![], end };
-    let stepper = Box::new(Implicit::new(tolerance));
+    let stepper = Box::new(Sdirk::new(tolerance));
     let mut simulation = Simulation::new(model(case, conditions, None), stepper, tolerance, plan).unwrap();
     let outcome = simulation.run(&mut []);
     let model = simulation.model();

@@ -95,7 +95,7 @@ pub struct Seen {
 
 fn depth_at_parts(simulation: &Simulation) -> Vec<f64> {
     let model = simulation.model();
-    let limit = model.unworn().limit_edge();
+    let limit = model.unworn().limit_slip_area();
     let near = (0..40).map(|i| 10f64.powf(-4.0 + 0.1 * f64::from(i)));
     let parts = near.chain((1..100).map(|i| 0.01 * f64::from(i)));
     parts.map(|part| model.wear_depth_at(simulation.state(), simulation.fields(), part * limit)).collect()

@@ -498,7 +498,7 @@ impl Draw {
             text += &format!("substeps = {}\n", self.scale(2.0, most) as usize);
         }
         if self.chance(0.05) {
-            text += &format!("wear_from = \"{}\"\n", self.one_of(&["shakedown", "first-cycle"]));
+            text += &format!("wear_from = \"{}\"\n", self.one_of(&["shakedown", "shakedown"]));
         }
         if self.chance(0.1) {
             text += "checkpoint_interval = \"1 h\"\n";

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::{Part, Section, Verdict};
-use crate::data::{LimitDistance, StoredArrays, SweepFile, Values};
+use crate::data::{Dataset, LimitDistance, SweepFile, Values, Variable};
 use crate::error::Result;
 use crate::figures::{Results, RunResults};
-use crate::report::{CheckReport, InfoReport, cells, number};
+use crate::report::{CheckReport, InfoReport, number};
 
 /// Rows of a sweep that a page shows.
 const MOST_ROWS: usize = 500;
@@ -36,21 +36,17 @@ fn titled(title: &str, otherwise: &str) -> String {
     if title.is_empty() { otherwise.into() } else { title.into() }
 }
 
-fn rows(table: &str) -> Part {
-    Part::Rows(cells(table).into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect())
-}
-
 fn of_run(results: &RunResults, path: &Path) -> Result<Content> {
     let check = CheckReport::derived(&results.scene)?;
     let info = InfoReport::new(path, &results.run);
-    let mut derived = vec![rows(&check.text())];
+    let mut derived = vec![Part::Rows(check.table().lines)];
     derived.extend(check.warnings.iter().map(|warning| Part::Sentence(format!("Note: {warning}."))));
     Ok(Content {
         title: titled(results.run.header.title.as_deref().unwrap_or_default(), "A run"),
         program_version: results.run.program_version.clone(),
         verdict: verdict(results),
         above: vec![
-            Section { heading: "Outcome", parts: vec![rows(&info.text())] },
+            Section { heading: "Outcome", parts: vec![Part::Rows(info.table().lines)] },
             Section { heading: "What follows from the scene", parts: derived },
         ],
         below: vec![Section { heading: "Scene", parts: vec![Part::Text(results.run.header.scene.clone())] }],
@@ -107,13 +103,13 @@ fn verdict(results: &RunResults) -> Verdict {
     Verdict { sentences, doubtful: missed || !run.complete }
 }
 
-fn of_map(file: &StoredArrays) -> Content {
-    let text = file.attribute("map").unwrap_or_default();
-    let exponent = file.attribute("indenter_exponent").unwrap_or("unknown");
+fn of_map(file: &Dataset) -> Content {
+    let text = file.text("map").unwrap_or_default();
+    let exponent = file.text("indenter_exponent").unwrap_or("unknown");
     let text = if text.is_empty() { "(the built-in comparison)" } else { text };
     Content {
-        title: titled(&file.title, "Worn volume of graded media"),
-        program_version: file.program_version.clone(),
+        title: titled(file.title(), "Worn volume of graded media"),
+        program_version: file.program_version().to_owned(),
         verdict: Verdict {
             sentences: vec![format!(
                 "Limits in closed form, for indenters f = A r^n with n = {exponent}; gradings are compared at the same indentation unless a \
@@ -130,26 +126,27 @@ fn of_map(file: &StoredArrays) -> Content {
 }
 
 /// Everything in a file of arrays.
-fn arrays(file: &StoredArrays) -> Section {
-    let row = |name: &str| {
-        let array = file.array(name).ok()?;
-        let shape: Vec<String> = array.shape.iter().map(usize::to_string).collect();
-        Some(vec![name.to_owned(), shape.join(" × "), array.units.clone(), array.long_name.clone()])
+fn arrays(file: &Dataset) -> Section {
+    let row = |it: &Variable| {
+        let shape: Vec<String> = it.shape.iter().map(usize::to_string).collect();
+        vec![it.name.clone(), shape.join(" × "), it.units.clone(), it.long_name.clone()]
     };
+    let mut numbers: Vec<&Variable> = file.variables.iter().filter(|it| it.is_numeric()).collect();
+    numbers.sort_by_key(|it| &it.name);
     let head = ["dataset", "shape", "unit", "meaning"].map(str::to_owned);
-    let table = Part::Table(head.to_vec(), file.names().filter_map(row).collect());
+    let table = Part::Table(head.to_vec(), numbers.into_iter().map(row).collect());
     Section { heading: "Numbers in the file", parts: vec![table] }
 }
 
-fn of_universality(file: &StoredArrays) -> Result<Content> {
-    let count = file.coordinate("case")?.len();
+fn of_universality(file: &Dataset) -> Result<Content> {
+    let count = file.along("case")?.len();
     let [names, predicted, verdicts] = CASE_COLUMNS.map(|name| file.words(name, count));
     let (names, predicted, verdicts) = (names?, predicted?, verdicts?);
     let [agrees, distance, volume, tau] = ["agrees", "distance", "wear_volume_ratio", "tau"]
         .map(|name| file.numbers(name, &[count]).map(|values| move |case: usize| values[case]));
     let (agrees, distance, volume, tau) = (agrees?, distance?, volume?, tau?);
     let row = |case: usize| {
-        let words = [names, predicted, verdicts].map(|words| words[case].clone());
+        let words = [names, predicted, verdicts].map(|words| words.get(case).to_owned());
         let numbers = [distance(case), volume(case), tau(case)].map(number);
         words.into_iter().chain(numbers).collect()
     };
@@ -157,11 +154,11 @@ fn of_universality(file: &StoredArrays) -> Result<Content> {
     let head =
         ["case", "predicted", "verdict", "distance", "volume over the limit's", "τ"].map(str::to_owned);
     let cases = Part::Table(head.to_vec(), (0..count).map(row).collect());
-    let text = file.attribute("study").unwrap_or_default().to_owned();
+    let text = file.text("study").unwrap_or_default().to_owned();
     let obeying = verdicts.iter().filter(|verdict| *verdict == "obeys").count();
     Ok(Content {
-        title: titled(&file.title, "One limit"),
-        program_version: file.program_version.clone(),
+        title: titled(file.title(), "One limit"),
+        program_version: file.program_version().to_owned(),
         verdict: Verdict {
             sentences: vec![
                 format!("{agreeing} of {count} cases came out as predicted."),
@@ -177,9 +174,9 @@ fn of_universality(file: &StoredArrays) -> Result<Content> {
     })
 }
 
-fn of_tradeoff(file: &StoredArrays) -> Content {
-    let said = |name: &str| file.attribute(name).unwrap_or("unknown").to_owned();
-    let scene = file.attribute("scene").unwrap_or_default().to_owned();
+fn of_tradeoff(file: &Dataset) -> Content {
+    let said = |name: &str| file.text(name).unwrap_or("unknown").to_owned();
+    let scene = file.text("scene").unwrap_or_default().to_owned();
     let references = [
         ("springs of the references", "reference_springs"),
         ("their tolerances", "reference_tolerance"),
@@ -187,8 +184,8 @@ fn of_tradeoff(file: &StoredArrays) -> Content {
     ];
     let references = references.map(|(meaning, name)| (meaning.to_owned(), said(name))).to_vec();
     Content {
-        title: titled(&file.title, "A trade-off"),
-        program_version: file.program_version.clone(),
+        title: titled(file.title(), "A trade-off"),
+        program_version: file.program_version().to_owned(),
         verdict: Verdict {
             sentences: vec![
                 "Measured error against cost; wall times are those of the computer that ran it.".into(),
@@ -218,6 +215,7 @@ fn of_sweep(file: &SweepFile) -> Content {
     let cell = |values: &Values, row: usize| match values {
         Values::Numbers(values) => number(values[row]),
         Values::Texts(words) => words.get(row).to_owned(),
+        _ => String::new(),
     };
     let row = |row: usize| {
         let cells = file.columns.iter().map(|column| cell(&column.values, row));

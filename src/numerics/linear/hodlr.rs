@@ -83,7 +83,7 @@ pub struct OffDiagonal<T> {
 
 /// What a leaf has of `U` and `V` of a split that it is in.
 #[derive(Debug)]
-pub struct Sides<'a, T> {
+pub struct LeafColumns<'a, T> {
     /// The split.
     pub split: usize,
     /// Whether the leaf is in its first half.
@@ -105,7 +105,7 @@ impl<T: RealField + Copy> OffDiagonal<T> {
         halves: &Halves,
         terms: Vec<[usize; 2]>,
         memory: Option<Self>,
-        fill: impl Fn(Range<usize>, Sides<'_, T>) + Sync,
+        fill: impl Fn(Range<usize>, LeafColumns<'_, T>) + Sync,
     ) -> Self {
         let levels = halves.above.iter().map(Vec::len).max().unwrap_or(0);
         let mut columns = vec![0; levels + 1];
@@ -127,7 +127,7 @@ impl<T: RealField + Copy> OffDiagonal<T> {
         blocks
     }
 
-    fn fill(&mut self, halves: &Halves, fill: impl Fn(Range<usize>, Sides<'_, T>) + Sync) {
+    fn fill(&mut self, halves: &Halves, fill: impl Fn(Range<usize>, LeafColumns<'_, T>) + Sync) {
         let (n, width) = self.shape();
         let (terms, columns) = (&self.terms, &self.columns);
         let size = halves.leaves.first().map_or(1, Range::len);
@@ -144,7 +144,7 @@ impl<T: RealField + Copy> OffDiagonal<T> {
                 let [of_left, of_right] = if is_first { [upper, lower] } else { [lower, upper] };
                 let left = left.as_mut().subcols_mut(columns[level], of_left);
                 let right = right.as_mut().subcols_mut(columns[level], of_right);
-                fill(leaf.clone(), Sides { split, is_first, left, right });
+                fill(leaf.clone(), LeafColumns { split, is_first, left, right });
             }
         });
     }
@@ -161,11 +161,11 @@ pub struct HodlrFactors<T> {
 #[derive(Debug)]
 enum Node<T> {
     Leaf(Factors<T>),
-    Split(Box<Joint<T>>),
+    Split(Box<Coupling<T>>),
 }
 
 #[derive(Debug)]
-struct Joint<T> {
+struct Coupling<T> {
     middle: usize,
     /// First column of its level.
     first: usize,
@@ -266,12 +266,12 @@ impl<T: RealField + Copy> Part<'_, T> {
             let own = given.as_ref().submatrix(row, first, rows, columns);
             small.as_mut().submatrix_mut(row, column, rows, columns).copy_from(own);
         }
-        let joint = Joint { middle, first, terms, halves: halves.into(), small: Factors::new(small) };
+        let coupling = Coupling { middle, first, terms, halves: halves.into(), small: Factors::new(small) };
         let ((above_top, own_top), (above_bottom, own_bottom)) =
             (top.split_at_col_mut(first), bottom.split_at_col_mut(first));
         let own = [own_top.as_ref().subcols(0, upper), own_bottom.as_ref().subcols(0, lower)];
-        joint.take(own, given.as_mut().subcols_mut(0, first), [above_top, above_bottom]);
-        Node::Split(Box::new(joint))
+        coupling.take(own, given.as_mut().subcols_mut(0, first), [above_top, above_bottom]);
+        Node::Split(Box::new(coupling))
     }
 }
 
@@ -287,7 +287,7 @@ fn give<T: RealField + Copy>(right: [MatRef<'_, T>; 2], solutions: [MatRef<'_, T
     given
 }
 
-impl<T: RealField + Copy> Joint<T> {
+impl<T: RealField + Copy> Coupling<T> {
     /// Takes from the solutions of each half for itself what the other gives to it.
     ///
     /// # Arguments
@@ -306,12 +306,12 @@ impl<T: RealField + Copy> Node<T> {
     fn solve(&self, left: MatRef<'_, T>, right: MatRef<'_, T>, rhs: MatMut<'_, T>) {
         match self {
             Self::Leaf(factors) => factors.solve_columns(rhs),
-            Self::Split(joint) => {
-                let Joint { middle, first, terms: [upper, lower], .. } = **joint;
+            Self::Split(coupling) => {
+                let Coupling { middle, first, terms: [upper, lower], .. } = **coupling;
                 let (left_top, left_bottom) = left.split_at_row(middle);
                 let (right_top, right_bottom) = right.split_at_row(middle);
                 let (mut top, mut bottom) = rhs.split_at_row_mut(middle);
-                let halves = &joint.halves;
+                let halves = &coupling.halves;
                 rayon::join(
                     || halves[0].solve(left_top, right_top, top.as_mut()),
                     || halves[1].solve(left_bottom, right_bottom, bottom.as_mut()),
@@ -319,7 +319,7 @@ impl<T: RealField + Copy> Node<T> {
                 let right = [right_top.subcols(first, lower), right_bottom.subcols(first, upper)];
                 let mut given = give(right, [top.as_ref(), bottom.as_ref()]);
                 let left = [left_top.subcols(first, upper), left_bottom.subcols(first, lower)];
-                joint.take(left, given.as_mut(), [top, bottom]);
+                coupling.take(left, given.as_mut(), [top, bottom]);
             }
         }
     }
@@ -327,7 +327,9 @@ impl<T: RealField + Copy> Node<T> {
     fn bytes(&self) -> usize {
         match self {
             Self::Leaf(factors) => factors.bytes(),
-            Self::Split(joint) => joint.small.bytes() + joint.halves.iter().map(Node::bytes).sum::<usize>(),
+            Self::Split(coupling) => {
+                coupling.small.bytes() + coupling.halves.iter().map(Node::bytes).sum::<usize>()
+            }
         }
     }
 }

@@ -1,38 +1,31 @@
 //! The tables of a study: axes, samples and what is kept.
 
-use std::collections::HashSet;
 use std::path::PathBuf;
 
 use toml::{Table, Value};
 
-use super::{Axis, KeptSnapshots, MOST_SCENES, Sampling, Study, Task, Variable, with_unit};
+use super::{Axis, KeptSnapshots, Sampling, Study, Task, Variable, with_unit};
 use crate::error::Result;
-use crate::scene::document::{Entry, Section, nearest};
+use crate::scene::document::{Entry, Section};
+use crate::scene::keys::{self, MOST_SCENES};
 use crate::scene::sampling::{Distribution, Method, UnitCube};
-use crate::scene::schema;
-use crate::scene::sections;
 use crate::scene::spacing::Spacing;
-use crate::units::Unit;
-use crate::units::{Dimension, split_number};
+use crate::units::{Dimension, Unit, split_number};
 
 /// Reads the document of a study; the base scene is added by whoever calls.
 pub(super) fn read(root: &Section) -> Result<Study> {
-    root.only(&["title", "scene", "task", "axes", "sampling", "output"], &[])?;
-    let title = root.optional("title").map(|entry| sections::title(&entry)).transpose()?;
-    let task = match root.optional("task") {
-        Some(entry) => Task::ALL[entry.word(&Task::ALL.map(Task::name))?],
-        None => Task::default(),
-    };
-    const MOST_AXES: usize = 100;
-    let mut keys = Keys::default();
+    root.check(&keys::STUDY)?;
+    let title = root.read_optional(&keys::TITLE)?;
+    let task = Task::ALL[root.read::<usize>(&keys::TASK)?];
+    let mut taken = Taken::default();
     let mut axes = vec![];
     if let Some(entry) = root.optional("axes") {
-        for entry in entry.array(MOST_AXES)? {
-            axes.push(axis(&entry.section()?, &mut keys)?);
+        for entry in entry.array(100)? {
+            axes.push(axis(&entry.section()?, &mut taken)?);
         }
     }
     let sampling = match root.optional("sampling") {
-        Some(entry) => Some(sampling(&entry.section()?, &mut keys)?),
+        Some(entry) => Some(sampling(&entry.section()?, &mut taken)?),
         None => None,
     };
     let lengths = axes.iter().map(|axis| axis.rows.len() as u64).chain(sampling.as_ref().map(|it| it.count));
@@ -48,7 +41,7 @@ pub(super) fn read(root: &Section) -> Result<Study> {
     let mut snapshots = KeptSnapshots::None;
     if let Some(entry) = root.optional("output") {
         let section = entry.section()?;
-        section.only(&["snapshots"], &[])?;
+        section.check(&keys::KEPT)?;
         if let Some(entry) = section.optional("snapshots") {
             snapshots = kept_snapshots(&entry, count)?;
         }
@@ -71,7 +64,8 @@ pub(super) fn read(root: &Section) -> Result<Study> {
 fn kept_snapshots(entry: &Entry, count: u64) -> Result<KeptSnapshots> {
     if entry.is_array() {
         let last = (count - 1) as usize;
-        let scenes = entry.array(100_000)?.iter().map(|it| it.whole(0..=last)).collect::<Result<Vec<_>>>()?;
+        let scenes =
+            entry.array(keys::MOST_KEPT)?.iter().map(|it| it.whole(0..=last)).collect::<Result<Vec<_>>>()?;
         let mut scenes: Vec<u64> = scenes.into_iter().map(|it| it as u64).collect();
         scenes.sort_unstable();
         scenes.dedup();
@@ -82,38 +76,34 @@ fn kept_snapshots(entry: &Entry, count: u64) -> Result<KeptSnapshots> {
 
 /// The keys that vary, each once.
 #[derive(Default)]
-struct Keys(HashSet<String>);
+struct Taken(Vec<String>);
 
-impl Keys {
+impl Taken {
     /// A dotted key of the scene.
     fn take(&mut self, entry: &Entry) -> Result<String> {
         let key = entry.string()?;
-        let bare = |part: &str| {
-            !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'))
-        };
-        if !(key.split('.').all(bare) && key.contains('.') && key.len() < 200) {
-            return Err(entry.error("is not a key of a scene, such as \"friction.coulomb.coefficient\""));
+        if let Err(cure) = keys::find(key) {
+            return Err(entry.error(format_args!("is not a key of a scene; {cure}")));
         }
-        let known = schema::keys_of_scene();
-        if !known.iter().any(|it| it == key) {
-            let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            return Err(entry.error(format_args!("is not a key of a scene; {}", nearest(key, &known))));
-        }
-        match self.0.insert(key.into()) {
-            true => Ok(key.into()),
-            false => Err(entry.error("is varied twice; name it in one axis only")),
+        match self.0.iter().find(|other| *other == key || keys::exclude(other, key)) {
+            Some(other) if other == key => Err(entry.error("is varied twice; name it in one axis only")),
+            Some(other) => {
+                Err(entry.error(format_args!("and {other} exclude each other; vary one of the two")))
+            }
+            None => {
+                self.0.push(key.into());
+                Ok(key.into())
+            }
         }
     }
 }
 
 const MOST_ROWS: usize = MOST_SCENES as usize;
 
-fn axis(section: &Section, taken: &mut Keys) -> Result<Axis> {
-    section.only(&["key", "keys", "values", "rows", "from", "to", "count", "spacing"], &[])?;
+fn axis(section: &Section, taken: &mut Taken) -> Result<Axis> {
+    section.check(&keys::AXIS)?;
     if let Some(entry) = section.optional("keys") {
-        section.only(&["keys", "rows"], &[])?;
         let keys = entry.array(100)?.iter().map(|it| taken.take(it)).collect::<Result<Vec<_>>>()?;
-        let rows = section.required("rows", "one list of values for each scene along the axis")?;
         let width = keys.len();
         let row = |row: &Entry| -> Result<Vec<Value>> {
             let values = row.array(width)?.iter().map(value).collect::<Result<Vec<_>>>()?;
@@ -122,24 +112,21 @@ fn axis(section: &Section, taken: &mut Keys) -> Result<Axis> {
                 false => Err(row.error(format_args!("has {} values for {width} keys", values.len()))),
             }
         };
-        let rows = not_empty(&rows)?.iter().map(row).collect::<Result<_>>()?;
-        return Ok(Axis { keys, rows });
+        let rows = not_empty(&section.required_key(&keys::ROWS)?)?;
+        return Ok(Axis { keys, rows: rows.iter().map(row).collect::<Result<_>>()? });
     }
-    let keys = vec![taken.take(&section.required("key", "for example \"friction.coulomb.coefficient\"")?)?];
+    let keys = vec![taken.take(&section.required_key(&keys::KEY)?)?];
     if let Some(entry) = section.optional("values") {
-        section.only(&["key", "values"], &[])?;
         let rows = not_empty(&entry)?.iter().map(|it| Ok(vec![value(it)?])).collect::<Result<_>>()?;
         return Ok(Axis { keys, rows });
     }
-    let cure = "an axis has values = [...], or from, to and count";
-    let (from, to) = (section.required("from", cure)?, section.required("to", cure)?);
+    let (from, to) = (section.required_key(&keys::FROM)?, section.required_key(&keys::TO)?);
     let ((low, unit), (high, other)) = (magnitude(&from)?, magnitude(&to)?);
     if unit != other {
         return Err(to.error(format_args!("has not the unit of {}, {unit:?}", from.path())));
     }
-    let count = section.required("count", cure)?.whole(2..=MOST_ROWS)?;
-    let spacing = section.optional("spacing").map_or(Ok(0), |entry| entry.word(&Spacing::WORDS))?;
-    let spacing = Spacing::of_word(spacing);
+    let count = section.read(&keys::COUNT)?;
+    let spacing = Spacing::ALL[section.read::<usize>(&keys::SPACING)?];
     if spacing == Spacing::Geometric && !(low > 0.0 && high > 0.0) {
         return Err(from.error(format_args!("and {} must be above zero for geometric spacing", to.path())));
     }
@@ -178,16 +165,12 @@ fn magnitude(entry: &Entry) -> Result<(f64, String)> {
     }
 }
 
-fn sampling(section: &Section, taken: &mut Keys) -> Result<Sampling> {
-    section.only(&["method", "count", "seed", "variables"], &[])?;
-    let entry = section.required("count", "the number of samples")?;
-    let count = entry.whole(1..=MOST_SCENES as usize)? as u64;
-    let method = match section.optional("method") {
-        Some(entry) => Method::ALL[entry.word(&Method::ALL.map(Method::name))?],
-        None => Method::Sobol,
-    };
-    let seed = section.optional("seed").map_or(Ok(0), |entry| entry.whole(0..=usize::MAX))? as u64;
-    let entry = section.required("variables", "a list of tables with key and distribution")?;
+fn sampling(section: &Section, taken: &mut Taken) -> Result<Sampling> {
+    section.check(&keys::SAMPLING)?;
+    let count = section.read::<usize>(&keys::SAMPLES)? as u64;
+    let method = Method::ALL[section.read::<usize>(&keys::METHOD)?];
+    let seed = section.read::<usize>(&keys::SEED)? as u64;
+    let entry = section.required_key(&keys::VARIABLES)?;
     let entries = entry.array(UnitCube::MOST_VARIABLES)?;
     if entries.is_empty() {
         return Err(entry.error("is empty; give at least one variable"));
@@ -196,17 +179,12 @@ fn sampling(section: &Section, taken: &mut Keys) -> Result<Sampling> {
     Ok(Sampling { count, cube: UnitCube::new(method, count, variables.len(), seed), variables })
 }
 
-fn variable(section: &Section, taken: &mut Keys) -> Result<Variable> {
-    const KINDS: [&str; 4] = ["uniform", "log-uniform", "normal", "log-normal"];
-    let entry = section.required("distribution", "uniform, log-uniform, normal or log-normal")?;
-    let kind = entry.word(&KINDS)?;
-    let parameters: [&str; 2] =
-        [["from", "to"], ["from", "to"], ["mean", "deviation"], ["median", "factor"]][kind];
-    let bounds: &[&str] = if kind < 2 { &[] } else { &["minimum", "maximum"] };
-    section.only(&[&["key", "distribution"], &parameters[..], bounds].concat(), &[])?;
-    let key = taken.take(&section.required("key", "for example \"wear.archard.coefficient\"")?)?;
-    let cure = format!("a {} distribution has {} and {}", KINDS[kind], parameters[0], parameters[1]);
-    let (first, second) = (section.required(parameters[0], &cure)?, section.required(parameters[1], &cure)?);
+fn variable(section: &Section, taken: &mut Taken) -> Result<Variable> {
+    section.check(&keys::VARIABLE)?;
+    let kind = section.read::<usize>(&keys::DISTRIBUTION)?;
+    let parameters = keys::DISTRIBUTIONS[kind].1.needs;
+    let key = taken.take(&section.required_key(&keys::KEY)?)?;
+    let [first, second] = [section.required(parameters[0], "")?, section.required(parameters[1], "")?];
     let (one, unit) = magnitude(&first)?;
     let same_unit = |entry: &Entry| -> Result<f64> {
         let (number, other) = magnitude(entry)?;
@@ -220,7 +198,7 @@ fn variable(section: &Section, taken: &mut Keys) -> Result<Variable> {
         false => Err(entry.error("must be above zero")),
     };
     let mut limits = [f64::NEG_INFINITY, f64::INFINITY];
-    for (limit, name) in limits.iter_mut().zip(bounds) {
+    for (limit, name) in limits.iter_mut().zip(["minimum", "maximum"]) {
         if let Some(entry) = section.optional(name) {
             *limit = same_unit(&entry)?;
         }
@@ -244,7 +222,7 @@ fn variable(section: &Section, taken: &mut Keys) -> Result<Variable> {
             Distribution::Normal { mean: one, deviation: positive(&second, deviation)?, bounds: limits }
         }
         _ => {
-            let factor = second.quantity_in(Dimension::NUMBER, "(1, inf)", |factor| factor > 1.0)?;
+            let factor = section.read(&keys::FACTOR)?;
             limits[0] = limits[0].max(0.0);
             Distribution::LogNormal { median: positive(&first, one)?, factor, bounds: limits }
         }

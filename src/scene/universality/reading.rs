@@ -10,15 +10,12 @@ use super::cover::{combinations, covering_design};
 use super::{Case, FACTORS, MOST_COMBINATIONS, Prediction, Tolerances};
 use crate::error::{Error, Result};
 use crate::scene::document::{Entry, Section, Source};
+use crate::scene::keys;
 use crate::scene::patch::{self, Patch};
-use crate::scene::sections;
-use crate::units::Dimension;
+use crate::scene::reading::Read;
 
 /// Tables of the levels of each factor, in the order of [`FACTORS`].
 const TABLES: [&str; 4] = ["media", "wear", "friction", "modes"];
-
-/// Most levels of a factor, single cases and pairs left out.
-pub(in crate::scene) const MOST_ENTRIES: usize = 10_000;
 
 /// What the document says, before the base scene is there.
 pub(super) struct Plan {
@@ -58,25 +55,22 @@ struct Single {
 }
 
 pub(super) fn read(root: &Section, values: &Table) -> Result<Plan> {
-    let known = ["title", "scene", "tolerances", "cover", "without", "cases"];
-    root.only(&[&known[..], &TABLES[..]].concat(), &[])?;
-    let title = root.optional("title").map(|entry| sections::title(&entry)).transpose()?;
+    root.check(&keys::UNIVERSALITY)?;
+    let title = root.read_optional(&keys::TITLE)?;
     let scene = root.required("scene", "give the base scene as a table, or the name of its file")?;
     let base = match values.get("scene") {
         Some(Value::Table(table)) => Base::Table(table.clone()),
         _ => Base::File(scene.string()?.into()),
     };
-    let tolerances = match root.optional("tolerances") {
-        Some(entry) => tolerances(&entry.section()?)?,
-        None => Tolerances::default(),
-    };
-    let full = root.optional("cover").map_or(Ok(0), |entry| entry.word(&["pairs", "full"]))? == 1;
+    let tolerances =
+        root.optional(keys::TOLERANCES.name).map(|entry| tolerances(&entry.section()?)).transpose()?;
+    let full = root.read::<usize>(&keys::COVER)? == 1;
 
     let mut names = HashSet::new();
     let mut factors: [Vec<Level>; 4] = Default::default();
     for (levels, table) in factors.iter_mut().zip(TABLES) {
         for (section, values) in entries(root, values, table)? {
-            section.only(&["name", "patch", "tau"], &[])?;
+            section.check(&keys::LEVEL_OF_FACTOR)?;
             levels.push(level(&section, values, &mut names)?);
         }
     }
@@ -89,37 +83,29 @@ pub(super) fn read(root: &Section, values: &Table) -> Result<Plan> {
     }
     let mut singles = vec![];
     for (section, values) in entries(root, values, "cases")? {
-        section.only(&["name", "patch", "tau", "predicted", "reason", "finer"], &[])?;
-        let cure = "within or outside the tolerance of the limit?";
-        let predicted = section.required("predicted", cure)?.word(&Prediction::ALL.map(Prediction::name))?;
-        let reason = section.optional("reason").map(|entry| sections::title(&entry)).transpose()?;
-        let finer = section.optional("finer").map_or(Ok(false), |entry| match entry.literal()? {
-            Value::Boolean(finer) => Ok(finer),
-            _ => Err(entry.error("is neither true nor false")),
-        })?;
+        section.check(&keys::CASE)?;
+        let predicted = Prediction::ALL[section.read::<usize>(&keys::PREDICTED)?];
+        let reason = section.read_optional(&keys::REASON)?;
+        let finer = section.read(&keys::FINER)?;
         let level = level(&section, values, &mut names)?;
-        singles.push(Single { level, predicted: Prediction::ALL[predicted], reason, finer });
+        singles.push(Single { level, predicted, reason, finer });
     }
     let mut without = vec![];
     for (section, _) in entries(root, values, "without")? {
-        section.only(&["levels", "reason"], &[])?;
-        section.optional("reason").map(|entry| sections::title(&entry)).transpose()?;
-        without.push(pair(&section.required("levels", "the names of two levels")?, &factors)?);
+        section.check(&keys::WITHOUT)?;
+        section.read_optional::<String>(&keys::REASON)?;
+        without.push(pair(&section.required_key(&keys::PAIR)?, &factors)?);
     }
     if factors.iter().all(Vec::is_empty) && singles.is_empty() {
         return Err(root.error("has no case; give levels of factors, or [[cases]]"));
     }
+    let tolerances = tolerances.unwrap_or_default();
     Ok(Plan { title, tolerances, base, full, factors, without, singles })
 }
 
 fn tolerances(section: &Section) -> Result<Tolerances> {
-    section.only(&["within", "outside"], &[])?;
-    let mut found = Tolerances::default();
-    for (value, key) in [(&mut found.within, "within"), (&mut found.outside, "outside")] {
-        if let Some(entry) = section.optional(key) {
-            *value = entry.positive(Dimension::NUMBER)?;
-        }
-    }
+    section.check(&keys::TOLERANCES)?;
+    let found = Tolerances { within: section.read(&keys::WITHIN)?, outside: section.read(&keys::OUTSIDE)? };
     match found.within < found.outside {
         true => Ok(found),
         false => Err(section.error(format_args!(
@@ -132,14 +118,14 @@ fn tolerances(section: &Section) -> Result<Tolerances> {
 /// The tables of an array, with and without their places.
 fn entries<'a>(root: &Section<'a>, values: &'a Table, name: &str) -> Result<Vec<(Section<'a>, &'a Table)>> {
     let Some(entry) = root.optional(name) else { return Ok(vec![]) };
-    let sections = entry.array(MOST_ENTRIES)?.iter().map(Entry::section).collect::<Result<Vec<_>>>()?;
+    let sections = entry.array(keys::MOST_ENTRIES)?.iter().map(Entry::section).collect::<Result<Vec<_>>>()?;
     let tables = values.get(name).and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_table);
     Ok(sections.into_iter().zip(tables).collect())
 }
 
 fn level(section: &Section, values: &Table, names: &mut HashSet<String>) -> Result<Level> {
-    let entry = section.required("name", "each level and each case has one")?;
-    let name = sections::title(&entry)?;
+    let entry = section.required_key(&keys::NAME)?;
+    let name = String::read(&entry, &keys::NAME)?;
     if name.trim() != name || name.is_empty() {
         return Err(entry.error("is empty, or begins or ends with a space"));
     }
@@ -153,7 +139,7 @@ fn level(section: &Section, values: &Table, names: &mut HashSet<String>) -> Resu
     if let Some([one, two]) = patch.conflict(&patch) {
         return Err(section.error(format_args!("{name}: {one} and {two} exclude each other")));
     }
-    let tau = section.optional("tau").map(|entry| entry.positive(Dimension::NUMBER)).transpose()?;
+    let tau = section.read_optional(&keys::LASTS)?;
     Ok(Level { name, place: entry.place(), patch, tau })
 }
 
@@ -169,6 +155,14 @@ fn pair(entry: &Entry, factors: &[Vec<Level>; 4]) -> Result<[String; 2]> {
     match &found[..] {
         [(one, first), (two, second)] if one != two => Ok([first.clone(), second.clone()]),
         _ => Err(entry.error("is not two levels of different factors")),
+    }
+}
+
+/// Those of a study that says nothing of them.
+impl Default for Tolerances {
+    fn default() -> Self {
+        let read = |key| f64::default_of(key).expect("both have a default");
+        Self { within: read(&keys::WITHIN), outside: read(&keys::OUTSIDE) }
     }
 }
 

@@ -7,7 +7,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
 use super::motion::{Energies, Motion};
-use super::schedule::{Demand, Drive};
+use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
 use crate::laws::friction::{Coulomb, FrictionLaw};
 use crate::laws::wear::{Archard, WearLaw};
@@ -61,7 +61,7 @@ pub struct PlainSlopes {
     /// By `P` of the compressions.
     pub by_pressure: f64,
     /// By the edge, 1/m², shape `(springs,)`.
-    pub by_edge: Vec<f64>,
+    pub by_slip_area: Vec<f64>,
 }
 
 /// Wear of the surface, from pressures and paths of slip: shape `(springs, steps)` each, one column of pressures if they are all the same.
@@ -86,30 +86,30 @@ struct Surface {
 
 impl Model {
     /// What a cycle does to the contact whose fields are given.
-    pub fn cycle(&self, drive: &Drive, compression: &[f64], fields: &Fields) -> CycleFields {
-        if let Some(cycle) = self.plain_cycle(drive, compression, fields) {
+    pub fn cycle(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> CycleFields {
+        if let Some(cycle) = self.plain_cycle(loading, compression, fields) {
             return cycle;
         }
-        let motion = self.motion(drive, compression, fields, false);
-        let surface = self.surface(drive, &motion, compression, fields);
-        let worn = self.worn(&drive.wear, &surface, false);
-        let per_cycle = drive.cycles_per_period.recip();
+        let motion = self.motion(loading, compression, fields, false);
+        let surface = self.surface(loading, &motion, compression, fields);
+        let worn = self.worn(&loading.wear, &surface, false);
+        let per_cycle = loading.cycles_per_period.recip();
         let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
         let energy = |part: fn(&Energies) -> f64| {
             per_cycle * self.spring_energy(fields, motion.energies.iter().map(part))
         };
         let dissipation = energy(|spring| spring.dissipation);
         // Where slip turns, that of neighbouring springs does not add up on the surface, while its energy does.
-        let volume = match self.volume_per_energy(drive).filter(|_| motion.components == 1) {
+        let volume = match self.volume_per_energy(loading).filter(|_| motion.components == 1) {
             Some(factor) => factor * dissipation,
             None => {
                 // Round-off about zero must not make up for what still wears elsewhere.
                 let worn: Vec<f64> = worn.depth.iter().map(|depth| depth.abs()).collect();
-                per_cycle * self.volume(fields.edge, &worn)
+                per_cycle * self.volume(fields.slip_area, &worn)
             }
         };
         CycleFields {
-            growth: growth(drive, &worn, fields),
+            growth: growth(loading, &worn, fields),
             slip: slip.collect(),
             dissipation,
             jump_loss: energy(|spring| spring.jump_loss),
@@ -121,10 +121,15 @@ impl Model {
     }
 
     /// The cycle in which slip on the surface is `μ_f/M` times the slip depth and wear is in proportion to pressure and slip.
-    fn plain_cycle(&self, drive: &Drive, compression: &[f64], fields: &Fields) -> Option<CycleFields> {
-        let factor = self.slip_per_depth(drive, fields)?;
-        let per_pressure = 4.0 * factor * self.archard(drive)?;
-        let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
+    fn plain_cycle(
+        &self,
+        loading: &CycleLoading,
+        compression: &[f64],
+        fields: &Fields,
+    ) -> Option<CycleFields> {
+        let factor = self.slip_per_depth(loading, fields)?;
+        let per_pressure = 4.0 * factor * self.archard(loading)?;
+        let FrictionLaw::Coulomb(Coulomb { coefficient }) = loading.friction else { return None };
         let changed = coefficient / self.contact.friction().coefficient;
         let dissipation = changed * changed * self.dissipation(fields, compression);
         Some(CycleFields {
@@ -133,25 +138,28 @@ impl Model {
             dissipation,
             jump_loss: 0.0,
             work: dissipation,
-            volume: self.volume_per_energy(drive)? * dissipation,
-            amplitude: drive.amplitude,
-            stick_radius: fields.place.stick_area.sqrt(),
+            volume: self.volume_per_energy(loading)? * dissipation,
+            amplitude: loading.amplitude,
+            stick_radius: fields.stick_zone.stick_area.sqrt(),
         })
     }
 
     /// Slip over slip depth, `μ_f/M`, if the amplitude is that for which the mesh was made and the law is Coulomb's.
-    pub(super) fn slip_per_depth(&self, drive: &Drive, fields: &Fields) -> Option<f64> {
-        let FrictionLaw::Coulomb(Coulomb { coefficient }) = drive.friction else { return None };
+    pub(super) fn slip_per_depth(&self, loading: &CycleLoading, fields: &Fields) -> Option<f64> {
+        let FrictionLaw::Coulomb(Coulomb { coefficient }) = loading.friction else { return None };
         let ratio = self.contact.half_space().stiffness_ratio();
-        let compression = ratio * drive.amplitude / coefficient;
-        let same = (compression / fields.place.slip_compression - 1.0).abs() < SAME;
-        (same && drive.path.is_none() && drive.lift == 0.0 && drive.demand == Demand::Displacement)
+        let compression = ratio * loading.amplitude / coefficient;
+        let same = (compression / fields.stick_zone.slip_compression - 1.0).abs() < SAME;
+        (same
+            && loading.path.is_none()
+            && loading.lift == 0.0
+            && loading.control == AmplitudeControl::Displacement)
             .then_some(coefficient / ratio)
     }
 
     /// `k_w` where wear is in proportion to pressure and slip.
-    fn archard(&self, drive: &Drive) -> Option<f64> {
-        match (drive.wear, drive.friction) {
+    fn archard(&self, loading: &CycleLoading) -> Option<f64> {
+        match (loading.wear, loading.friction) {
             (WearLaw::Archard(Archard { coefficient }), _) => Some(coefficient),
             (WearLaw::DissipatedEnergy { coefficient }, FrictionLaw::Coulomb(friction)) => {
                 Some(coefficient * friction.coefficient)
@@ -161,8 +169,8 @@ impl Model {
     }
 
     /// Worn volume over dissipated energy, 1/Pa, where they are in proportion.
-    pub(super) fn volume_per_energy(&self, drive: &Drive) -> Option<f64> {
-        match (drive.wear, drive.friction) {
+    pub(super) fn volume_per_energy(&self, loading: &CycleLoading) -> Option<f64> {
+        match (loading.wear, loading.friction) {
             (WearLaw::DissipatedEnergy { coefficient }, _) => Some(coefficient),
             (WearLaw::Archard(Archard { coefficient }), FrictionLaw::Coulomb(friction)) => {
                 Some(coefficient / friction.coefficient)
@@ -172,30 +180,36 @@ impl Model {
     }
 
     /// Pressures and slip on the surface in each step of the period.
-    fn surface(&self, drive: &Drive, motion: &Motion, compression: &[f64], fields: &Fields) -> Surface {
+    fn surface(
+        &self,
+        loading: &CycleLoading,
+        motion: &Motion,
+        compression: &[f64],
+        fields: &Fields,
+    ) -> Surface {
         let (n, inner) = (self.springs(), self.springs() - 1);
         let (steps, components) = (motion.steps(), motion.components);
         let columns = steps * components;
         let mut pressure = Mat::zeros(n, motion.load.ncols());
         let pressure_scale = self.pressure_scale(fields);
         self.pressures(&mut pressure, &motion.load, pressure_scale);
-        if let WearLaw::NonLocal { length, .. } = drive.wear {
+        if let WearLaw::NonLocal { length, .. } = loading.wear {
             // Debris passes pressure on, not tension, and into gaps that it can fill.
             let least = LEAST_DEBRIS * self.contact.mean_pressure();
             let pressed = Mat::from_fn(n, pressure.ncols(), |i, m| pressing(pressure[(i, m)], least).0);
             product(&mut pressure, self.smearing(fields, length).as_ref(), pressed.as_ref(), 1.0);
             for i in 0..n {
-                let (filled, _) = self.filled(drive, compression.get(i).copied());
+                let (filled, _) = self.filled(loading, compression.get(i).copied());
                 (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
             }
         }
-        let plain = self.slip_per_depth(drive, fields);
+        let plain = self.slip_per_depth(loading, fields);
         let mut slip = Mat::zeros(n, columns);
         let mut direction = Mat::from_fn(n, columns, |_, _| 1.0);
         if let Some(factor) = plain {
             slip = Mat::from_fn(n, 1, |i, _| 4.0 * factor * fields.slip_depth[i]);
         } else {
-            let scale = fields.edge.powf(self.mu());
+            let scale = fields.slip_area.powf(self.mu());
             // Where slip reaches the inner end of the mesh, what a free spring would do is carried exactly.
             let free: Vec<f64> =
                 (0..columns).map(|m| if motion.slip[(0, m)] == 0.0 { 0.0 } else { motion.free[m] }).collect();
@@ -214,7 +228,7 @@ impl Model {
                 let stuck = (0..inner).take_while(|j| motion.slip[(*j, m)] == 0.0).count();
                 (0..stuck).for_each(|i| slip[(i, m)] = 0.0);
             }
-            if drive.path.is_some() {
+            if loading.path.is_some() {
                 let slipped =
                     Mat::from_fn(inner, columns, |j, m| motion.slip[(j, m)] * fields.density_factor[j]);
                 product_without_signs(&mut direction, self.operators.abel.profile(), slipped.as_ref());
@@ -276,22 +290,26 @@ impl Model {
     /// `factor` times the derivatives of the growth in a cycle that is plain.
     pub fn plain_growth_slopes(
         &self,
-        drive: &Drive,
+        loading: &CycleLoading,
         fields: &Fields,
         cycle: &CycleFields,
         factor: f64,
     ) -> Option<PlainSlopes> {
-        let per_pressure = factor * 4.0 * self.slip_per_depth(drive, fields)? * self.archard(drive)?;
+        let per_pressure = factor * 4.0 * self.slip_per_depth(loading, fields)? * self.archard(loading)?;
         Some(PlainSlopes {
             by_pressure: per_pressure * self.pressure_scale(fields),
-            by_edge: cycle.growth.iter().map(|growth| -factor * self.mu() / fields.edge * growth).collect(),
+            by_slip_area: cycle
+                .growth
+                .iter()
+                .map(|growth| -factor * self.mu() / fields.slip_area * growth)
+                .collect(),
         })
     }
 
     /// Adds `factor` times the derivatives of the growth in a cycle by compressions and edge to a matrix with these columns.
     pub fn add_growth_slopes(
         &self,
-        drive: &Drive,
+        loading: &CycleLoading,
         compression: &[f64],
         fields: &Fields,
         cycle: &CycleFields,
@@ -300,31 +318,31 @@ impl Model {
     ) {
         let (n, inner) = (self.springs(), self.springs() - 1);
         let pressure_scale = self.pressure_scale(fields);
-        if let Some(PlainSlopes { by_pressure, by_edge }) =
-            self.plain_growth_slopes(drive, fields, cycle, factor)
+        if let Some(PlainSlopes { by_pressure, by_slip_area }) =
+            self.plain_growth_slopes(loading, fields, cycle, factor)
         {
             for j in 0..inner {
                 for i in 0..n {
                     matrix[(i, j)] += by_pressure * self.operators.abel.pressure(i, j);
                 }
             }
-            for (i, by_edge) in by_edge.into_iter().enumerate() {
-                matrix[(i, inner)] += by_edge;
+            for (i, by_slip_area) in by_slip_area.into_iter().enumerate() {
+                matrix[(i, inner)] += by_slip_area;
             }
             return;
         }
-        let motion = self.motion(drive, compression, fields, true);
-        let surface = self.surface(drive, &motion, compression, fields);
-        let worn = self.worn(&drive.wear, &surface, true);
+        let motion = self.motion(loading, compression, fields, true);
+        let surface = self.surface(loading, &motion, compression, fields);
+        let worn = self.worn(&loading.wear, &surface, true);
         let (steps, components) = (motion.steps(), motion.components);
         let along = Mat::from_fn(n, steps * components, |i, c| {
             let step = c / components;
             let slips = surface.path[(i, step)] > 0.0;
             if slips { worn.by_path[(i, step)] * surface.direction[(i, c)] } else { 0.0 }
         });
-        let smeared = match drive.wear {
+        let smeared = match loading.wear {
             WearLaw::NonLocal { length, .. } => {
-                Some(self.smeared_pressure(drive, &motion, compression, fields, length))
+                Some(self.smeared_pressure(loading, &motion, compression, fields, length))
             }
             _ => None,
         };
@@ -332,8 +350,8 @@ impl Model {
             Some(smeared) => smeared[(i, j)],
             None => self.operators.abel.pressure(i, j),
         };
-        let per_cycle = factor / drive.cycles_per_period;
-        let scale = fields.edge.powf(self.mu());
+        let per_cycle = factor / loading.cycles_per_period;
+        let scale = fields.slip_area.powf(self.mu());
         let profile = self.operators.abel.profile();
         let total: Vec<f64> = (0..n).map(|i| worn.by_pressure.row(i).iter().sum()).collect();
         for columns in blocks(inner) {
@@ -357,9 +375,9 @@ impl Model {
                 }
             }
         }
-        if let WearLaw::NonLocal { .. } = drive.wear {
+        if let WearLaw::NonLocal { .. } = loading.wear {
             for j in 0..inner {
-                let (filled, slope) = self.filled(drive, Some(compression[j]));
+                let (filled, slope) = self.filled(loading, Some(compression[j]));
                 if filled > 0.0 {
                     matrix[(j, j)] += factor * cycle.growth[j] * slope / filled;
                 }
@@ -376,18 +394,18 @@ impl Model {
                 }
             }
         }
-        let edge = fields.edge * (1.0 + DIFFERENCE);
+        let slip_area = fields.slip_area * (1.0 + DIFFERENCE);
         let mut moved = Fields::default();
-        self.evaluate_at(&fields.place, edge, compression, &mut moved);
-        let after = if drive.path.is_some() {
+        self.evaluate_at(&fields.stick_zone, slip_area, compression, &mut moved);
+        let after = if loading.path.is_some() {
             // What springs do is a matter of their compressions alone.
-            let worn = self.worn(&drive.wear, &self.surface(drive, &motion, compression, &moved), false);
-            growth(drive, &worn, &moved)
+            let worn = self.worn(&loading.wear, &self.surface(loading, &motion, compression, &moved), false);
+            growth(loading, &worn, &moved)
         } else {
-            self.cycle(drive, compression, &moved).growth
+            self.cycle(loading, compression, &moved).growth
         };
         for i in 0..n {
-            matrix[(i, inner)] += factor * (after[i] - cycle.growth[i]) / (edge - fields.edge);
+            matrix[(i, inner)] += factor * (after[i] - cycle.growth[i]) / (slip_area - fields.slip_area);
         }
     }
 
@@ -402,12 +420,13 @@ impl Model {
 
     /// `c_N/π Z^(-μ)`, the factor of Eq. (21).
     pub(super) fn pressure_scale(&self, fields: &Fields) -> f64 {
-        self.contact.half_space().normal_stiffness() / std::f64::consts::PI * fields.edge.powf(-self.mu())
+        self.contact.half_space().normal_stiffness() / std::f64::consts::PI
+            * fields.slip_area.powf(-self.mu())
     }
 
     /// `F 1` at a spring.
     pub(super) fn uniform_slip(&self, fields: &Fields, spring: usize) -> f64 {
-        fields.unworn[spring].limit_slip / fields.place.slip_compression
+        fields.unworn[spring].limit_slip / fields.stick_zone.slip_compression
     }
 
     /// `F` of values at the springs inside the edge, shape `(springs,)`.
@@ -416,7 +435,7 @@ impl Model {
             values.zip(&fields.density_factor).map(|(value, factor)| value * factor).collect();
         let mut depth = vec![0.0; self.springs()];
         self.operators.abel.transforms()[0].apply(&density, &mut depth);
-        let scale = fields.edge.powf(self.mu());
+        let scale = fields.slip_area.powf(self.mu());
         depth.iter_mut().for_each(|value| *value *= scale);
         depth
     }
@@ -426,7 +445,7 @@ impl Model {
         let densities: Vec<f64> =
             energies.zip(&fields.density_factor).map(|(e, factor)| e * factor).collect();
         self.contact.half_space().normal_stiffness()
-            * fields.edge
+            * fields.slip_area
             * dot(self.operators.abel.spring_sum(), &densities)
     }
 
@@ -435,10 +454,10 @@ impl Model {
     /// ```text
     /// 1 in contact,    (1 - (q/h)²)² for -h < q < 0,    0 beyond
     /// ```
-    fn filled(&self, drive: &Drive, compression: Option<f64>) -> (f64, f64) {
+    fn filled(&self, loading: &CycleLoading, compression: Option<f64>) -> (f64, f64) {
         let Some(compression) = compression else { return (1.0, 0.0) };
         let layer = DEBRIS_LAYER * self.contact.slip_compression();
-        let part = ((compression - drive.lift) / layer).clamp(-1.0, 0.0);
+        let part = ((compression - loading.lift) / layer).clamp(-1.0, 0.0);
         let left = 1.0 - part * part;
         (left * left, -4.0 * left * part / layer)
     }
@@ -446,7 +465,7 @@ impl Model {
     /// How the pressure that debris passes on follows the compressions, over the factor of Eq. (21).
     fn smeared_pressure(
         &self,
-        drive: &Drive,
+        loading: &CycleLoading,
         motion: &Motion,
         compression: &[f64],
         fields: &Fields,
@@ -463,7 +482,7 @@ impl Model {
         let mut smeared = Mat::zeros(n, inner);
         product(&mut smeared, self.smearing(fields, length).as_ref(), touching.as_ref(), 1.0);
         for i in 0..n {
-            let (filled, _) = self.filled(drive, compression.get(i).copied());
+            let (filled, _) = self.filled(loading, compression.get(i).copied());
             (0..inner).for_each(|j| smeared[(i, j)] *= filled);
         }
         smeared
@@ -478,7 +497,7 @@ impl Model {
     fn smearing(&self, fields: &Fields, length: f64) -> Mat<f64> {
         let radii: Vec<f64> = self.spring_radii(fields);
         let n = radii.len();
-        let inside = fields.place.stick_area.sqrt();
+        let inside = fields.stick_zone.stick_area.sqrt();
         let width = |j: usize| {
             let before = if j == 0 { inside } else { radii[j - 1] };
             0.5 * (radii[(j + 1).min(n - 1)] - before)
@@ -500,7 +519,7 @@ impl Model {
 
     /// Radii of the springs, m.
     fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
-        let squared = |x: &f64| fields.place.stick_area + fields.edge * x;
+        let squared = |x: &f64| fields.stick_zone.stick_area + fields.slip_area * x;
         self.operators.abel.nodes()[1..].iter().map(|x| squared(x).sqrt()).collect()
     }
 
@@ -508,16 +527,18 @@ impl Model {
     fn stick_radius(&self, motion: &Motion, fields: &Fields) -> f64 {
         let slips = |j: &usize| (0..motion.slip.ncols()).any(|m| motion.slip[(*j, m)] != 0.0);
         match (0..motion.slip.nrows()).find(slips) {
-            Some(0) => fields.place.stick_area.sqrt(),
-            Some(j) => (fields.place.stick_area + fields.edge * self.operators.abel.nodes()[j]).sqrt(),
-            None => (fields.place.stick_area + fields.edge).sqrt(),
+            Some(0) => fields.stick_zone.stick_area.sqrt(),
+            Some(j) => {
+                (fields.stick_zone.stick_area + fields.slip_area * self.operators.abel.nodes()[j]).sqrt()
+            }
+            None => (fields.stick_zone.stick_area + fields.slip_area).sqrt(),
         }
     }
 }
 
 /// `W/S` at the springs.
-fn growth(drive: &Drive, worn: &Worn, fields: &Fields) -> Vec<f64> {
-    let per_cycle = drive.cycles_per_period.recip();
+fn growth(loading: &CycleLoading, worn: &Worn, fields: &Fields) -> Vec<f64> {
+    let per_cycle = loading.cycles_per_period.recip();
     worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect()
 }
 

@@ -52,36 +52,36 @@ impl Model {
     }
 
     /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.
-    pub fn elastic_depth_by_edge(&self, fields: &Fields) -> Vec<f64> {
+    pub fn elastic_depth_by_slip_area(&self, fields: &Fields) -> Vec<f64> {
         let mu = self.mu();
         let nodes = &self.operators.abel.nodes()[1..];
         let moved: Vec<f64> = fields
             .density
             .iter()
             .zip(nodes)
-            .map(|(u, x)| -mu * u * x / (fields.place.stick_area + fields.edge * x))
+            .map(|(u, x)| -mu * u * x / (fields.stick_zone.stick_area + fields.slip_area * x))
             .collect();
         let mut change = vec![0.0; self.springs()];
         self.operators.abel.transforms()[0].apply(&moved, &mut change);
-        let scale = fields.edge.powf(mu);
+        let scale = fields.slip_area.powf(mu);
         change
             .iter()
             .zip(&fields.elastic_depth)
-            .map(|(c, depth)| scale * c + mu / fields.edge * depth)
+            .map(|(c, depth)| scale * c + mu / fields.slip_area * depth)
             .collect()
     }
 
     /// Derivative of `λ` by the edge at constant compressions, 1/m², shape `(springs,)`.
-    pub fn log_slip_by_edge(&self, fields: &Fields) -> Vec<f64> {
-        let elastic = self.elastic_depth_by_edge(fields);
+    pub fn log_slip_by_slip_area(&self, fields: &Fields) -> Vec<f64> {
+        let elastic = self.elastic_depth_by_slip_area(fields);
         let nodes = &self.operators.abel.nodes()[1..];
         let rate = |i: usize| {
             let slopes = self.unworn.slopes(&fields.unworn[i]);
             (nodes[i] * slopes.limit_slip - elastic[i]) / fields.slip_depth[i] - nodes[i] * slopes.log_slip
         };
-        let mut by_edge = vec![0.0; nodes.len()];
-        self.on_springs(&mut by_edge, rate);
-        by_edge
+        let mut by_slip_area = vec![0.0; nodes.len()];
+        self.on_springs(&mut by_slip_area, rate);
+        by_slip_area
     }
 
     /// Derivative of the elastic depth at spring `i` by the compression of spring `j`, over `Z^(1-ν)`: `F_ij x_j^(k-1)`.
@@ -93,51 +93,51 @@ impl Model {
     /// equation.
     pub fn rates(&self, fields: &Fields, cycle: &CycleFields) -> (f64, Vec<f64>) {
         let inner = self.springs() - 1;
-        let by_edge = self.log_slip_by_edge(fields);
+        let by_slip_area = self.log_slip_by_slip_area(fields);
         let along = self.along_annulus(&fields.log_slip);
         let slip = &fields.slip_depth;
         let mut worn: Vec<f64> = (0..inner).map(|i| -cycle.growth[i] * slip[i]).collect();
         let mut moved: Vec<f64> =
-            (0..inner).map(|i| slip[i] * (by_edge[i] - along[i] / fields.edge)).collect();
+            (0..inner).map(|i| slip[i] * (by_slip_area[i] - along[i] / fields.slip_area)).collect();
         // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.
-        let edge_slope = slip[inner] * by_edge[inner];
+        let edge_slope = slip[inner] * by_slip_area[inner];
         let at_edge = [&mut worn, &mut moved].map(|depth| self.operators.solve_profile(depth));
-        let edge_rate = -at_edge[0] / (at_edge[1] - edge_slope);
-        let scale = fields.edge.powf(-self.mu());
-        let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * edge_rate);
-        (edge_rate, (0..inner).map(rate).collect())
+        let slip_area_rate = -at_edge[0] / (at_edge[1] - edge_slope);
+        let scale = fields.slip_area.powf(-self.mu());
+        let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * slip_area_rate);
+        (slip_area_rate, (0..inner).map(rate).collect())
     }
 
     /// Moves the edge to where the wear depth of the compressions is zero.
-    pub fn close_edge(&self, edge: f64, compression: &[f64]) -> Result<f64> {
+    pub fn close_contact_edge(&self, slip_area: f64, compression: &[f64]) -> Result<f64> {
         let last = self.springs() - 1;
-        let mut edge = edge;
+        let mut slip_area = slip_area;
         let mut fields = Fields::default();
         for _ in 0..20 {
-            self.evaluate(edge, compression, &mut fields);
+            self.evaluate(slip_area, compression, &mut fields);
             let slopes = self.unworn.slopes(&fields.unworn[last]);
             let slope = slopes.limit_slip
                 - fields.unworn[last].slip * slopes.log_slip
-                - self.elastic_depth_by_edge(&fields)[last];
+                - self.elastic_depth_by_slip_area(&fields)[last];
             let change = -fields.wear_depth[last] / slope;
-            edge += change;
-            if change.abs() <= 1e-15 * edge {
-                return Ok(edge);
+            slip_area += change;
+            if change.abs() <= 1e-15 * slip_area {
+                return Ok(slip_area);
             }
-            if !(edge > 0.0 && edge < self.unworn.largest_edge()) {
+            if !(slip_area > 0.0 && slip_area < self.unworn.largest_slip_area()) {
                 break;
             }
         }
         Err(Error::NotConverged {
             what: "contact edge",
-            why: format!("a² - c² = {edge:e} m² after 20 iterations"),
+            why: format!("a² - c² = {slip_area:e} m² after 20 iterations"),
         })
     }
 
     /// Adds the derivatives of `λ` by the compressions, from the left times `I - θ ξ ∂/∂ξ`, to the leading columns of a matrix.
     pub fn add_log_slip_by_compression(&self, fields: &Fields, theta: f64, matrix: &mut Mat<f64>) {
         let n = self.springs();
-        let scale = fields.edge.powf(self.mu());
+        let scale = fields.slip_area.powf(self.mu());
         let per_slip: Vec<f64> = fields.slip_depth.iter().map(|s| -scale / s).collect();
         let mut changed = vec![0.0; n];
         for j in 0..n - 1 {

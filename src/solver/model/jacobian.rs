@@ -16,11 +16,10 @@ use rayon::prelude::*;
 
 use super::cycle::PlainSlopes;
 use super::derivatives::Stencil;
-use super::operators::Operators;
 use super::{Fields, Model};
-use crate::numerics::abel::{Block, Compressed};
+use crate::numerics::abel::{AbelOperators, Block, Compressed};
 use crate::numerics::grid::MOST_POINTS;
-use crate::numerics::linear::{HodlrFactors, LowRank, OffDiagonal, Sides, Split};
+use crate::numerics::linear::{HodlrFactors, LeafColumns, LowRank, OffDiagonal, Split};
 
 /// Columns of a second half that stencils of the first reach through what `F` has above its diagonal.
 const CORNER: usize = Block::AHEAD + 2;
@@ -28,6 +27,9 @@ const CORNER: usize = Block::AHEAD + 2;
 /// What makes Newton's matrix of the transforms.
 #[derive(Debug)]
 pub(super) struct Jacobian<'a> {
+    pub abel: &'a AbelOperators,
+    /// Of `ξ ∂/∂ξ`.
+    pub stencils: &'a [Stencil],
     /// `a`, shape `(springs,)`; at the edge there is neither `θ` nor `b`.
     pub row_factor: &'a [f64],
     /// `x^(k-1)`, shape `(springs - 1,)`.
@@ -40,8 +42,8 @@ pub(super) struct Jacobian<'a> {
     pub corner: f64,
 }
 
-/// What is left out beside the blocks where the diagonal is one.
-const BESIDE: f64 = 1e-3;
+/// Largest error, relative to a diagonal of one, of what stands next to the middle of a split in factored form.
+const NEAR_DIAGONAL: f64 = 1e-3;
 
 /// Grading below which factors are in double precision. In single precision Newton's method found no step with 3,000 springs at k = -0.9 and with
 /// 60,000 at -0.5, and wasted two steps of three with 100,000 at -0.4; at -0.25 and above nothing was amiss with 300,000.
@@ -50,14 +52,14 @@ const SOFTEST_SINGLE: f64 = -0.25;
 /// Factors of a matrix scaled to a diagonal of one.
 #[derive(Debug)]
 pub(super) struct ScaledFactors {
-    factors: Halved,
+    factors: AnyPrecision,
     /// One over the root of the diagonal.
     scale: Vec<f64>,
 }
 
-/// In either precision.
+/// Factors in single or double precision.
 #[derive(Debug)]
-enum Halved {
+enum AnyPrecision {
     Single(HodlrFactors<f32>),
     Double(HodlrFactors<f64>),
 }
@@ -69,7 +71,7 @@ impl ScaledFactors {
             *value *= scale;
         }
         match &self.factors {
-            Halved::Single(factors) => {
+            AnyPrecision::Single(factors) => {
                 let largest = rhs.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
                 if largest > 0.0 {
                     let mut single: Vec<f32> = rhs.iter().map(|value| (value / largest) as f32).collect();
@@ -77,7 +79,7 @@ impl ScaledFactors {
                     rhs.iter_mut().zip(single).for_each(|(to, from)| *to = largest * f64::from(from));
                 }
             }
-            Halved::Double(factors) => factors.solve(rhs),
+            AnyPrecision::Double(factors) => factors.solve(rhs),
         }
         for (value, scale) in rhs.iter_mut().zip(&self.scale) {
             *value *= scale;
@@ -86,8 +88,8 @@ impl ScaledFactors {
 
     fn bytes(&self) -> usize {
         let factors = match &self.factors {
-            Halved::Single(factors) => factors.bytes(),
-            Halved::Double(factors) => factors.bytes(),
+            AnyPrecision::Single(factors) => factors.bytes(),
+            AnyPrecision::Double(factors) => factors.bytes(),
         };
         factors + 8 * self.scale.len()
     }
@@ -131,22 +133,24 @@ impl Model {
         fields: &Fields,
         theta: f64,
         growth: PlainSlopes,
-        by_edge: &[f64],
+        by_slip_area: &[f64],
         memory: Option<StageFactors>,
     ) -> Option<StageFactors> {
         let compressed = self.operators.compressed()?;
-        let scale = fields.edge.powf(self.mu());
+        let scale = fields.slip_area.powf(self.mu());
         let row_factor: Vec<f64> = fields.slip_depth.iter().map(|slip| -scale / slip).collect();
         let inner = self.springs() - 1;
         let jacobian = Jacobian {
+            abel: &self.operators.abel,
+            stencils: &self.operators.derivative,
             row_factor: &row_factor,
             column_factor: &fields.density_factor[..inner],
             along: theta,
             pressure_factor: growth.by_pressure,
-            corner: by_edge[inner],
+            corner: by_slip_area[inner],
         };
-        let factors = jacobian.factors(&self.operators, compressed, memory.map(|it| it.factors));
-        let mut edge: Vec<f64> = by_edge.iter().zip(&growth.by_edge).map(|(a, b)| a + b).collect();
+        let factors = jacobian.factors(compressed, memory.map(|it| it.factors));
+        let mut edge: Vec<f64> = by_slip_area.iter().zip(&growth.by_slip_area).map(|(a, b)| a + b).collect();
         edge[inner] = 0.0;
         factors.solve(&mut edge);
         Some(StageFactors { factors, edge })
@@ -159,10 +163,11 @@ struct Diagonals(Vec<Vec<f64>>);
 impl Diagonals {
     const COUNT: usize = Block::BACK + MOST_POINTS;
 
-    fn new(jacobian: &Jacobian<'_>, stencils: &[Stencil]) -> Self {
-        let mut diagonals = vec![vec![0.0; stencils.len()]; Self::COUNT];
-        for i in 0..stencils.len() {
-            for (k, weight) in jacobian.row(stencils, i) {
+    fn new(jacobian: &Jacobian<'_>) -> Self {
+        let count = jacobian.stencils.len();
+        let mut diagonals = vec![vec![0.0; count]; Self::COUNT];
+        for i in 0..count {
+            for (k, weight) in jacobian.row(i) {
                 diagonals[k + Block::BACK - i][i] += weight * jacobian.row_factor[k];
             }
         }
@@ -193,45 +198,41 @@ impl Diagonals {
 
 impl Jacobian<'_> {
     /// The factors; `memory` is that of others that are not needed any more.
-    pub(super) fn factors(
-        &self,
-        operators: &Operators,
-        compressed: &Compressed,
-        memory: Option<ScaledFactors>,
-    ) -> ScaledFactors {
+    pub(super) fn factors(&self, compressed: &Compressed, memory: Option<ScaledFactors>) -> ScaledFactors {
         let memory = memory.map(|it| it.factors);
-        if operators.abel.grading() < SOFTEST_SINGLE {
-            let memory = memory.and_then(|it| if let Halved::Double(it) = it { Some(it) } else { None });
-            let (factors, scale) = self.halved(operators, compressed, memory);
-            ScaledFactors { factors: Halved::Double(factors), scale }
+        if self.abel.grading() < SOFTEST_SINGLE {
+            let memory =
+                memory.and_then(|it| if let AnyPrecision::Double(it) = it { Some(it) } else { None });
+            let (factors, scale) = self.factorised(compressed, memory);
+            ScaledFactors { factors: AnyPrecision::Double(factors), scale }
         } else {
-            let memory = memory.and_then(|it| if let Halved::Single(it) = it { Some(it) } else { None });
-            let (factors, scale) = self.halved(operators, compressed, memory);
-            ScaledFactors { factors: Halved::Single(factors), scale }
+            let memory =
+                memory.and_then(|it| if let AnyPrecision::Single(it) = it { Some(it) } else { None });
+            let (factors, scale) = self.factorised(compressed, memory);
+            ScaledFactors { factors: AnyPrecision::Single(factors), scale }
         }
     }
 
     /// Factors of the matrix scaled to a diagonal of one, and the scale.
-    fn halved<T: RealField + Copy>(
+    fn factorised<T: RealField + Copy>(
         &self,
-        operators: &Operators,
         compressed: &Compressed,
         memory: Option<HodlrFactors<T>>,
     ) -> (HodlrFactors<T>, Vec<f64>) {
         let halves = compressed.halves();
-        let diagonals = Diagonals::new(self, &operators.derivative);
+        let diagonals = Diagonals::new(self);
         let leaves = halves.leaves.par_iter().map(|leaf| {
-            let matrix = self.leaf(operators, &diagonals, leaf.clone());
+            let matrix = self.leaf(&diagonals, leaf.clone());
             let root = |i: usize| matrix[(i, i)].abs().sqrt().recip();
             let scale: Vec<f64> = (0..leaf.len()).map(root).collect();
             let scaled = |i: usize, j: usize| from_f64(scale[i] * matrix[(i, j)] * scale[j]);
             (Mat::<T>::from_fn(leaf.len(), leaf.len(), scaled), scale)
         });
         let (leaves, scale): (Vec<_>, Vec<_>) = leaves.unzip();
-        let rows = Rows { jacobian: self, operators, diagonals, scale: scale.concat() };
+        let rows = Rows { jacobian: self, diagonals, scale: scale.concat() };
         let splits = halves.splits.par_iter().zip(compressed.blocks());
-        let near: Vec<Beside<'_>> = splits.map(|(split, block)| rows.near(split, block)).collect();
-        let terms = near.iter().map(Beside::terms).collect();
+        let near: Vec<NearDiagonal<'_>> = splits.map(|(split, block)| rows.near(split, block)).collect();
+        let terms = near.iter().map(NearDiagonal::terms).collect();
         let memory = memory.map(HodlrFactors::into_blocks);
         let blocks = OffDiagonal::new(halves, terms, memory, |leaf, sides| {
             let block = &near[sides.split];
@@ -249,19 +250,19 @@ impl Jacobian<'_> {
     }
 
     /// A row of `I - θ ξ ∂/∂ξ`: columns and what stands there.
-    fn row<'a>(&'a self, stencils: &'a [Stencil], i: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
-        let last = i + 1 == stencils.len();
+    fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        let last = i + 1 == self.stencils.len();
         let along = if last { 0.0 } else { -self.along };
-        let (first, weights) = stencils[i].parts();
+        let (first, weights) = self.stencils[i].parts();
         let along = weights.iter().enumerate().map(move |(k, weight)| (first + k, along * weight));
         std::iter::once((i, 1.0)).chain(along)
     }
 
-    fn leaf(&self, operators: &Operators, diagonals: &Diagonals, leaf: Range<usize>) -> Mat<f64> {
-        let n = operators.abel.len();
+    fn leaf(&self, diagonals: &Diagonals, leaf: Range<usize>) -> Mat<f64> {
+        let n = self.abel.len();
         let (first, size) = (leaf.start, leaf.len());
         let reach = first.saturating_sub(Block::BACK)..(leaf.end + Block::AHEAD).min(n);
-        let [profile, pressure] = operators.abel.diagonal_blocks(reach.clone(), leaf.clone());
+        let [profile, pressure] = self.abel.diagonal_blocks(reach.clone(), leaf.clone());
         let mut matrix = Mat::zeros(size, size);
         let edge = n - 1;
         for j in 0..size {
@@ -285,19 +286,18 @@ impl Jacobian<'_> {
 /// What the blocks off the diagonal are made of.
 struct Rows<'a> {
     jacobian: &'a Jacobian<'a>,
-    operators: &'a Operators,
     diagonals: Diagonals,
     /// One over the root of the diagonal.
     scale: Vec<f64>,
 }
 
 /// The blocks of a split, with what stands next to its middle beside those of the transforms.
-struct Beside<'a> {
+struct NearDiagonal<'a> {
     split: &'a Split,
     block: &'a Block,
     /// Terms of `P` above the diagonal.
     pressed: usize,
-    /// Rows of the first half that stencils of the second reach back to.
+    /// Rows of the first half that the stencils of the second reach back to.
     across: usize,
     /// `P` below the diagonal.
     below: LowRank,
@@ -307,7 +307,7 @@ struct Beside<'a> {
     corner: usize,
 }
 
-impl Beside<'_> {
+impl NearDiagonal<'_> {
     /// Of the blocks above and below the diagonal.
     fn terms(&self) -> [usize; 2] {
         let carried = self.block.profile.terms() + self.across;
@@ -316,22 +316,22 @@ impl Beside<'_> {
 }
 
 impl Rows<'_> {
-    fn near<'a>(&self, split: &'a Split, block: &'a Block) -> Beside<'a> {
+    fn near<'a>(&self, split: &'a Split, block: &'a Block) -> NearDiagonal<'a> {
         let Split { start, middle, end, .. } = *split;
         let across = if self.jacobian.along != 0.0 { Block::BACK } else { 0 };
         let pressed = if self.jacobian.pressure_factor == 0.0 { 0 } else { block.pressure.terms() };
         let corner = middle.saturating_sub(CORNER).max(start);
         let below = self.beside(middle..(middle + Block::BACK).min(end), middle - Block::BACK..middle);
         let above = self.beside(corner..middle, middle..(middle + CORNER).min(end));
-        Beside { split, block, pressed, across, below, above, corner }
+        NearDiagonal { split, block, pressed, across, below, above, corner }
     }
 
     /// `U₁` and `V₁`.
     fn fill_first<T: RealField + Copy>(
         &self,
         leaf: Range<usize>,
-        near: &Beside<'_>,
-        mut sides: Sides<'_, T>,
+        near: &NearDiagonal<'_>,
+        mut sides: LeafColumns<'_, T>,
     ) {
         let (Split { start, middle, .. }, block) = (*near.split, near.block);
         let scale = &self.scale[leaf.clone()];
@@ -362,8 +362,8 @@ impl Rows<'_> {
     fn fill_second<T: RealField + Copy>(
         &self,
         leaf: Range<usize>,
-        near: &Beside<'_>,
-        mut sides: Sides<'_, T>,
+        near: &NearDiagonal<'_>,
+        mut sides: LeafColumns<'_, T>,
     ) {
         let (Split { middle, end, .. }, block) = (*near.split, near.block);
         let scale = &self.scale[leaf.clone()];
@@ -376,7 +376,7 @@ impl Rows<'_> {
         }
         let terms = block.profile.terms();
         for i in leaf.start..(middle + near.across).min(end).min(leaf.end) {
-            for (k, weight) in self.jacobian.row(&self.operators.derivative, i).filter(|(k, _)| *k < middle) {
+            for (k, weight) in self.jacobian.row(i).filter(|(k, _)| *k < middle) {
                 let value = weight * self.scale[i] / self.scale[k];
                 sides.left[(i - leaf.start, terms + middle - 1 - k)] += from_f64::<T>(value);
             }
@@ -392,7 +392,7 @@ impl Rows<'_> {
     /// What stands next to the middle of a split beside the blocks: `P` below the diagonal, and above it `F` with the stencils.
     fn beside(&self, rows: Range<usize>, columns: Range<usize>) -> LowRank {
         let below = rows.start > columns.start;
-        let (jacobian, abel) = (self.jacobian, &self.operators.abel);
+        let (jacobian, abel) = (self.jacobian, self.jacobian.abel);
         let entry = |i: usize, j: usize| {
             let value = if below {
                 let edge = abel.len() - 1;
@@ -406,13 +406,12 @@ impl Rows<'_> {
                         0.0
                     }
                 };
-                jacobian.row(&self.operators.derivative, i).map(carried).sum::<f64>()
-                    * jacobian.column_factor(j)
+                jacobian.row(i).map(carried).sum::<f64>() * jacobian.column_factor(j)
             };
             self.scale[i] * value * self.scale[j]
         };
         let first = if below { rows.start } else { rows.end - 1 };
-        LowRank::new(rows.clone(), columns, first, entry, BESIDE)
+        LowRank::new(rows.clone(), columns, first, entry, NEAR_DIAGONAL)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::schedule::Drive;
+use super::schedule::CycleLoading;
 use super::{CycleFields, Fields, Model};
 use crate::contact::spring::{Shakedown, SpringCycle, steady_cycle};
 use crate::laws::friction::FrictionLaw;
@@ -60,22 +60,22 @@ impl Model {
     /// while the contact was pressed on.
     ///
     /// # Arguments
-    /// * `drive` -- what acts
+    /// * `loading` -- what acts
     /// * `cycle` -- what it does, of [`Model::cycle`]
     /// * `compression` -- of the springs, m, of the state
     /// * `fields` -- of the state
     /// * `steps` -- even; of a loop to and fro at constant indentation. Other modes have those of their path.
     pub fn cycle_loop(
         &self,
-        drive: &Drive,
+        loading: &CycleLoading,
         cycle: &CycleFields,
         compression: &[f64],
         fields: &Fields,
         steps: usize,
     ) -> FrettingLoop {
         let first = FrictionLaw::Coulomb(*self.contact.friction());
-        let unchanged = drive.friction == first && drive.amplitude == self.contact.amplitude();
-        if unchanged && self.slip_per_depth(drive, fields).is_some() {
+        let unchanged = loading.friction == first && loading.amplitude == self.contact.amplitude();
+        if unchanged && self.slip_per_depth(loading, fields).is_some() {
             let displacement = to_and_fro(self.contact.amplitude(), steps);
             let force = self.fretting_loop(fields, compression, &displacement);
             let none = vec![0.0; displacement.len()];
@@ -86,20 +86,26 @@ impl Model {
             };
         }
         let tangential = self.schedule.conditions().mode == Mode::Tangential;
-        match drive.path.as_deref().filter(|_| !tangential) {
-            Some(path) => self.spring_loop(drive, path, compression, fields),
+        match loading.path.as_deref().filter(|_| !tangential) {
+            Some(path) => self.spring_loop(loading, path, compression, fields),
             None => {
-                let lift = drive.path.as_ref().map_or(drive.lift, |path| path.points[0].lift);
+                let lift = loading.path.as_ref().map_or(loading.lift, |path| path.points[0].lift);
                 let place = |u: f64| PathPoint { tangential: [u, 0.0], lift };
                 let mut points: Vec<PathPoint> =
                     to_and_fro(cycle.amplitude, steps).into_iter().map(place).collect();
                 points.pop();
-                self.spring_loop(drive, &Path { points }, compression, fields)
+                self.spring_loop(loading, &Path { points }, compression, fields)
             }
         }
     }
 
-    fn spring_loop(&self, drive: &Drive, path: &Path, compression: &[f64], fields: &Fields) -> FrettingLoop {
+    fn spring_loop(
+        &self,
+        loading: &CycleLoading,
+        path: &Path,
+        compression: &[f64],
+        fields: &Fields,
+    ) -> FrettingLoop {
         let half_space = self.contact.half_space();
         let ratio = half_space.stiffness_ratio();
         let steps = path.points.len();
@@ -109,7 +115,7 @@ impl Model {
         let mut work = 0.0;
         let mut spring = SpringCycle::default();
         let mut add = |stiffness: f64, compression: f64| {
-            steady_cycle(path, &drive.friction, ratio, compression, &Shakedown::default(), &mut spring);
+            steady_cycle(path, &loading.friction, ratio, compression, &Shakedown::default(), &mut spring);
             work += stiffness * spring.work;
             for (axis, force) in force.iter_mut().enumerate() {
                 for (total, deflection) in force[1..].iter_mut().zip(&spring.deflection) {
@@ -119,15 +125,15 @@ impl Model {
         };
         // In y = x^(1+k), which leaves no power of x.
         let exponent = 1.0 + half_space.grading();
-        let core =
-            2.0 * half_space.normal_stiffness() * fields.place.stick_area.powf(0.5 * exponent) / exponent;
-        let (profile, radius) = (self.contact.equivalent_profile(), fields.place.stick_area.sqrt());
+        let core = 2.0 * half_space.normal_stiffness() * fields.stick_zone.stick_area.powf(0.5 * exponent)
+            / exponent;
+        let (profile, radius) = (self.contact.equivalent_profile(), fields.stick_zone.stick_area.sqrt());
         let rule = Rule::legendre(CORE_NODES).expect("a rule of few nodes");
         for (part, weight) in rule.nodes.iter().zip(&rule.weights) {
             let x = radius * part.powf(exponent.recip());
             add(core * weight, self.contact.indentation() - profile.value(x));
         }
-        let annulus = half_space.normal_stiffness() * fields.edge;
+        let annulus = half_space.normal_stiffness() * fields.slip_area;
         let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
         for ((q, factor), sum) in springs {
             add(annulus * sum * factor, q.max(0.0));

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::schedule::{Demand, Drive};
+use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
 use crate::contact::spring::{Response, Shakedown, SpringCycle, steady_cycle};
 use crate::contact::stick_slip::slip_amplitude_of_spring;
@@ -64,32 +64,40 @@ impl Motion {
 
 impl Model {
     /// How the springs slip; slopes only if they are asked for.
-    pub(super) fn motion(&self, drive: &Drive, compression: &[f64], fields: &Fields, slopes: bool) -> Motion {
-        match &drive.path {
-            Some(path) => self.resolved_motion(drive, path, compression, slopes),
-            None => self.closed_form_motion(drive, compression, fields, slopes),
+    pub(super) fn motion(
+        &self,
+        loading: &CycleLoading,
+        compression: &[f64],
+        fields: &Fields,
+        slopes: bool,
+    ) -> Motion {
+        match &loading.path {
+            Some(path) => self.resolved_motion(loading, path, compression, slopes),
+            None => self.closed_form_motion(loading, compression, fields, slopes),
         }
     }
 
     /// Tangential oscillation at constant indentation: `4 σ(q)` in a single step.
     fn closed_form_motion(
         &self,
-        drive: &Drive,
+        loading: &CycleLoading,
         compression: &[f64],
         fields: &Fields,
         slopes: bool,
     ) -> Motion {
         let ratio = self.contact.half_space().stiffness_ratio();
-        let lifted: Vec<f64> = compression.iter().map(|q| q - drive.lift).collect();
-        let amplitude = self.amplitude(drive, &lifted, fields);
-        let slip: Vec<(f64, f64)> =
-            lifted.iter().map(|q| slip_amplitude_of_spring(&drive.friction, ratio, amplitude, *q)).collect();
+        let lifted: Vec<f64> = compression.iter().map(|q| q - loading.lift).collect();
+        let amplitude = self.amplitude(loading, &lifted, fields);
+        let slip: Vec<(f64, f64)> = lifted
+            .iter()
+            .map(|q| slip_amplitude_of_spring(&loading.friction, ratio, amplitude, *q))
+            .collect();
         let energies = |(q, slip): (&f64, &(f64, f64))| -> Energies {
             if slip.0 == 0.0 {
                 return Energies::default();
             }
-            let held = drive.friction.static_strength(*q);
-            let dragged = drive.friction.kinetic_strength(*q);
+            let held = loading.friction.static_strength(*q);
+            let dragged = loading.friction.kinetic_strength(*q);
             // Each way from the kinetic limit on one side to the static one on the other, and from there on at the kinetic one.
             let stuck = 0.5 * (held * held - dragged * dragged) / ratio;
             let slides = 2.0 * amplitude - (held + dragged) / ratio;
@@ -100,32 +108,38 @@ impl Model {
             }
         };
         let inner = compression.len();
-        let amplitude_slope = (slopes && drive.demand != Demand::Displacement)
-            .then(|| self.amplitude_slope(drive, &lifted, &slip, fields));
+        let amplitude_slope = (slopes && loading.control != AmplitudeControl::Displacement)
+            .then(|| self.amplitude_slope(loading, &lifted, &slip, fields));
         let rows = if slopes { inner } else { 0 };
         Motion {
             amplitude,
             slip: Mat::from_fn(inner, 1, |j, _| 4.0 * slip[j].0),
             free: vec![4.0 * amplitude],
             components: 1,
-            load: Mat::from_fn(inner, 1, |j, _| bearing(drive, compression[j], drive.lift)),
+            load: Mat::from_fn(inner, 1, |j, _| bearing(loading, compression[j], loading.lift)),
             energies: lifted.iter().zip(&slip).map(energies).collect(),
             slip_slope: Mat::from_fn(rows, 1, |j, _| 4.0 * slip[j].1),
             load_slope: Mat::from_fn(rows, 1, |j, _| {
-                self.slope(|q| bearing(drive, q, drive.lift), compression[j])
+                self.slope(|q| bearing(loading, q, loading.lift), compression[j])
             }),
             amplitude_slope,
         }
     }
 
     /// Springs through the period of a path, with what goes one way between reversals as one step.
-    fn resolved_motion(&self, drive: &Drive, path: &Path, compression: &[f64], slopes: bool) -> Motion {
+    fn resolved_motion(
+        &self,
+        loading: &CycleLoading,
+        path: &Path,
+        compression: &[f64],
+        slopes: bool,
+    ) -> Motion {
         let components = if path.is_straight() { 1 } else { 2 };
         let ways = path.ways();
         let steps = ways.iter().max().map_or(0, |last| last + 1);
         let (inner, columns) = (compression.len(), steps * components);
         let mut springs = PathSprings {
-            drive,
+            loading,
             path,
             components,
             ways,
@@ -137,7 +151,7 @@ impl Model {
         let mut slope = vec![0.0; if slopes { columns } else { 0 }];
         springs.pass(0.0, &mut values, &mut []);
         let mut motion = Motion {
-            amplitude: drive.amplitude,
+            amplitude: loading.amplitude,
             slip: Mat::zeros(inner, columns),
             free: values.clone(),
             components,
@@ -159,7 +173,8 @@ impl Model {
         let count = path.points.len();
         let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
         let different = if path.is_level() { 1 } else { steps };
-        let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing(drive, q, lift)).iter().sum::<f64>();
+        let mean =
+            |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing(loading, q, lift)).iter().sum::<f64>();
         motion.load = Mat::from_fn(inner, different, |j, m| mean(compression[j], m));
         motion.load_slope = Mat::from_fn(if slopes { inner } else { 0 }, different, |j, m| {
             self.slope(|q| mean(q, m), compression[j])
@@ -168,13 +183,14 @@ impl Model {
     }
 
     /// Tangential amplitude of the contact, m: as prescribed, or by the balance of forces.
-    fn amplitude(&self, drive: &Drive, lifted: &[f64], fields: &Fields) -> f64 {
-        if drive.demand == Demand::Displacement {
-            return drive.amplitude;
+    fn amplitude(&self, loading: &CycleLoading, lifted: &[f64], fields: &Fields) -> f64 {
+        if loading.control == AmplitudeControl::Displacement {
+            return loading.amplitude;
         }
-        let strength = drive.friction.static_strength(self.contact.slip_compression() - drive.lift);
+        let strength = loading.friction.static_strength(self.contact.slip_compression() - loading.lift);
         let largest = strength / self.contact.half_space().stiffness_ratio();
-        let excess = |amplitude: f64| drive.excess(self.force(drive, lifted, fields, amplitude), amplitude);
+        let excess =
+            |amplitude: f64| loading.excess(self.force(loading, lifted, fields, amplitude), amplitude);
         // At the last stick radius the contact gives way.
         bracketed(excess, 0.0, largest, 0.0).unwrap_or(largest)
     }
@@ -182,7 +198,7 @@ impl Model {
     /// Derivatives of the amplitude in the balance of forces.
     fn amplitude_slope(
         &self,
-        drive: &Drive,
+        loading: &CycleLoading,
         lifted: &[f64],
         slip: &[(f64, f64)],
         fields: &Fields,
@@ -195,31 +211,37 @@ impl Model {
             .spring_sum()
             .iter()
             .zip(&fields.density_factor)
-            .map(|(weight, factor)| half_space.normal_stiffness() * fields.edge * weight * factor)
+            .map(|(weight, factor)| half_space.normal_stiffness() * fields.slip_area * weight * factor)
             .collect();
         let ratio = half_space.stiffness_ratio();
         let sticking: f64 =
             weights.iter().zip(&slips).map(|(weight, slips)| ratio * weight * (1.0 - slips)).sum();
         let by_amplitude = self.stuck_force(fields, 1.0) + sticking;
-        let [by_force, direct] = drive.demand.factors();
+        let [by_force, direct] = loading.control.factors();
         let by_compression = (0..lifted.len()).map(|j| {
-            let strength = slips[j] * self.slope(|q| drive.friction.kinetic_strength(q), lifted[j]);
+            let strength = slips[j] * self.slope(|q| loading.friction.kinetic_strength(q), lifted[j]);
             -by_force * weights[j] * strength / (by_force * by_amplitude + direct)
         });
         AmplitudeSlope { by_compression: by_compression.collect(), slips: slips.clone() }
     }
 
     /// Amplitude of the tangential force, N, of springs lifted to `lifted`, m, moved by `amplitude`, m.
-    pub(super) fn force(&self, drive: &Drive, lifted: &[f64], fields: &Fields, amplitude: f64) -> f64 {
+    pub(super) fn force(
+        &self,
+        loading: &CycleLoading,
+        lifted: &[f64],
+        fields: &Fields,
+        amplitude: f64,
+    ) -> f64 {
         let half_space = self.contact.half_space();
         let ratio = half_space.stiffness_ratio();
         let borne: Vec<f64> = lifted
             .iter()
             .zip(&fields.density_factor)
-            .map(|(q, factor)| factor * (ratio * amplitude).min(drive.friction.kinetic_strength(*q)))
+            .map(|(q, factor)| factor * (ratio * amplitude).min(loading.friction.kinetic_strength(*q)))
             .collect();
         self.stuck_force(fields, amplitude)
-            + half_space.normal_stiffness() * fields.edge * dot(self.operators.abel.spring_sum(), &borne)
+            + half_space.normal_stiffness() * fields.slip_area * dot(self.operators.abel.spring_sum(), &borne)
     }
 
     /// Tangential force, N, of the springs within the last stick radius.
@@ -227,7 +249,7 @@ impl Model {
         let half_space = self.contact.half_space();
         let q = 1.0 + half_space.grading();
         let tangential = half_space.stiffness_ratio() * half_space.normal_stiffness();
-        2.0 * tangential * amplitude * fields.place.stick_area.powf(0.5 * q) / q
+        2.0 * tangential * amplitude * fields.stick_zone.stick_area.powf(0.5 * q) / q
     }
 
     /// Slope of a function of the compression of one spring, by a difference to the side of more compression.
@@ -237,9 +259,9 @@ impl Model {
     }
 }
 
-/// Springs on the path of a drive.
+/// Springs on the path of a cycle.
 struct PathSprings<'a> {
-    drive: &'a Drive,
+    loading: &'a CycleLoading,
     path: &'a Path,
     components: usize,
     /// The step to which each substep belongs.
@@ -253,7 +275,7 @@ struct PathSprings<'a> {
 impl PathSprings<'_> {
     /// Slip of a spring in each step, m, and its derivatives by the compression where there is room for them; energies.
     fn pass(&mut self, compression: f64, slip: &mut [f64], slopes: &mut [f64]) -> Energies {
-        if let Some(response) = &self.drive.response {
+        if let Some(response) = &self.loading.response {
             return self.tabulated(response, compression, slip, slopes);
         }
         let energies = self.direct(compression, slip);
@@ -279,7 +301,7 @@ impl PathSprings<'_> {
             slopes.fill(0.0);
             return Energies::default();
         }
-        let limit = |q: f64| self.drive.friction.kinetic_strength(q) / self.ratio;
+        let limit = |q: f64| self.loading.friction.kinetic_strength(q) / self.ratio;
         let by_limit = (!slopes.is_empty()).then_some(&mut *slopes);
         let [dissipation, work] = response.at(limit(lifted), slip, by_limit);
         let by_compression = (limit(lifted + self.difference) - limit(lifted)) / self.difference;
@@ -289,7 +311,14 @@ impl PathSprings<'_> {
 
     fn direct(&mut self, compression: f64, slip: &mut [f64]) -> Energies {
         let cycle = &mut self.cycle;
-        steady_cycle(self.path, &self.drive.friction, self.ratio, compression, &Shakedown::default(), cycle);
+        steady_cycle(
+            self.path,
+            &self.loading.friction,
+            self.ratio,
+            compression,
+            &Shakedown::default(),
+            cycle,
+        );
         slip.fill(0.0);
         if self.components == 1 && self.path.is_level() {
             // What moved less what the deflection took up: a sum over the substeps would round off as many times.
@@ -318,14 +347,14 @@ impl PathSprings<'_> {
 
 /// What the law of wear takes for the load of a spring of this compression at the largest indentation, lifted by `lift`, m: its
 /// compression, or what resists its slip where wear goes by energy.
-fn bearing(drive: &Drive, compression: f64, lift: f64) -> f64 {
+fn bearing(loading: &CycleLoading, compression: f64, lift: f64) -> f64 {
     let lifted = compression - lift;
     // A spring that is never lifted loses contact by round-off only, about zero in the limit; that is better left as it is, for it wears
     // back. Else springs may lose contact.
     let by_round_off = lift == 0.0 && lifted < 0.0;
-    match drive.wear {
-        WearLaw::DissipatedEnergy { .. } if by_round_off => -drive.friction.kinetic_strength(-lifted),
-        WearLaw::DissipatedEnergy { .. } => drive.friction.kinetic_strength(lifted),
+    match loading.wear {
+        WearLaw::DissipatedEnergy { .. } if by_round_off => -loading.friction.kinetic_strength(-lifted),
+        WearLaw::DissipatedEnergy { .. } => loading.friction.kinetic_strength(lifted),
         WearLaw::NonLocal { .. } => lifted.max(0.0),
         _ if by_round_off => lifted,
         _ => lifted.max(0.0),

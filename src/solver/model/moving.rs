@@ -22,8 +22,8 @@ mod stage;
 
 use std::f64::consts::PI;
 
-use super::schedule::{Demand, Drive, Schedule};
-use super::{Fields, Model, Place, State};
+use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
+use super::{Fields, Model, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::indenter::EquivalentProfile;
 use crate::error::{Error, Result};
@@ -31,7 +31,7 @@ use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::numerics::grid::Clustering;
 use crate::numerics::roots::bracketed;
-pub use stage::{StickTarget, StickTrial};
+pub use stage::{StickStage, StickTarget, StickTrial};
 
 /// Radii at which what was left behind is known, for interpolation over where the contact edge can be.
 const STATIONS: usize = 24;
@@ -39,7 +39,7 @@ const STATIONS: usize = 24;
 /// Indentation over the first one up to which a contact that slides under a held force is followed.
 const FARTHEST: f64 = 5.0;
 
-/// Compressions that differ by less than this part are the same by two ways.
+/// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
 
 /// What moves the edge of stick.
@@ -183,7 +183,7 @@ impl MovingStick {
         contact.at(profile.value(stick) + compression, compression)
     }
 
-    /// The mesh that serves, where `asked` is the one for an edge of stick that stays.
+    /// The mesh to use, where `asked` is the one for an edge of stick that rests.
     pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
         match self.cause {
             _ if self.rests() => asked,
@@ -202,11 +202,6 @@ impl MovingStick {
         !self.outwards && !self.rests()
     }
 
-    /// By how much area and depth of the edge of stick have changed in a stage, as far as ground passes it.
-    fn motion(&self, target: &StickTarget, area: f64, depth: f64) -> (f64, f64) {
-        if self.slides() { (0.0, 0.0) } else { (area - target.stick.area, depth - target.stick.depth) }
-    }
-
     /// Whether the edge stays where it is during a step.
     fn rests(&self) -> bool {
         self.jumps || self.slides()
@@ -217,7 +212,7 @@ impl MovingStick {
         self
     }
 
-    /// What was left behind at a squared radius, m², of ground that the contact has come to; none where it was from the start.
+    /// What was left behind at a squared radius, m², outside the first contact; none within it.
     pub(super) fn left_behind_outside(&self, stick: &StickEdge, squared: f64) -> Option<f64> {
         (self.outwards && squared >= self.span[0].exp())
             .then(|| self.left_behind(&stick.left_behind, squared))
@@ -253,19 +248,19 @@ impl MovingStick {
     /// The edge of stick of the unworn contact.
     pub(super) fn start(&self, model: &Model) -> Result<StickEdge> {
         let profile = model.contact.equivalent_profile();
-        let drive = model.schedule.drive(0.0, 0.0);
+        let loading = model.schedule.loading(0.0, 0.0);
         let compression = match self.cause {
             Cause::Sliding(_) => {
-                let radius = model.place.stick_area.sqrt();
+                let radius = model.stick_zone.stick_area.sqrt();
                 return Ok(StickEdge {
-                    area: model.place.stick_area,
-                    depth: model.place.slip_compression,
+                    area: model.stick_zone.stick_area,
+                    depth: model.stick_zone.slip_compression,
                     load: unworn_load(profile, radius, model.contact.slip_compression()),
                     ..StickEdge::default()
                 });
             }
-            Cause::Tangential => model.first_slip_compression(&drive)?,
-            _ => drive.slip_compression(model.contact.half_space().stiffness_ratio()),
+            Cause::Tangential => model.first_slip_compression(&loading)?,
+            _ => loading.slip_compression(model.contact.half_space().stiffness_ratio()),
         };
         let depth = model.contact.indentation() - compression;
         if depth <= 0.0 {
@@ -273,14 +268,14 @@ impl MovingStick {
                 what: "loading.amplitude",
                 why: format!(
                     "at an amplitude of {:e} m the whole contact slides in the first cycle under a force that is held; reduce it",
-                    drive.amplitude
+                    loading.amplitude
                 ),
             });
         }
         let radius = profile.radius_at(depth)?;
         let load = unworn_load(profile, radius, compression);
         let behind = if self.outwards { STATIONS } else { 0 };
-        let nodes = if self.outwards { model.shown.offsets().len() } else { 0 };
+        let nodes = if self.outwards { model.output.offsets().len() } else { 0 };
         Ok(StickEdge {
             area: radius * radius,
             depth,
@@ -294,12 +289,12 @@ impl MovingStick {
     }
 }
 
-/// Refuses an edge of stick that comes to rest on worn ground amidst a mesh that begins farther inside: what the springs next to it are off by grows
-/// as slip does, and moves it inwards. Worn volumes were 0.4 to 8 % off with any number of springs.
+/// Refuses an edge of stick that comes to rest on worn ground within the mesh: errors of the springs next to it grow with slip and move it inwards.
+/// Worn volumes were 0.4 to 8 % off with any number of springs.
 fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     let ratio = contact.half_space().stiffness_ratio();
-    let largest = |drives: &mut dyn Iterator<Item = Drive>| {
-        drives.map(|drive| drive.slip_compression(ratio)).fold(0.0, f64::max)
+    let largest = |loadings: &mut dyn Iterator<Item = CycleLoading>| {
+        loadings.map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
     };
     let [last, most] = [largest(&mut schedule.lasting()), largest(&mut schedule.extremes())];
     if last >= most * (1.0 - SAME_COMPRESSION) {
@@ -307,7 +302,8 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     }
     let part = last / most;
     let in_the_end = format!(
-        "in the end springs slip below {part:.4} of the largest compression at which they slipped before, so that the edge of stick comes to rest          within worn ground, which is not followed to any accuracy"
+        "in the end springs slip below {part:.4} of the largest compression at which they slipped before, so that the edge of stick comes to rest \
+         within worn ground, which is not followed to any accuracy"
     );
     let (what, cure) = if schedule.conditions().blocks.is_empty() {
         ("friction.history", "let the factors only fall, only rise, or end at their smallest")
@@ -344,18 +340,18 @@ impl Model {
         self.moving.as_ref()
     }
 
-    /// Where the mesh begins in a state.
-    pub(super) fn place_of(&self, stick: &StickEdge, drive: &Drive) -> Place {
-        let moving = self.moving.as_ref().expect("a stick edge in the state is one that moves");
+    /// Where the mesh begins, with the edge of stick of a state.
+    pub(super) fn stick_zone_in(&self, stick: Option<&StickEdge>, loading: &CycleLoading) -> StickZone {
+        let (Some(moving), Some(stick)) = (&self.moving, stick) else { return self.stick_zone };
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
-            Cause::NormalForce(_) => drive.slip_compression(self.contact.half_space().stiffness_ratio()),
+            Cause::NormalForce(_) => loading.slip_compression(self.contact.half_space().stiffness_ratio()),
             Cause::Sliding(_) => stick.depth,
         };
-        Place { stick_area: stick.area, slip_compression, stick_load: stick.load }
+        StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
     }
 
-    /// Puts what the quadrature over the springs leaves of a held force in the first cycle on the stick zone.
+    /// Adds the part of a held force that the quadrature over the springs misses in the first cycle to the load of the stick zone.
     pub(super) fn close_force(&self, mut state: State) -> State {
         let cause = self.moving.as_ref().map(|moving| moving.cause);
         let Some(Cause::NormalForce(force) | Cause::Sliding(force)) = cause else { return state };
@@ -366,30 +362,30 @@ impl Model {
         state
     }
 
-    /// What acts in a state: the amplitude is that at which springs at the edge of stick begin to slip.
-    pub fn drive_in(&self, state: &State, drive: Drive) -> Drive {
+    /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
+    pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
         let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
         match &state.stick {
-            Some(stick) if tangential => self.displaced(drive, self.contact.indentation() - stick.depth),
-            _ => drive,
+            Some(stick) if tangential => self.displaced(loading, self.contact.indentation() - stick.depth),
+            _ => loading,
         }
     }
 
-    pub(super) fn displaced(&self, drive: Drive, slip_compression: f64) -> Drive {
+    pub(super) fn displaced(&self, loading: CycleLoading, slip_compression: f64) -> CycleLoading {
         let amplitude =
-            drive.friction.static_strength(slip_compression) / self.contact.half_space().stiffness_ratio();
-        Drive { amplitude, demand: Demand::Displacement, ..drive }
+            loading.friction.static_strength(slip_compression) / self.contact.half_space().stiffness_ratio();
+        CycleLoading { amplitude, control: AmplitudeControl::Displacement, ..loading }
     }
 
     /// Indentation in a state, m.
     pub fn indentation(&self, state: &State) -> f64 {
         match (&self.moving, &state.stick) {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
-                let drive = self.schedule.drive(state.cycles, state.cycles);
-                stick.depth + self.place_of(stick, &drive).slip_compression
+                let loading = self.schedule.loading(state.cycles, state.cycles);
+                stick.depth + self.stick_zone_in(Some(stick), &loading).slip_compression
             }
             (Some(MovingStick { cause: Cause::Sliding(_), .. }), Some(stick)) => {
-                self.contact.indentation() - self.place.slip_compression + stick.depth
+                self.contact.indentation() - self.stick_zone.slip_compression + stick.depth
             }
             _ => self.contact.indentation(),
         }
@@ -401,15 +397,15 @@ impl Model {
     pub fn settle_depth(&self, state: &mut State, fields: &Fields) {
         let (Some(moving), Some(stick)) = (&self.moving, &mut state.stick) else { return };
         let first = moving.span[0].exp();
-        for (offset, depth) in self.shown.offsets().iter().zip(&mut stick.wear_depth) {
-            let squared = self.place.stick_area + offset;
+        for (offset, depth) in self.output.offsets().iter().zip(&mut stick.wear_depth) {
+            let squared = self.stick_zone.stick_area + offset;
             let z = squared - stick.area;
             if squared < first || z <= 0.0 {
                 continue;
             }
-            let x = z / fields.edge;
+            let x = z / fields.slip_area;
             *depth = if x < 1.0 {
-                let unworn = self.unworn.at_stick(stick.area, fields.place.slip_compression, z).slip;
+                let unworn = self.unworn.at_stick(stick.area, fields.stick_zone.slip_compression, z).slip;
                 let grown = unworn * self.between_springs(&fields.log_slip, x).exp_m1();
                 (grown - moving.left_behind(&stick.left_behind, squared)).max(0.0)
             } else {
@@ -425,15 +421,15 @@ impl Model {
     }
 
     /// Compression at the edge of stick of the unworn contact in the balance of forces, m.
-    fn first_slip_compression(&self, drive: &Drive) -> Result<f64> {
+    fn first_slip_compression(&self, loading: &CycleLoading) -> Result<f64> {
         let ratio = self.contact.half_space().stiffness_ratio();
         let depth = self.contact.indentation();
         let largest = self.contact.slip_compression();
         let excess = |compression: f64| {
-            let amplitude = drive.friction.static_strength(compression) / ratio;
-            let force = super::reach::first_force(&self.contact, &drive.friction, amplitude, depth)
+            let amplitude = loading.friction.static_strength(compression) / ratio;
+            let force = super::first_force::first_force(&self.contact, &loading.friction, amplitude, depth)
                 .unwrap_or(f64::NAN);
-            drive.excess(force, amplitude)
+            loading.excess(force, amplitude)
         };
         bracketed(excess, 1e-12 * largest, largest, 0.0)
     }

@@ -1,6 +1,6 @@
-//! Operators of one grading on one mesh, which models of the same can share.
+//! Operators of one grading on one mesh, which models share.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::derivatives::{Stencil, derivative_stencils};
 use super::jacobian::{Jacobian, ScaledFactors};
@@ -33,12 +33,12 @@ enum Inverse {
     },
 }
 
-/// What tells operators apart: the bits of the grading and of the stretch of the mesh, number of springs, clustering, backend.
+/// Key of operators: the bits of the grading and of the stretch of the mesh, number of springs, clustering, backend.
 type Key = (u64, u64, usize, Clustering, Backend);
 
-type Kept = Vec<(Key, Arc<Operators>)>;
+type Recent = Vec<(Key, Arc<Operators>)>;
 
-/// Operators used last, for all the models of a process; one at most of those so large that they fill the memory.
+/// Operators used last, for all models of a process; at most one that is so large that it fills the memory.
 ///
 /// Models share them when grading, number of springs and the ratio `a∞/c` agree to the last bit: scenes that differ in load, friction,
 /// wear or stiffness at one stick ratio. A model is the same bit for bit whether its operators were shared or not.
@@ -46,7 +46,8 @@ type Kept = Vec<(Key, Arc<Operators>)>;
 /// A clone is the same store.
 #[derive(Debug, Clone, Default)]
 pub struct OperatorStore {
-    kept: Arc<Mutex<Kept>>,
+    /// The ones used last first.
+    recent: Arc<Mutex<Recent>>,
 }
 
 impl OperatorStore {
@@ -66,27 +67,30 @@ impl OperatorStore {
             return Ok(found);
         }
         if springs >= MANY_SPRINGS {
-            // One of that size is enough: on a mesh that did not do, another follows.
-            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-            kept.retain(|((_, _, springs, ..), _)| *springs < MANY_SPRINGS);
+            // One of that size is enough: a mesh that does not carry the contact is followed by another.
+            self.recent().retain(|((_, _, springs, ..), _)| *springs < MANY_SPRINGS);
         }
-        // Without the lock, so that others go on meanwhile; two that build the same build it equal.
+        // Without the lock, so that other threads go on meanwhile; two that build the same get equal operators.
         let built = Arc::new(Operators::new(backend, grading, stretch, springs, clustering)?);
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.insert(0, (key, Arc::clone(&built)));
-        kept.truncate(Self::MOST);
+        let mut recent = self.recent();
+        recent.insert(0, (key, Arc::clone(&built)));
+        recent.truncate(Self::MOST);
         Ok(built)
     }
 
+    fn recent(&self) -> MutexGuard<'_, Recent> {
+        self.recent.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn touch(&self, key: Key) -> Option<Arc<Operators>> {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let place = kept.iter().position(|(known, _)| *known == key)?;
-        kept[..=place].rotate_right(1);
-        Some(Arc::clone(&kept[0].1))
+        let mut recent = self.recent();
+        let index = recent.iter().position(|(known, _)| *known == key)?;
+        recent[..=index].rotate_right(1);
+        Some(Arc::clone(&recent[0].1))
     }
 }
 
-/// Springs from which on what is not needed any more is not kept: the factors of `F`, a quarter of a run's memory, and operators used before.
+/// Springs from which on memory is given back early: the factors of `F`, a quarter of a run's memory, and operators used before.
 const MANY_SPRINGS: usize = 500;
 
 /// Most corrections of a solution with hierarchical operators.
@@ -165,17 +169,19 @@ impl Operators {
             row_factor[n - 1] = 0.0;
             let column_factor = vec![1.0; n - 1];
             let jacobian = Jacobian {
+                abel: &self.abel,
+                stencils: &self.derivative,
                 row_factor: &row_factor,
                 column_factor: &column_factor,
                 along: 0.0,
                 pressure_factor: 0.0,
                 corner: 1.0,
             };
-            jacobian.factors(self, compressed, None)
+            jacobian.factors(compressed, None)
         })
     }
 
-    /// Gives the factors back where they are large; whoever asks for them again waits for them to be made anew.
+    /// Frees the factors where they are large; they are made again when they are needed.
     pub fn release_factors(&self) {
         if self.abel.len() < MANY_SPRINGS {
             return;

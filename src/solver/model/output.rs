@@ -11,18 +11,18 @@ use crate::numerics::linear::dot;
 /// Distance from the contact edge, over the annulus, that is round-off.
 const AT_EDGE: f64 = 1e-13;
 
-/// Places at which the fields on a smooth mesh are shown where its springs are fewer.
+/// Radii of the output on a smooth mesh of fewer springs.
 const SHOWN: usize = 128;
 
-/// Most places shown: of more springs every second one, or every third, and so on, inwards from the contact edge. A file of a hundred snapshots
-/// takes 40 MB then.
+/// Most radii of the output: of more springs every second one is shown, or every third, and so on, inwards from the contact edge. A file of a
+/// hundred snapshots then takes 40 MB.
 const MOST_SHOWN: usize = 16_384;
 
 /// Most springs at which the depth is compared from step to step.
 const MOST_JUDGED: usize = 4096;
 
-/// Stick radius, over that of the core of a contact that slides, below which nothing sticks: next to the core springs lie densely, and the
-/// innermost of them may be as strong as the core.
+/// Stick radius, over that of the core, below which nothing sticks in gross slip: springs lie densely next to the core, and the innermost may be
+/// as strong as the core.
 const MIDDLE: f64 = 2.0;
 
 /// The fields on the fixed radii of the output, shape `(node,)` each.
@@ -30,7 +30,7 @@ const MIDDLE: f64 = 2.0;
 pub struct RadialFields {
     /// Wear depth, m.
     pub wear_depth: Vec<f64>,
-    /// Pressure, Pa, zero outside the contact; not a number where the ground has come to stick: springs tell it in the annulus alone.
+    /// Pressure, Pa, zero outside the contact; not a number in the stick zone, which has no springs.
     pub pressure: Vec<f64>,
     /// Slip amplitude, m, zero outside the contact.
     pub slip: Vec<f64>,
@@ -39,14 +39,14 @@ pub struct RadialFields {
 impl Model {
     /// The same contact on the same springs, with the radii of the output at `r² - c²`, m², increasing, instead of its own.
     pub(crate) fn shown_at(mut self, offsets: Vec<f64>) -> Self {
-        self.shown =
-            Shown { unworn: offsets.iter().map(|offset| self.unworn.at(*offset)).collect(), offsets };
+        self.output =
+            OutputRadii { unworn: offsets.iter().map(|offset| self.unworn.at(*offset)).collect(), offsets };
         self
     }
 
     /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
     pub fn wear_volume(&self, fields: &Fields) -> f64 {
-        self.volume(fields.edge, &fields.wear_depth)
+        self.volume(fields.slip_area, &fields.wear_depth)
     }
 
     /// Worn volume in a state, m³: where the edge of stick has left worn ground behind, by the rates of the cycles.
@@ -60,11 +60,11 @@ impl Model {
     /// Worn volume of the limit by the program's own quadrature, m³.
     pub fn limit_volume(&self) -> f64 {
         let depth: Vec<f64> = self.radial_unworn.iter().map(UnwornValues::limit_depth).collect();
-        self.volume(self.unworn.limit_edge(), &depth)
+        self.volume(self.unworn.limit_slip_area(), &depth)
     }
 
-    /// Depth between the springs of the limit that these do not see in the unworn slip, over the limit's largest: waves of a table that are too
-    /// short for them. None where the indenter is no table, or the edge of stick moves.
+    /// Depth that the mesh does not resolve in the unworn slip, over the limit's largest: waves of a table that are too short for it. None where the
+    /// indenter is not a table, or the edge of stick moves.
     pub fn unseen_depth(&self) -> Option<f64> {
         self.contact.equivalent_profile().end_of_table()?;
         if self.moving.is_some() {
@@ -74,22 +74,22 @@ impl Model {
         let smooth = |unworn: &UnwornValues| unworn.slip.ln() - (1.0 + self.mu()) * unworn.logarithm.ln();
         let springs: Vec<f64> = self.radial_unworn.iter().map(smooth).collect();
         let missed = |y: f64| {
-            let unworn = self.unworn.at(self.unworn.limit_edge() * mesh.at(y).value);
+            let unworn = self.unworn.at(self.unworn.limit_slip_area() * mesh.at(y).value);
             unworn.slip * (mesh.local(y, count).sum(&springs) - smooth(&unworn)).abs()
         };
         let between = (1..count).flat_map(|i| [0.25, 0.5, 0.75].map(|part| i as f64 + part));
         Some(between.map(missed).fold(0.0, f64::max) / self.depth_scale)
     }
 
-    pub(super) fn volume(&self, edge: f64, wear_depth: &[f64]) -> f64 {
-        PI * edge * dot(self.operators.abel.depth_sum(), wear_depth)
+    pub(super) fn volume(&self, slip_area: f64, wear_depth: &[f64]) -> f64 {
+        PI * slip_area * dot(self.operators.abel.depth_sum(), wear_depth)
     }
 
     /// Normal force, N [S, Eq. (22)].
     pub fn normal_force(&self, fields: &Fields) -> f64 {
-        let slipping =
-            fields.edge * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density);
-        self.contact.half_space().normal_stiffness() * (2.0 * fields.place.stick_load + slipping)
+        let slipping = fields.slip_area
+            * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density);
+        self.contact.half_space().normal_stiffness() * (2.0 * fields.stick_zone.stick_load + slipping)
     }
 
     /// Energy that friction dissipates in one cycle, J.
@@ -100,7 +100,7 @@ impl Model {
     pub fn dissipation(&self, fields: &Fields, compression: &[f64]) -> f64 {
         let friction = self.contact.friction().coefficient;
         let half_space = self.contact.half_space();
-        let slipping = fields.place.slip_compression;
+        let slipping = fields.stick_zone.slip_compression;
         let sum: f64 = compression
             .iter()
             .zip(&fields.density)
@@ -109,7 +109,7 @@ impl Model {
             .sum();
         4.0 * friction * friction / half_space.stiffness_ratio()
             * half_space.normal_stiffness()
-            * fields.edge
+            * fields.slip_area
             * sum
     }
 
@@ -122,11 +122,11 @@ impl Model {
         let half_space = self.contact.half_space();
         let q = 1.0 + half_space.grading();
         let limit = self.contact.friction().coefficient / half_space.stiffness_ratio();
-        let stuck = 2.0 * displacement * fields.place.stick_area.powf(0.5 * q) / q;
+        let stuck = 2.0 * displacement * fields.stick_zone.stick_area.powf(0.5 * q) / q;
         let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
         let moved: f64 =
             springs.map(|((q, factor), weight)| weight * factor * displacement.min(limit * q)).sum();
-        half_space.stiffness_ratio() * half_space.normal_stiffness() * (stuck + fields.edge * moved)
+        half_space.stiffness_ratio() * half_space.normal_stiffness() * (stuck + fields.slip_area * moved)
     }
 
     /// Tangential force, N, along one steady fretting loop, at displacements, m, that go from `U` to `-U` and back.
@@ -159,85 +159,43 @@ impl Model {
         }
     }
 
-    /// A stick radius of [`CycleFields`] or [`State`], m, without the core that stands for the middle of a contact that slides.
+    /// A stick radius of [`CycleFields`] or [`State`], m: zero where that is the core of a contact in gross slip.
     pub fn without_core(&self, stick_radius: f64) -> f64 {
         if self.reaches_the_middle(stick_radius) { 0.0 } else { stick_radius }
     }
 
     fn reaches_the_middle(&self, stick_radius: f64) -> bool {
-        self.slides && stick_radius < MIDDLE * self.place.stick_area.sqrt()
+        self.slides && stick_radius < MIDDLE * self.stick_zone.stick_area.sqrt()
     }
 
-    /// Wear depth, m, at `offset = r² - c²`, m², any place of the annulus, where the edge of stick left no worn ground behind.
+    /// Wear depth, m, at any `offset = r² - c²`, m², where the edge of stick left no worn ground behind.
     pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
-        let z = state.stick.as_ref().map_or(offset, |stick| offset - (stick.area - self.place.stick_area));
-        let x = z / fields.edge;
-        if x <= 0.0 || x >= 1.0 - AT_EDGE {
-            return 0.0;
-        }
-        let unworn = self.unworn_at(&fields.place, z);
-        let of_limit = |spring: usize| fields.unworn[spring].limit_log_slip();
-        unworn.slip * self.log_slip_at(fields, x, &unworn, of_limit).1.exp_m1()
+        let annulus = Annulus::new(self, state, fields);
+        annulus.point(offset, &self.unworn.at(offset)).map_or(0.0, |point| point.grown())
     }
 
-    /// The coordinate of `ξ` on the mesh, and `λ` there, where the unworn slip is known.
-    ///
-    /// On a smooth mesh it is the local polynomial, corrected by what that is off by for the limit's `λ_∞`, which is known everywhere, as far as
-    /// wear has come: so the limit is met between the springs as it is at them.
-    fn log_slip_at(
-        &self,
-        fields: &Fields,
-        fraction: f64,
-        unworn: &UnwornValues,
-        of_limit: impl Fn(usize) -> f64,
-    ) -> (f64, f64) {
-        let mesh = self.operators.abel.mesh();
-        let y = mesh.place(fraction);
-        let local = mesh.local(y, self.springs());
-        let log_slip = local.sum(&fields.log_slip);
-        if mesh.clustering() != Clustering::Smooth {
-            return (y, log_slip);
-        }
-        let between = local.sum_of(of_limit);
-        let worn = if between > 0.0 { (log_slip / between).clamp(0.0, 1.0) } else { 1.0 };
-        (y, log_slip + worn * (unworn.limit_log_slip() - between))
-    }
-
-    /// Wear depth, m, at the places of the limit's springs that are not hidden, or of one in several where they are many; at least zero.
+    /// Wear depth, m, by which a step is accepted: at the output where the edge of stick leaves worn ground behind, else at the springs of the limit
+    /// that are not hidden, or at one in several where they are many; at least zero.
     pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
-        if let Some(stick) = state.stick.as_ref().filter(|stick| !stick.wear_depth.is_empty()) {
-            let of_limit = self.limit_log_slip(fields);
-            let shown = self.shown.offsets.iter().zip(&self.shown.unworn).zip(&stick.wear_depth);
-            let depth = |((offset, unworn), worn): ((&f64, &UnwornValues), &f64)| {
-                let spot = self.spot(state, fields, &of_limit, *offset, unworn);
-                self.depth_beyond(stick, *offset, spot.as_ref(), *worn)
-            };
-            return shown.map(depth).collect();
+        if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
+            return self.radial_wear_depth(state, fields);
         }
+        let annulus = Annulus::new(self, state, fields);
         let every = self.springs().div_ceil(MOST_JUDGED);
-        let places = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
-        let places = places.step_by(every);
-        let of_limit = self.limit_log_slip(fields);
+        let springs = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
         let depth = |(x, unworn): (&f64, &UnwornValues)| {
-            let spot = self.spot(state, fields, &of_limit, self.unworn.limit_edge() * x, unworn);
-            spot.map_or(0.0, |spot| spot.wear_depth())
+            let point = annulus.point(self.unworn.limit_slip_area() * x, unworn);
+            point.map_or(0.0, |point| point.wear_depth())
         };
-        places.map(depth).collect()
+        springs.step_by(every).map(depth).collect()
     }
 
-    /// Wear depth, m, at `offset` where the edge of stick leaves worn ground behind: `worn`, what every cycle took there; but outside the first
-    /// contact, where wear sets in as the contact edge passes, that of the slip, for steps do not resolve the passage.
-    ///
-    /// ```text
-    /// w = S - S_0 - K
-    /// ```
-    fn depth_beyond(&self, stick: &StickEdge, offset: f64, spot: Option<&Spot>, worn: f64) -> f64 {
-        let moving = self.moving.as_ref();
-        let squared = self.place.stick_area + offset;
-        match moving.and_then(|moving| moving.left_behind_outside(stick, squared)) {
-            Some(behind) => spot.map_or(0.0, |spot| (spot.grown() - behind).max(0.0)),
-            None => worn,
-        }
+    /// Wear depth at [`Model::radii`], m.
+    pub fn radial_wear_depth(&self, state: &State, fields: &Fields) -> Vec<f64> {
+        let annulus = Annulus::new(self, state, fields);
+        let depth =
+            |(i, (offset, unworn))| annulus.wear_depth(i, offset, annulus.point(offset, unworn).as_ref());
+        self.output.iter().enumerate().map(depth).collect()
     }
 
     /// The fields at [`Model::radii`], by the local polynomials between the springs.
@@ -250,22 +208,17 @@ impl Model {
         let eased: Vec<f64> = (0..self.springs() - 1)
             .map(|i| fields.pressure[i] * mesh.node(i + 1).complement.powf(-nu))
             .collect();
-        let shown = self.shown.offsets.len();
+        let shown = self.output.offsets.len();
         let mut radial =
             RadialFields { wear_depth: vec![0.0; shown], pressure: vec![0.0; shown], slip: vec![0.0; shown] };
-        let of_limit = self.limit_log_slip(fields);
-        let stick = state.stick.as_ref();
-        for (i, (offset, unworn)) in self.shown.offsets.iter().zip(&self.shown.unworn).enumerate() {
-            let spot = self.spot(state, fields, &of_limit, *offset, unworn);
-            let passed = stick.and_then(|stick| Some((stick, stick.wear_depth.get(i)?)));
-            radial.wear_depth[i] = match passed {
-                Some((stick, worn)) => self.depth_beyond(stick, *offset, spot.as_ref(), *worn),
-                None => spot.as_ref().map_or(0.0, Spot::wear_depth),
-            };
-            if self.sticks_at(state, *offset) {
+        let annulus = Annulus::new(self, state, fields);
+        for (i, (offset, unworn)) in self.output.iter().enumerate() {
+            let point = annulus.point(offset, unworn);
+            radial.wear_depth[i] = annulus.wear_depth(i, offset, point.as_ref());
+            if annulus.sticks_at(offset) {
                 radial.pressure[i] = f64::NAN;
             }
-            let Some(Spot { x, y, unworn, log_slip }) = spot else { continue };
+            let Some(AnnulusPoint { x, y, unworn, log_slip }) = point else { continue };
             radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
             radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
             if mesh.clustering() == Clustering::Smooth {
@@ -274,44 +227,90 @@ impl Model {
         }
         radial
     }
+}
 
-    /// Whether an edge of stick that moves outwards has passed the place `offset = r² - c²`, m², with the edge at rest.
-    fn sticks_at(&self, state: &State, offset: f64) -> bool {
-        state.stick.as_ref().is_some_and(|stick| self.place.stick_area + offset <= stick.area)
-    }
-
+/// The slip annulus in a state, at any `offset = r² - c²`, m², from the edge of stick at rest.
+struct Annulus<'a> {
+    model: &'a Model,
+    state: &'a State,
+    fields: &'a Fields,
     /// `λ_∞` on the springs.
-    fn limit_log_slip(&self, fields: &Fields) -> Vec<f64> {
-        fields.unworn.iter().map(UnwornValues::limit_log_slip).collect()
+    limit_log_slip: Vec<f64>,
+}
+
+impl<'a> Annulus<'a> {
+    fn new(model: &'a Model, state: &'a State, fields: &'a Fields) -> Self {
+        let limit_log_slip = fields.unworn.iter().map(UnwornValues::limit_log_slip).collect();
+        Self { model, state, fields, limit_log_slip }
     }
 
-    /// A place of the annulus at `offset = r² - c²`, m², with the edge of stick at rest, where the unworn slip of that is known; none outside.
-    fn spot(
-        &self,
-        state: &State,
-        fields: &Fields,
-        of_limit: &[f64],
-        offset: f64,
-        at_rest: &UnwornValues,
-    ) -> Option<Spot> {
-        let (z, unworn) = match &state.stick {
+    /// A point of the annulus where the unworn slip of the edge at rest is known; none outside the annulus.
+    fn point(&self, offset: f64, at_rest: &UnwornValues) -> Option<AnnulusPoint> {
+        let (model, fields) = (self.model, self.fields);
+        let (z, unworn) = match &self.state.stick {
             None => (offset, *at_rest),
             Some(stick) => {
-                let z = self.place.stick_area + offset - stick.area;
-                (z, if z > 0.0 { self.unworn_at(&fields.place, z) } else { *at_rest })
+                let z = model.stick_zone.stick_area + offset - stick.area;
+                (z, if z > 0.0 { model.unworn_at(&fields.stick_zone, z) } else { *at_rest })
             }
         };
-        let x = z / fields.edge;
+        let x = z / fields.slip_area;
         if x <= 0.0 || x >= 1.0 - AT_EDGE {
             return None;
         }
-        let (y, log_slip) = self.log_slip_at(fields, x, &unworn, |spring| of_limit[spring]);
-        Some(Spot { x, y, unworn: unworn.slip, log_slip })
+        let y = model.operators.abel.mesh().place(x);
+        Some(AnnulusPoint { x, y, unworn: unworn.slip, log_slip: self.log_slip(y, &unworn) })
+    }
+
+    /// `λ` at a coordinate of the mesh where the unworn slip is known.
+    ///
+    /// On a smooth mesh the local polynomial is corrected by its error for the limit's `λ_∞`, which is known everywhere, in the proportion in
+    /// which wear has come to the limit: so the limit is met between the springs as it is at them.
+    fn log_slip(&self, y: f64, unworn: &UnwornValues) -> f64 {
+        let mesh = self.model.operators.abel.mesh();
+        let local = mesh.local(y, self.model.springs());
+        let log_slip = local.sum(&self.fields.log_slip);
+        if mesh.clustering() != Clustering::Smooth {
+            return log_slip;
+        }
+        let between = local.sum(&self.limit_log_slip);
+        let worn = if between > 0.0 { (log_slip / between).clamp(0.0, 1.0) } else { 1.0 };
+        log_slip + worn * (unworn.limit_log_slip() - between)
+    }
+
+    /// Wear depth, m, at a radius of the output, at least zero.
+    fn wear_depth(&self, index: usize, offset: f64, point: Option<&AnnulusPoint>) -> f64 {
+        let passed = self.state.stick.as_ref().and_then(|stick| Some((stick, stick.wear_depth.get(index)?)));
+        match passed {
+            Some((stick, worn)) => self.depth_beyond(stick, offset, point, *worn),
+            None => point.map_or(0.0, AnnulusPoint::wear_depth),
+        }
+    }
+
+    /// Wear depth, m, where the edge of stick leaves worn ground behind: `worn`, the sum over the cycles; but outside the first contact, where wear
+    /// sets in as the contact edge passes within a step, by the slip.
+    ///
+    /// ```text
+    /// w = S - S_0 - K
+    /// ```
+    fn depth_beyond(&self, stick: &StickEdge, offset: f64, point: Option<&AnnulusPoint>, worn: f64) -> f64 {
+        let squared = self.model.stick_zone.stick_area + offset;
+        let behind = self.model.moving.as_ref().and_then(|it| it.left_behind_outside(stick, squared));
+        match behind {
+            Some(behind) => point.map_or(0.0, |point| (point.grown() - behind).max(0.0)),
+            None => worn,
+        }
+    }
+
+    /// Whether an edge of stick that moves outwards has passed.
+    fn sticks_at(&self, offset: f64) -> bool {
+        let least = self.model.stick_zone.stick_area;
+        self.state.stick.as_ref().is_some_and(|stick| least + offset <= stick.area)
     }
 }
 
-/// A place between the springs.
-struct Spot {
+/// A point between the springs.
+struct AnnulusPoint {
     /// `ξ`.
     x: f64,
     /// Its coordinate on the mesh.
@@ -322,8 +321,8 @@ struct Spot {
     log_slip: f64,
 }
 
-impl Spot {
-    /// At least zero: before the contact edge the polynomial may pass below nothing, by less than the run is off.
+impl AnnulusPoint {
+    /// At least zero: next to the contact edge the polynomial may be negative, by less than the error of the run.
     fn wear_depth(&self) -> f64 {
         self.grown().max(0.0)
     }
@@ -336,16 +335,16 @@ impl Spot {
 
 /// Where fields are shown.
 #[derive(Debug, Clone)]
-pub(super) struct Shown {
+pub(super) struct OutputRadii {
     /// `r² - c²`, m², increasing.
     offsets: Vec<f64>,
     /// The unworn slip there.
     unworn: Vec<UnwornValues>,
 }
 
-impl Shown {
-    /// The places of the limit's springs, but for the first ones, or of one in several where they are more than [`MOST_SHOWN`]; on a smooth mesh of few springs, whose polynomials serve between them, at
-    /// least [`SHOWN`] places, graded as the mesh is, from [`HIDDEN`] to the contact edge.
+impl OutputRadii {
+    /// The springs of the limit without the first ones, or one in several where they are more than [`MOST_SHOWN`]. On a smooth mesh of few springs
+    /// [`SHOWN`] radii, graded as the mesh is, from [`HIDDEN`] to the contact edge.
     pub(super) fn new(unworn: &UnwornSlip, mesh: &Mesh, hidden: usize) -> Self {
         let springs = &mesh.nodes()[1 + hidden..];
         let fractions: Vec<f64> = if mesh.clustering() == Clustering::Smooth && springs.len() < SHOWN {
@@ -358,8 +357,13 @@ impl Shown {
             let skipped = (springs.len() - 1) % every;
             springs.iter().skip(skipped).step_by(every).copied().collect()
         };
-        let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_edge() * x).collect();
+        let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_slip_area() * x).collect();
         Self { unworn: offsets.iter().map(|offset| unworn.at(*offset)).collect(), offsets }
+    }
+
+    /// `r² - c²`, m², and the unworn slip there.
+    fn iter(&self) -> impl Iterator<Item = (f64, &UnwornValues)> {
+        self.offsets.iter().copied().zip(&self.unworn)
     }
 
     /// `r² - c²`, m².

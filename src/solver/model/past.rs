@@ -1,4 +1,4 @@
-//! What a method of several steps remembers.
+//! The times before a state, which a multistep method needs.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ pub struct Past {
     pub order: usize,
     /// The state itself and those before it, the newest first.
     pub points: Vec<Arc<PastPoint>>,
-    /// Where the factors were made that the next step begins with, if it does not make its own.
+    /// Where the factors were made with which the next step begins; none if it makes its own.
     pub linearised: Option<Arc<Linearised>>,
 }
 
@@ -19,9 +19,9 @@ pub struct Past {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Linearised {
     /// `Z = a² - c²`, m².
-    pub edge: f64,
+    pub slip_area: f64,
     /// What the past made of it, m².
-    pub gathered_edge: f64,
+    pub gathered_slip_area: f64,
     /// Cycles by which the rates are multiplied.
     pub step: f64,
     /// Compression `q`, m, of the inner springs, shape `(springs - 1,)`.
@@ -29,12 +29,12 @@ pub struct Linearised {
 }
 
 impl Past {
-    /// Whether this is the past of a state that a method of orders up to `highest` can go on from.
+    /// Whether a method of orders up to `highest` can go on from a state with this past.
     pub fn fits(&self, state: &State, highest: usize) -> bool {
         let Some(newest) = self.points.first() else { return true };
         let springs = state.compression.len();
         let finite = |point: &PastPoint| {
-            let scalars = [point.cycles, point.edge, point.dissipated_energy, point.volume_by_rate];
+            let scalars = [point.cycles, point.slip_area, point.dissipated_energy, point.volume_by_rate];
             scalars.iter().chain(&point.compression).chain(&point.log_slip).all(|value| value.is_finite())
                 && (point.compression.len(), point.log_slip.len()) == (springs, springs + 1)
         };
@@ -44,9 +44,9 @@ impl Past {
             && self.points.iter().all(|point| point.cycles >= 0.0 && finite(point))
             && self.points.windows(2).all(|pair| pair[0].cycles > pair[1].cycles)
             && self.linearised.as_ref().is_none_or(|it| {
-                let scalars = [it.edge, it.gathered_edge, it.step];
+                let scalars = [it.slip_area, it.gathered_slip_area, it.step];
                 it.compression.len() == springs
-                    && it.edge > 0.0
+                    && it.slip_area > 0.0
                     && scalars.iter().chain(&it.compression).all(|value| value.is_finite())
             })
     }
@@ -58,7 +58,7 @@ pub struct PastPoint {
     /// Cycles done.
     pub cycles: f64,
     /// `Z = a² - c²`, m².
-    pub edge: f64,
+    pub slip_area: f64,
     /// Energy dissipated, J.
     pub dissipated_energy: f64,
     /// Worn volume by the rates of the cycles, m³.
@@ -74,7 +74,7 @@ impl PastPoint {
     pub fn new(state: &State, log_slip: &[f64]) -> Arc<Self> {
         Arc::new(Self {
             cycles: state.cycles,
-            edge: state.edge,
+            slip_area: state.slip_area,
             dissipated_energy: state.dissipated_energy,
             volume_by_rate: state.volume_by_rate,
             compression: state.compression.clone(),
@@ -84,10 +84,10 @@ impl PastPoint {
 
     /// A weighted sum of points; the time is not summed.
     pub fn sum(weights: &[f64], points: &[Arc<Self>]) -> Self {
-        let (springs, edge) = points.first().map_or((0, 0), |it| (it.compression.len(), it.log_slip.len()));
-        let mut sum = Self { compression: vec![0.0; springs], log_slip: vec![0.0; edge], ..Self::default() };
+        let [inner, all] = points.first().map_or([0; 2], |it| [it.compression.len(), it.log_slip.len()]);
+        let mut sum = Self { compression: vec![0.0; inner], log_slip: vec![0.0; all], ..Self::default() };
         for (weight, point) in weights.iter().zip(points) {
-            sum.edge += weight * point.edge;
+            sum.slip_area += weight * point.slip_area;
             sum.dissipated_energy += weight * point.dissipated_energy;
             sum.volume_by_rate += weight * point.volume_by_rate;
             for (total, values) in

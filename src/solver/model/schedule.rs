@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::reach::first_force;
+use super::first_force::first_force;
 use crate::contact::InitialContact;
 use crate::contact::spring::{Response, stick_compression};
 use crate::error::{Error, Result};
@@ -15,7 +15,7 @@ use crate::laws::wear::WearLaw;
 
 /// What is asked of the contact tangentially in one cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Demand {
+pub enum AmplitudeControl {
     /// The displacement given.
     Displacement,
     /// An amplitude of the force, N.
@@ -24,8 +24,8 @@ pub enum Demand {
     Rig(f64),
 }
 
-impl Demand {
-    /// Factors of force, N, and displacement, m, in what has to equal what is asked, see [`Drive::excess`].
+impl AmplitudeControl {
+    /// Factors of force, N, and displacement, m, in what has to equal what is asked, see [`CycleLoading::excess`].
     pub fn factors(self) -> [f64; 2] {
         match self {
             Self::Displacement => [0.0, 1.0],
@@ -37,7 +37,7 @@ impl Demand {
 
 /// What acts in one cycle.
 #[derive(Debug, Clone)]
-pub struct Drive {
+pub struct CycleLoading {
     /// Law of friction.
     pub friction: FrictionLaw,
     /// Law of wear.
@@ -45,7 +45,7 @@ pub struct Drive {
     /// Tangential amplitude `U`, m, as given: of the contact in the first cycle, or of the far end of a rig.
     pub amplitude: f64,
     /// What decides the amplitude of the contact.
-    pub demand: Demand,
+    pub control: AmplitudeControl,
     /// How far the indenter is lifted from its largest indentation of the run, m, where the cycle is not resolved.
     pub lift: f64,
     /// The path over one period where the cycle is resolved, seen from the largest indentation of the run.
@@ -56,10 +56,10 @@ pub struct Drive {
     pub cycles_per_period: f64,
 }
 
-impl Drive {
+impl CycleLoading {
     /// What is asked: an amplitude of the displacement, m, or of the force, N.
     pub fn asked(&self) -> f64 {
-        if let Demand::Force(asked) = self.demand { asked } else { self.amplitude }
+        if let AmplitudeControl::Force(asked) = self.control { asked } else { self.amplitude }
     }
 
     /// Compression at the largest indentation below which springs slip in this cycle, m, at the amplitude given.
@@ -72,7 +72,7 @@ impl Drive {
 
     /// By how much the contact, at an amplitude of force, N, and displacement, m, exceeds what is asked.
     pub fn excess(&self, force: f64, displacement: f64) -> f64 {
-        let [by_force, by_displacement] = self.demand.factors();
+        let [by_force, by_displacement] = self.control.factors();
         by_force * force + by_displacement * displacement - self.asked()
     }
 }
@@ -99,7 +99,7 @@ pub struct Schedule {
     /// Ends of the blocks within one pass, cycles, increasing; empty for a single block without end.
     ends: Vec<f64>,
     /// At the start of the histories, one per block, at least one.
-    drives: Vec<Drive>,
+    loadings: Vec<CycleLoading>,
     largest_indentation: f64,
 }
 
@@ -125,20 +125,20 @@ impl Schedule {
         let resolved = resolution.resolved || conditions.mode != Mode::Tangential;
         let friction = conditions.friction.scaled(conditions.friction_history.at(0.0));
         let driven = driven_amplitude(contact, conditions, &friction)?;
-        let mut drives = Vec::with_capacity(blocks.len());
+        let mut loadings = Vec::with_capacity(blocks.len());
         let mut depths = Vec::with_capacity(blocks.len());
         for block in &blocks {
             let (amplitude, indentation) =
                 (driven * block.amplitude_factor, contact.indentation() * block.indentation_factor);
-            let mut drive = Drive {
+            let mut loading = CycleLoading {
                 friction: conditions.friction,
                 wear: conditions.wear,
                 amplitude,
-                demand: match conditions.tangential_control {
-                    TangentialControl::Displacement => Demand::Displacement,
-                    TangentialControl::Rig { stiffness } => Demand::Rig(stiffness),
+                control: match conditions.tangential_control {
+                    TangentialControl::Displacement => AmplitudeControl::Displacement,
+                    TangentialControl::Rig { stiffness } => AmplitudeControl::Rig(stiffness),
                     TangentialControl::Force => {
-                        Demand::Force(first_force(contact, &friction, amplitude, indentation)?)
+                        AmplitudeControl::Force(first_force(contact, &friction, amplitude, indentation)?)
                     }
                 },
                 lift: 0.0,
@@ -153,22 +153,22 @@ impl Schedule {
                 let sampled =
                     SampledPath::new(&mode, amplitude, indentation, resolution.substeps.unwrap_or(fewest));
                 depth = sampled.largest_indentation;
-                drive.cycles_per_period = f64::from(sampled.oscillations);
-                drive.response = response(&sampled.path, &drive.friction, &drives);
-                drive.path = Some(Arc::new(sampled.path));
+                loading.cycles_per_period = f64::from(sampled.oscillations);
+                loading.response = response(&sampled.path, &loading.friction, &loadings);
+                loading.path = Some(Arc::new(sampled.path));
             }
-            drives.push(drive);
+            loadings.push(loading);
             depths.push(depth);
         }
         let largest_indentation = depths.iter().fold(0.0, |largest: f64, depth| largest.max(*depth));
-        for (drive, depth) in drives.iter_mut().zip(&depths) {
+        for (loading, depth) in loadings.iter_mut().zip(&depths) {
             let lift = largest_indentation - depth;
-            match drive.path.as_mut().map(Arc::make_mut) {
+            match loading.path.as_mut().map(Arc::make_mut) {
                 Some(path) => path.points.iter_mut().for_each(|point| point.lift += lift),
-                None => drive.lift = lift,
+                None => loading.lift = lift,
             }
         }
-        Ok(Self { conditions: conditions.clone(), clock_rate, ends, drives, largest_indentation })
+        Ok(Self { conditions: conditions.clone(), clock_rate, ends, loadings, largest_indentation })
     }
 
     /// Largest indentation of the run at which cycles begin, m.
@@ -182,25 +182,25 @@ impl Schedule {
     }
 
     /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning.
-    pub fn drive(&self, start: f64, cycles: f64) -> Drive {
-        let mut drive = self.drives[self.block(start).1].clone();
+    pub fn loading(&self, start: f64, cycles: f64) -> CycleLoading {
+        let mut loading = self.loadings[self.block(start).1].clone();
         let factor = |history: &History| history.at(cycles * self.clock_rate);
         if self.conditions.friction_history != History::Constant {
-            drive.friction = drive.friction.scaled(factor(&self.conditions.friction_history));
+            loading.friction = loading.friction.scaled(factor(&self.conditions.friction_history));
         }
         if self.conditions.wear_history != History::Constant {
-            drive.wear = drive.wear.scaled(factor(&self.conditions.wear_history));
+            loading.wear = loading.wear.scaled(factor(&self.conditions.wear_history));
         }
-        drive
+        loading
     }
 
     /// The first cycle of each block, with the laws as they are at the start.
-    pub fn first_cycles(&self) -> impl Iterator<Item = Drive> {
+    pub fn first_cycles(&self) -> impl Iterator<Item = CycleLoading> {
         let mut start = 0.0;
-        self.drives.iter().enumerate().map(move |(block, _)| {
-            let drive = self.drive(start, 0.0);
+        self.loadings.iter().enumerate().map(move |(block, _)| {
+            let loading = self.loading(start, 0.0);
             start = self.ends.get(block).copied().unwrap_or_default();
-            drive
+            loading
         })
     }
 
@@ -209,25 +209,25 @@ impl Schedule {
         match self.ends.last() {
             None => true,
             Some(whole) if self.conditions.repeat => now - since >= *whole,
-            Some(_) => self.block(now).1 == self.drives.len() - 1,
+            Some(_) => self.block(now).1 == self.loadings.len() - 1,
         }
     }
 
     /// Everything that acts at some time, with friction at its smallest and at its largest.
-    pub fn extremes(&self) -> impl Iterator<Item = Drive> {
+    pub fn extremes(&self) -> impl Iterator<Item = CycleLoading> {
         let range = self.conditions.friction_history.range();
-        self.drives.iter().flat_map(move |drive| {
-            range.map(|factor| Drive { friction: drive.friction.scaled(factor), ..drive.clone() })
+        self.loadings.iter().flat_map(move |loading| {
+            range.map(|factor| CycleLoading { friction: loading.friction.scaled(factor), ..loading.clone() })
         })
     }
 
     /// Everything that acts in the end: the last block, or all of them where they are repeated, with friction as it is then.
-    pub fn lasting(&self) -> impl Iterator<Item = Drive> {
+    pub fn lasting(&self) -> impl Iterator<Item = CycleLoading> {
         let factor = self.conditions.friction_history.last();
-        let passed = if self.conditions.repeat { 0 } else { self.drives.len() - 1 };
-        self.drives[passed..]
+        let passed = if self.conditions.repeat { 0 } else { self.loadings.len() - 1 };
+        self.loadings[passed..]
             .iter()
-            .map(move |drive| Drive { friction: drive.friction.scaled(factor), ..drive.clone() })
+            .map(move |loading| CycleLoading { friction: loading.friction.scaled(factor), ..loading.clone() })
     }
 
     /// The next time after `cycles` at which what acts changes abruptly or has a kink, in cycles: a step may end there but not cross it.
@@ -257,7 +257,10 @@ impl Schedule {
     fn block(&self, cycles: f64) -> (f64, usize) {
         let Some(whole) = self.ends.last() else { return (0.0, 0) };
         if !self.conditions.repeat {
-            return (0.0, self.ends.partition_point(|end| has_come(*end, cycles)).min(self.drives.len() - 1));
+            return (
+                0.0,
+                self.ends.partition_point(|end| has_come(*end, cycles)).min(self.loadings.len() - 1),
+            );
         }
         // The quotient may round to either side of a whole number of passes.
         let first = ((cycles / whole).floor() - 1.0).max(0.0);
@@ -280,12 +283,12 @@ impl Schedule {
 
     /// Whether the indenter is lifted within a period, so that springs lose contact.
     pub fn lifts(&self) -> bool {
-        self.drives.iter().any(|drive| drive.path.as_ref().is_some_and(|path| !path.is_level()))
+        self.loadings.iter().any(|loading| loading.path.as_ref().is_some_and(|path| !path.is_level()))
     }
 
     /// Whether periods are passed through step by step.
     pub fn resolves(&self) -> bool {
-        self.drives.iter().any(|drive| drive.path.is_some())
+        self.loadings.iter().any(|loading| loading.path.is_some())
     }
 
     /// Steps of the loop of every period, for which one to and fro at constant indentation takes `plain`.
@@ -293,13 +296,13 @@ impl Schedule {
         if self.conditions.mode == Mode::Tangential {
             return plain;
         }
-        let paths = self.drives.iter().filter_map(|drive| drive.path.as_ref());
+        let paths = self.loadings.iter().filter_map(|loading| loading.path.as_ref());
         paths.map(|path| path.points.len()).max().unwrap_or(plain)
     }
 
     /// Whether the indenter leaves the x axis in some block.
     pub fn leaves_axis(&self) -> bool {
-        let mut paths = self.drives.iter().filter_map(|drive| drive.path.as_ref());
+        let mut paths = self.loadings.iter().filter_map(|loading| loading.path.as_ref());
         paths.any(|path| path.points.iter().any(|point| point.tangential[1] != 0.0))
     }
 
@@ -360,12 +363,12 @@ fn driven_amplitude(
 }
 
 /// The table of a path that turns at constant indentation; that of an earlier block with the same path, if there is one.
-fn response(path: &Path, friction: &FrictionLaw, before: &[Drive]) -> Option<Arc<Response>> {
+fn response(path: &Path, friction: &FrictionLaw, before: &[CycleLoading]) -> Option<Arc<Response>> {
     if path.is_straight() || friction.static_factor() != 1.0 {
         return None;
     }
-    let same = before.iter().find(|drive| drive.path.as_deref() == Some(path));
-    same.map_or_else(|| Response::new(path).map(Arc::new), |drive| drive.response.clone())
+    let same = before.iter().find(|loading| loading.path.as_deref() == Some(path));
+    same.map_or_else(|| Response::new(path).map(Arc::new), |loading| loading.response.clone())
 }
 
 /// The mode with the transverse displacements of a block.

@@ -1,10 +1,11 @@
 //! Explicit steps over many cycles with an embedded estimate of their error.
 
+use super::tableau::BOGACKI_SHAMPINE;
 use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::solver::model::{Fields, Model, State};
 
-/// Bogacki and Shampine's explicit Runge-Kutta method of order 3 with an embedded one of order 2 (Appl. Math. Lett. 2:321, 1989).
+/// Bogacki and Shampine's explicit Runge-Kutta method of order 3 with an embedded one of order 2.
 #[derive(Debug, Default)]
 pub struct CycleJump {
     fields: Fields,
@@ -12,45 +13,48 @@ pub struct CycleJump {
 
 /// Rates at one stage.
 struct Stage {
-    edge: f64,
+    slip_area: f64,
     compression: Vec<f64>,
     dissipation: f64,
     volume: f64,
 }
 
-const NODES: [&[f64]; 4] = [&[], &[0.5], &[0.0, 0.75], &WEIGHTS];
-const WEIGHTS: [f64; 3] = [2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0];
-const ERROR: [f64; 4] = [-5.0 / 72.0, 1.0 / 12.0, 1.0 / 9.0, -1.0 / 8.0];
-
 impl Stepper for CycleJump {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let mut stages: Vec<Stage> = vec![];
         let mut at = state.clone();
-        for weights in NODES {
+        for weights in BOGACKI_SHAMPINE.stages {
             at = advance(state, cycles, weights, &stages);
-            let drive = model.schedule().drive(state.cycles, at.cycles);
-            if !(at.edge > 0.0 && at.edge < model.unworn().largest_edge()) {
+            let loading = model.schedule().loading(state.cycles, at.cycles);
+            if !(at.slip_area > 0.0 && at.slip_area < model.unworn().largest_slip_area()) {
                 return Ok(Trial::failed(stages.len() as u64));
             }
-            model.evaluate(at.edge, &at.compression, &mut self.fields);
+            model.evaluate(at.slip_area, &at.compression, &mut self.fields);
             if !self.fields.are_physical() {
                 return Ok(Trial::failed(stages.len() as u64 + 1));
             }
-            let cycle = model.cycle(&drive, &at.compression, &self.fields);
-            let (edge, compression) = model.rates(&self.fields, &cycle);
+            let cycle = model.cycle(&loading, &at.compression, &self.fields);
+            let (slip_area, compression) = model.rates(&self.fields, &cycle);
             at.least_stick_radius = state.least_stick_radius.min(cycle.stick_radius);
-            stages.push(Stage { edge, compression, dissipation: cycle.dissipation, volume: cycle.volume });
+            stages.push(Stage {
+                slip_area,
+                compression,
+                dissipation: cycle.dissipation,
+                volume: cycle.volume,
+            });
         }
         let difference = advance(
             &State { compression: vec![0.0; at.compression.len()], ..at.clone() },
             cycles,
-            &ERROR,
+            &BOGACKI_SHAMPINE.error,
             &stages,
         );
         let error = self.depth_error(model, &difference.compression);
-        let Ok(edge) = model.close_edge(at.edge, &at.compression) else { return Ok(Trial::failed(4)) };
+        let Ok(slip_area) = model.close_contact_edge(at.slip_area, &at.compression) else {
+            return Ok(Trial::failed(4));
+        };
         Ok(Trial {
-            state: Some(State { edge, ..at }),
+            state: Some(State { slip_area, ..at }),
             fields: None,
             error,
             rate_evaluations: 5,
@@ -70,7 +74,7 @@ impl CycleJump {
             difference.iter().zip(&self.fields.density_factor).map(|(q, factor)| q * factor).collect();
         let mut depth = vec![0.0; model.springs()];
         model.operators().transforms()[0].apply(&density, &mut depth);
-        let scale = self.fields.edge.powf(model.mu());
+        let scale = self.fields.slip_area.powf(model.mu());
         relative_depth_error(model, depth.into_iter().map(|value| scale * value))
     }
 }
@@ -81,7 +85,7 @@ fn advance(state: &State, cycles: f64, weights: &[f64], stages: &[Stage]) -> Sta
     for (weight, stage) in weights.iter().zip(stages) {
         let step = cycles * weight;
         next.cycles += step;
-        next.edge += step * stage.edge;
+        next.slip_area += step * stage.slip_area;
         next.dissipated_energy += step * stage.dissipation;
         next.volume_by_rate += step * stage.volume;
         for (q, rate) in next.compression.iter_mut().zip(&stage.compression) {

@@ -16,24 +16,24 @@ pub struct EveryCycle {
 impl Stepper for EveryCycle {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let fields = &mut self.fields;
-        model.evaluate(state.edge, &state.compression, fields);
-        let drive = model.schedule().drive(state.cycles, state.cycles);
-        let cycle = model.cycle(&drive, &state.compression, fields);
+        model.evaluate(state.slip_area, &state.compression, fields);
+        let loading = model.schedule().loading(state.cycles, state.cycles);
+        let cycle = model.cycle(&loading, &state.compression, fields);
         let mut worn = fields.log_slip.clone();
         for (log_slip, growth) in worn.iter_mut().zip(&cycle.growth) {
             *log_slip += (cycles * growth).ln_1p();
         }
         let along = model.along_annulus(&worn);
-        let shifted = |edge: f64, i: usize| worn[i] + (edge / state.edge).ln() * along[i];
+        let shifted = |slip_area: f64, i: usize| worn[i] + (slip_area / state.slip_area).ln() * along[i];
         let mut evaluations = 1;
-        let mut mismatch = |edge: f64| {
+        let mut mismatch = |slip_area: f64| {
             evaluations += 1;
-            model.edge_mismatch(edge, |i, unworn| unworn.slip * shifted(edge, i).exp())
+            model.contact_edge_mismatch(slip_area, |i, unworn| unworn.slip * shifted(slip_area, i).exp())
         };
-        let Some(edge) = secant(&mut mismatch, state.edge) else {
+        let Some(slip_area) = secant(&mut mismatch, state.slip_area) else {
             return Err(too_coarse(state, "no contact edge fits the wear of this cycle"));
         };
-        let compression = model.compression(edge, |i, unworn| unworn.slip * shifted(edge, i).exp());
+        let compression = model.compression(slip_area, |i, unworn| unworn.slip * shifted(slip_area, i).exp());
         let slipping = model.contact().slip_compression();
         if !compression.iter().all(|q| *q > -1e-9 * slipping && *q < (1.0 + 1e-9) * slipping) {
             return Err(too_coarse(
@@ -43,7 +43,7 @@ impl Stepper for EveryCycle {
         }
         let next = State {
             cycles: state.cycles + cycles,
-            edge,
+            slip_area,
             compression,
             dissipated_energy: state.dissipated_energy + cycles * cycle.dissipation,
             volume_by_rate: state.volume_by_rate + cycles * cycle.volume,

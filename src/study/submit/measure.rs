@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
-use crate::report::LimitReport;
+use crate::run::readings::ClosedForm;
 use crate::run::{Shared, Simulation, memory_figure};
 use crate::scene::{Study, Task};
 use crate::study::batch::{Batch, alone};
@@ -100,7 +100,7 @@ fn measure(study: &Study, scene: u64, shared: &Shared) -> MeasuredScene {
     let run = || {
         let described = study.scene(scene)?;
         match study.task() {
-            Task::Limit => LimitReport::new(&described, Some(&[])).map(drop),
+            Task::Limit => ClosedForm::new(&described).map(drop),
             Task::Run => Simulation::sharing(&described, shared)?.run().map(drop),
         }
     };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::{Engine, MeasuredScene, Submission, Submitted};
-use crate::report::{Rows, number};
+use crate::report::{TextTable, number};
 
 /// Summary of a submission; the serialised fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -99,7 +99,7 @@ impl SubmitReport {
 
     /// A table for people.
     pub fn text(&self) -> String {
-        let mut rows = Rows::titled(self.title.as_deref());
+        let mut rows = TextTable::titled(self.title.as_deref());
         rows.row("scenes", format!("{}, task {}", self.scenes, self.task));
         let longest =
             format!("{} on average, {} at most", time(self.seconds_per_scene), time(self.seconds_longest));
@@ -143,7 +143,7 @@ impl SubmitReport {
                 format!("job {}; then `bash merge-hq.sh` with this number", jobs.join(" ")),
             ),
         }
-        rows.finish()
+        rows.text()
     }
 }
 

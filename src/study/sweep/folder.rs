@@ -8,7 +8,7 @@ use std::time::SystemTime;
 
 use super::Done;
 use super::gathering::{Gathering, fold_files};
-use super::rows::{Row, Schema};
+use super::rows::{SceneResult, Schema};
 use crate::data::{AtomicFile, Fingerprint, RunFile, SweepFile, SweepHeader, make_folder, remove_abandoned};
 use crate::error::{Error, Result};
 use crate::scene::Study;
@@ -127,7 +127,7 @@ impl Folder {
     }
 
     /// Writes rows as a new part.
-    pub(super) fn write_part(&self, schema: &Schema, rows: Vec<Row>) -> Result<()> {
+    pub(super) fn write_part(&self, schema: &Schema, rows: Vec<SceneResult>) -> Result<()> {
         schema.file(self.header.clone(), false, rows).write(&self.part_file(), false)
     }
 

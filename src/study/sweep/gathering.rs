@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::rows::{FAILED, STATUS, WALL_SECONDS};
-use crate::data::{Column, RunFile, SweepFile, SweepHeader, Values};
+use crate::data::{RunFile, SweepFile, SweepHeader, Values, Variable};
 use crate::error::{Error, Result};
 
 /// How often files are read anew, and the first pause before: a process that put many parts into a larger file removes them one after the other, as
@@ -51,7 +51,7 @@ pub(super) struct Gathering {
     scenes: Vec<u64>,
     /// Row of each scene.
     rows: HashMap<u64, usize>,
-    columns: Vec<Column>,
+    columns: Vec<Variable>,
     runs: BTreeMap<u64, RunFile>,
     /// Rows that were there already.
     pub duplicates: u64,
@@ -64,18 +64,11 @@ impl Gathering {
     /// [`Error::Inconsistent`] if it has other columns, or another result for a scene.
     pub(super) fn add(&mut self, file: SweepFile) -> Result<()> {
         if self.scenes.is_empty() && self.columns.is_empty() {
-            let empty = |Column { name, units, long_name, values }: &Column| Column {
-                name: name.clone(),
-                units: units.clone(),
-                long_name: long_name.clone(),
-                values: match values {
-                    Values::Numbers(_) => Values::Numbers(vec![]),
-                    Values::Texts(_) => Values::Texts(Default::default()),
-                },
-            };
+            let empty =
+                |it: &Variable| Variable { shape: vec![0], values: it.values.emptied(), ..it.clone() };
             self.columns = file.columns.iter().map(empty).collect();
         }
-        let names = |columns: &[Column]| columns.iter().map(|it| it.name.clone()).collect::<Vec<_>>();
+        let names = |columns: &[Variable]| columns.iter().map(|it| it.name.clone()).collect::<Vec<_>>();
         if names(&self.columns) != names(&file.columns) {
             return Err(Error::Inconsistent {
                 what: "sweep",
@@ -91,16 +84,13 @@ impl Gathering {
             self.rows.insert(*scene, self.scenes.len());
             self.scenes.push(*scene);
             for (to, column) in self.columns.iter_mut().zip(&file.columns) {
-                match (&mut to.values, &column.values) {
-                    (Values::Numbers(to), Values::Numbers(values)) => to.push(values[from]),
-                    (Values::Texts(to), Values::Texts(values)) => to.push(values.get(from)),
-                    _ => {
-                        return Err(Error::Inconsistent {
-                            what: "sweep",
-                            why: format!("{} is a number here and a word there", column.name),
-                        });
-                    }
+                if !to.values.push_from(&column.values, from) {
+                    return Err(Error::Inconsistent {
+                        what: "sweep",
+                        why: format!("{} is a number here and a word there", column.name),
+                    });
                 }
+                to.shape[0] += 1;
             }
         }
         self.runs.extend(file.runs);
@@ -108,12 +98,8 @@ impl Gathering {
     }
 
     /// Two rows of one scene must be the same but for the time they took.
-    fn check_equal(&self, scene: u64, row: usize, others: &[Column], other: usize) -> Result<()> {
-        let same = |(one, two): (&Column, &Column)| match (&one.values, &two.values) {
-            (Values::Numbers(one), Values::Numbers(two)) => one[row].to_bits() == two[other].to_bits(),
-            (Values::Texts(one), Values::Texts(two)) => one.get(row) == two.get(other),
-            _ => false,
-        };
+    fn check_equal(&self, scene: u64, row: usize, others: &[Variable], other: usize) -> Result<()> {
+        let same = |(one, two): (&Variable, &Variable)| one.values.same(row, &two.values, other);
         let mut columns = self.columns.iter().zip(others).filter(|(one, _)| one.name != WALL_SECONDS);
         match columns.find(|pair| !same(*pair)) {
             None => Ok(()),
@@ -145,7 +131,7 @@ impl Gathering {
     /// Number of scenes that failed.
     pub(super) fn failed(&self) -> u64 {
         let status = self.columns.iter().find(|column| column.name == STATUS);
-        let Some(Column { values: Values::Texts(texts), .. }) = status else { return 0 };
+        let Some(Variable { values: Values::Texts(texts), .. }) = status else { return 0 };
         texts.iter().filter(|text| *text == FAILED).count() as u64
     }
 
@@ -155,10 +141,12 @@ impl Gathering {
         let mut order: Vec<usize> = (0..self.scenes.len()).collect();
         order.sort_unstable_by_key(|&row| self.scenes[row]);
         for column in &mut self.columns {
-            column.values = match &column.values {
-                Values::Numbers(values) => Values::Numbers(order.iter().map(|&row| values[row]).collect()),
-                Values::Texts(values) => Values::Texts(order.iter().map(|&row| values.get(row)).collect()),
-            };
+            let values = &column.values;
+            let mut sorted = values.emptied();
+            for &row in &order {
+                sorted.push_from(values, row);
+            }
+            column.values = sorted;
         }
         let scenes = order.iter().map(|&row| self.scenes[row]).collect();
         SweepFile::new(header, complete, scenes, self.columns, self.runs.into_iter().collect())

@@ -115,10 +115,8 @@ impl Candidate {
                 self.cycle.name()
             ),
         };
-        let own = scene.numerics();
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "wear_from = {:?}", own.wear_from.name());
-        if let Some(substeps) = own.substeps {
+        if let Some(substeps) = scene.numerics().substeps {
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "substeps = {substeps}");
         }
         text

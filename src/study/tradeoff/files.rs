@@ -2,203 +2,189 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Cost, Errors, FRONTS, Measured, Outcome, Row, Source, Worst};
-use crate::data::layout::{Label, label};
-use crate::data::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, Mark, TextArray, TextColumn};
+use super::{CandidateResult, Choice, Cost, Errors, Measured, Outcome, Worst};
+use crate::data::quantity::{Quantity, Reading, Value, csv, number, quantity, word};
+use crate::data::{self, AtomicFile, Dataset, Format, Mark, Variable};
 use crate::error::Result;
 use crate::scene::Scene;
 
 const ARRAYS: &str = "tradeoff.h5";
 const TABLE: &str = "tradeoff.csv";
 /// Written by the report, which knows the keys.
-pub const OBJECT: &str = "tradeoff.json";
+pub(super) const OBJECT: &str = "tradeoff.json";
 
-const CANDIDATE: Label<'static> = label("candidate", "1", "number of the candidate");
-const SNAPSHOT: Label<'static> =
-    label("snapshot", "1", "number of the snapshot, from the first after the start");
+const CANDIDATE: Quantity = quantity("candidate", "1", "number of the candidate");
+const SNAPSHOT: Quantity =
+    quantity("snapshot", "1", "number of the snapshot, from the first after the start");
 
-const WORDS: [TextColumn<Row>; 4] = [
-    ("stepper", "method of time stepping", |row| row.candidate.stepper.name()),
-    ("cycle", "how a cycle is passed through: closed-form or resolved", |row| row.candidate.cycle.name()),
-    ("status", "done, failed, stopped after the time allowed, or skipped as too costly", |row| {
-        row.measurement.name()
+/// All that is told of a candidate, in the order of columns.
+pub(super) const READINGS: [Reading<CandidateResult>; 28] = [
+    word("stepper", "method of time stepping", |row| row.candidate.stepper.name().into()),
+    word("cycle", "how a cycle is passed through: closed-form or resolved", |row| {
+        row.candidate.cycle.name().into()
     }),
-    ("reason", "why it was not run to its end; empty if it was", |row| row.measurement.reason()),
-];
-
-/// A column of numbers, not a number where there is none.
-type Number = (Label<'static>, fn(&Row) -> f64);
-
-const NUMBERS: [Number; 16] = [
-    (
-        label(
-            "accuracy",
-            "1",
-            "accuracy asked of the knob; not a number where springs and tolerance were given by hand",
-        ),
-        |row| row.candidate.accuracy().unwrap_or(f64::NAN),
-    ),
-    (label("springs", "1", "springs over the slip annulus, asked for or chosen"), |row| {
-        asked(row, |springs, _| springs as f64, |cost| cost.springs as f64)
+    word("status", "done, failed, stopped after the time allowed, or skipped as too costly", |row| {
+        row.measurement.name().into()
     }),
-    (
-        label("tolerance", "1", "tolerance of a step over the limit's largest depth, asked for or chosen"),
-        |row| asked(row, |_, tolerance| tolerance, |cost| cost.tolerance),
+    word("reason", "why it was not run to its end; empty if it was", |row| {
+        Some(row.measurement.reason()).filter(|why| !why.is_empty()).into()
+    }),
+    number(
+        "accuracy",
+        "1",
+        "accuracy asked of the knob; not a number where springs and tolerance were given by hand",
+        |row| row.candidate.accuracy().into(),
     ),
-    (label("wall_seconds", "s", "least wall time of a run in memory, setting up included"), |row| {
+    number("springs", "1", "springs over the slip annulus, asked for or chosen", |row| {
+        match row.candidate.choice {
+            Choice::Hand { springs, .. } => springs.into(),
+            Choice::Knob(_) => cost(row, |it| it.springs),
+        }
+    }),
+    number(
+        "tolerance",
+        "1",
+        "tolerance of a step over the limit's largest depth, asked for or chosen",
+        |row| match row.candidate.choice {
+            Choice::Hand { tolerance, .. } => tolerance.into(),
+            Choice::Knob(_) => cost(row, |it| it.tolerance),
+        },
+    ),
+    number("wall_seconds", "s", "least wall time of a run in memory, setting up included", |row| {
         cost(row, |it| it.wall_seconds)
     }),
-    (label("wall_seconds_file", "s", "least wall time of a run with its result file"), |row| {
+    number("wall_seconds_file", "s", "least wall time of a run with its result file", |row| {
         cost(row, |it| it.wall_seconds_file)
     }),
-    (label("repeats", "1", "runs of which the least time was taken"), |row| {
-        cost(row, |it| it.repeats as f64)
+    number("repeats", "1", "runs of which the least time was taken", |row| cost(row, |it| it.repeats)),
+    number("rate_evaluations", "1", "evaluations of pressure, slip and wear", |row| {
+        cost(row, |it| it.rate_evaluations)
     }),
-    (label("rate_evaluations", "1", "evaluations of pressure, slip and wear"), |row| {
-        cost(row, |it| it.rate_evaluations as f64)
-    }),
-    (label("steps", "1", "steps accepted"), |row| cost(row, |it| it.steps as f64)),
-    (label("rejected_steps", "1", "steps rejected"), |row| cost(row, |it| it.rejected_steps as f64)),
-    (label("memory", "byte", "memory of the operators, estimated"), |row| cost(row, |it| it.memory)),
-    (
-        label(
-            "volume_error_max",
-            "1",
-            "largest error of the worn volume over all snapshots, over the volume of the limit",
-        ),
+    number("steps", "1", "steps accepted", |row| cost(row, |it| it.steps)),
+    number("rejected_steps", "1", "steps rejected", |row| cost(row, |it| it.rejected_steps)),
+    number("memory", "byte", "memory of the operators, estimated", |row| cost(row, |it| it.memory)),
+    number(
+        "volume_error_max",
+        "1",
+        "largest error of the worn volume over all snapshots, over the volume of the limit",
         |row| worst(row, |it| it.volume.value),
     ),
-    (
-        label(
-            "profile_error_max",
-            "1",
-            "largest error of the depth on common radii over all snapshots, over the largest depth of the limit",
-        ),
+    number(
+        "profile_error_max",
+        "1",
+        "largest error of the depth on common radii over all snapshots, over the largest depth of the limit",
         |row| worst(row, |it| it.profile.value),
     ),
-    (label("node_error_max", "1", "the same at the radii of the candidate's own file"), |row| {
+    number("node_error_max", "1", "the same at the radii of the candidate's own file", |row| {
         worst(row, |it| it.nodes.value)
     }),
-    (
-        label(
-            "volume_error_max_bounded",
-            "1",
-            "1 where that error is a bound: not clear of the uncertainty of its judge",
-        ),
-        |row| worst(row, |it| flag(it.volume.bounded)),
+    number(
+        "volume_error_max_bounded",
+        "1",
+        "1 where that error is a bound: not clear of the uncertainty of its judge",
+        |row| worst(row, |it| it.volume.bounded),
     ),
-    (label("profile_error_max_bounded", "1", "the same of the depth on common radii"), |row| {
-        worst(row, |it| flag(it.profile.bounded))
+    number("profile_error_max_bounded", "1", "the same of the depth on common radii", |row| {
+        worst(row, |it| it.profile.bounded)
     }),
-    (label("node_error_max_bounded", "1", "the same of the depth at own radii"), |row| {
-        worst(row, |it| flag(it.nodes.bounded))
+    number("node_error_max_bounded", "1", "the same of the depth at own radii", |row| {
+        worst(row, |it| it.nodes.bounded)
+    }),
+    // On which of the fronts it lies, and the cost of the knob over theirs.
+    number("front_volume_time", "1", "1 on the front of volume error against wall time", |row| {
+        row.on_front[0].into()
+    }),
+    number(
+        "knob_volume_time",
+        "1",
+        "wall time of the knob over that of the cheapest candidate with at most its volume error",
+        |row| row.over_front[0].into(),
+    ),
+    number("front_profile_time", "1", "1 on the front of profile error against wall time", |row| {
+        row.on_front[1].into()
+    }),
+    number("knob_profile_time", "1", "the same with the profile error", |row| row.over_front[1].into()),
+    number(
+        "front_volume_evaluations",
+        "1",
+        "1 on the front of volume error against rate evaluations",
+        |row| row.on_front[2].into(),
+    ),
+    number(
+        "knob_volume_evaluations",
+        "1",
+        "evaluations of the knob over those of the cheapest candidate with at most its volume error",
+        |row| row.over_front[2].into(),
+    ),
+    number(
+        "front_profile_evaluations",
+        "1",
+        "1 on the front of profile error against rate evaluations",
+        |row| row.on_front[3].into(),
+    ),
+    number("knob_profile_evaluations", "1", "the same with the profile error", |row| {
+        row.over_front[3].into()
     }),
 ];
 
 const WHO: &str =
     "who judged: 0 nobody, 1 the closed-form limit, 2 the Gibson transient, 3 the reference run";
 
-/// A number of each snapshot.
-type Series = (Label<'static>, fn(&Errors) -> f64);
-
-const SERIES: [Series; 14] = [
-    (label("cycles", "1", "number of cycles"), |it| it.cycles),
-    (label("tau", "1", "dimensionless time"), |it| it.tau),
-    (label("wear_volume", "m3", "worn volume"), |it| it.wear_volume),
-    (label("wear_volume_judge", "m3", "worn volume of the judge"), |it| it.wear_volume_judge),
-    (label("volume_judge", "1", WHO), |it| number_of(it.sources[0])),
-    (label("profile_judge", "1", WHO), |it| number_of(it.sources[1])),
-    (
-        label("volume_uncertainty", "1", "uncertainty of the judge in the volume, over that of the limit"),
-        |it| it.uncertainty[0],
+/// All that is told of a candidate at a snapshot.
+const AT_SNAPSHOTS: [Reading<Errors>; 14] = [
+    number("cycles", "1", "number of cycles", |it| it.cycles.into()),
+    number("tau", "1", "dimensionless time", |it| it.tau.into()),
+    number("wear_volume", "m3", "worn volume", |it| it.wear_volume.into()),
+    number("wear_volume_judge", "m3", "worn volume of the judge", |it| it.wear_volume_judge.into()),
+    number("volume_judge", "1", WHO, |it| (it.sources[0] as usize).into()),
+    number("profile_judge", "1", WHO, |it| (it.sources[1] as usize).into()),
+    number(
+        "volume_uncertainty",
+        "1",
+        "uncertainty of the judge in the volume, over that of the limit",
+        |it| it.uncertainty[0].into(),
     ),
-    (
-        label(
-            "profile_uncertainty",
-            "1",
-            "uncertainty of the judge in the depth, over the largest of the limit",
-        ),
-        |it| it.uncertainty[1],
+    number(
+        "profile_uncertainty",
+        "1",
+        "uncertainty of the judge in the depth, over the largest of the limit",
+        |it| it.uncertainty[1].into(),
     ),
-    (label("volume_error", "1", "error of the worn volume over the volume of the limit"), |it| {
-        it.volume.value
+    number("volume_error", "1", "error of the worn volume over the volume of the limit", |it| {
+        it.volume.value.into()
     }),
-    (
-        label(
-            "profile_error",
-            "1",
-            "largest error of the depth on common radii over the largest depth of the limit",
-        ),
-        |it| it.profile.value,
+    number(
+        "profile_error",
+        "1",
+        "largest error of the depth on common radii over the largest depth of the limit",
+        |it| it.profile.value.into(),
     ),
-    (
-        label(
-            "node_error",
-            "1",
-            "largest error of the depth at the radii of the candidate's own file, likewise",
-        ),
-        |it| it.nodes.value,
+    number(
+        "node_error",
+        "1",
+        "largest error of the depth at the radii of the candidate's own file, likewise",
+        |it| it.nodes.value.into(),
     ),
-    (label("volume_error_bounded", "1", "1 where the error of the volume is a bound"), |it| known(it.volume)),
-    (label("profile_error_bounded", "1", "1 where the error on common radii is a bound"), |it| {
-        known(it.profile)
+    number("volume_error_bounded", "1", "1 where the error of the volume is a bound", |it| {
+        bounded(it.volume)
     }),
-    (label("node_error_bounded", "1", "1 where the error at own radii is a bound"), |it| known(it.nodes)),
+    number("profile_error_bounded", "1", "1 where the error on common radii is a bound", |it| {
+        bounded(it.profile)
+    }),
+    number("node_error_bounded", "1", "1 where the error at own radii is a bound", |it| bounded(it.nodes)),
 ];
 
-/// On which fronts a candidate lies, and the knob's cost over theirs.
-const FRONT_LABELS: [[Label<'static>; 2]; 4] = [
-    [
-        label("front_volume_time", "1", "1 on the front of volume error against wall time"),
-        label(
-            "knob_volume_time",
-            "1",
-            "wall time of the knob over that of the cheapest candidate with at most its volume error",
-        ),
-    ],
-    [
-        label("front_profile_time", "1", "1 on the front of profile error against wall time"),
-        label("knob_profile_time", "1", "the same with the profile error"),
-    ],
-    [
-        label("front_volume_evaluations", "1", "1 on the front of volume error against rate evaluations"),
-        label(
-            "knob_volume_evaluations",
-            "1",
-            "evaluations of the knob over those of the cheapest candidate with at most its volume error",
-        ),
-    ],
-    [
-        label("front_profile_evaluations", "1", "1 on the front of profile error against rate evaluations"),
-        label("knob_profile_evaluations", "1", "the same with the profile error"),
-    ],
-];
-
-fn asked(row: &Row, by_hand: impl Fn(usize, f64) -> f64, of_run: impl Fn(&Cost) -> f64) -> f64 {
-    match row.candidate.choice {
-        super::Choice::Hand { springs, tolerance } => by_hand(springs, tolerance),
-        super::Choice::Knob(_) => cost(row, of_run),
-    }
+/// What it cost; nothing where it was not run to its end.
+fn cost<T: Into<Value>>(row: &CandidateResult, of: impl Fn(&Cost) -> T) -> Value {
+    row.measurement.cost().map(of).into()
 }
 
-fn cost(row: &Row, number: impl Fn(&Cost) -> f64) -> f64 {
-    row.measurement.cost().map_or(f64::NAN, number)
+fn worst<T: Into<Value>>(row: &CandidateResult, of: impl Fn(&Worst) -> T) -> Value {
+    row.worst.as_ref().map(of).into()
 }
 
-fn worst(row: &Row, number: impl Fn(&Worst) -> f64) -> f64 {
-    row.worst.as_ref().map_or(f64::NAN, number)
-}
-
-fn flag(holds: bool) -> f64 {
-    f64::from(u8::from(holds))
-}
-
-fn known(measured: Measured) -> f64 {
-    if measured.value.is_nan() { f64::NAN } else { flag(measured.bounded) }
-}
-
-fn number_of(source: Source) -> f64 {
-    Source::ALL.iter().position(|it| *it == source).unwrap_or(0) as f64
+fn bounded(measured: Measured) -> Value {
+    Some(measured.bounded).filter(|_| !measured.value.is_nan()).into()
 }
 
 /// Makes the directory if it is missing, and checks that all files can be written there; creates no file.
@@ -217,42 +203,20 @@ pub(super) fn write(
     // Once more, for what has come in the time of the runs.
     check_folder(folder, overwrite)?;
     let [arrays, table] = [ARRAYS, TABLE].map(|name| folder.join(name));
-    array_file(scene, outcome).write(&arrays, overwrite)?;
-    AtomicFile::new(&table, overwrite)?.write(csv(&outcome.rows).as_bytes())?;
+    dataset(scene, outcome).write(&arrays, overwrite)?;
+    AtomicFile::new(&table, overwrite)?.write(csv(&READINGS, &outcome.rows).as_bytes())?;
     Ok(vec![arrays, table])
 }
 
-/// Every column of numbers with its values.
-fn columns(rows: &[Row]) -> Vec<(Label<'static>, Vec<f64>)> {
-    let mut columns: Vec<_> =
-        NUMBERS.iter().map(|(label, number)| (*label, rows.iter().map(number).collect())).collect();
-    for (place, [on, over]) in FRONT_LABELS.into_iter().enumerate() {
-        debug_assert!(on.name.ends_with(FRONTS[place].name));
-        columns.push((on, rows.iter().map(|row| flag(row.on_front[place])).collect()));
-        columns.push((over, rows.iter().map(|row| row.over_front[place].unwrap_or(f64::NAN)).collect()));
-    }
-    columns
-}
-
-fn array_file(scene: &Scene, outcome: &Outcome) -> ArrayFile {
+fn dataset(scene: &Scene, outcome: &Outcome) -> Dataset {
     let rows = &outcome.rows;
-    let index = |count: usize| (0..count).map(|number| number as f64).collect();
+    let index = |count: usize| (0..count).map(|number| number as f64).collect::<Vec<_>>();
     let snapshots = rows.iter().map(|row| row.errors.len()).max().unwrap_or(0).max(1);
-    let numbers =
-        columns(rows).into_iter().map(|(label, values)| Array { label, axes: vec![CANDIDATE.name], values });
-    let series = SERIES.iter().map(|(label, number)| Array {
-        label: *label,
-        axes: vec![CANDIDATE.name, SNAPSHOT.name],
-        values: rows
-            .iter()
-            .flat_map(|row| (0..snapshots).map(move |at| row.errors.get(at).map_or(f64::NAN, number)))
-            .collect(),
-    });
     let reference = &outcome.reference;
     let pair = |values: [f64; 2]| format!("{:e}, {:e}", values[0], values[1]);
-    ArrayFile {
-        format: Format::Tradeoff,
-        attributes: vec![
+    let mut dataset = Dataset::of(
+        Format::Tradeoff,
+        &[
             ("title", scene.title().unwrap_or_default().into()),
             ("scene", scene.text().into()),
             ("volume_scale", format!("{:e} m3", outcome.volume_scale)),
@@ -261,21 +225,18 @@ fn array_file(scene: &Scene, outcome: &Outcome) -> ArrayFile {
             ("reference_tolerance", pair(reference.tolerance)),
             ("reference_uncertainty", pair(reference.uncertainty)),
         ],
-        coordinates: vec![
-            Coordinate { label: CANDIDATE, values: index(rows.len()) },
-            Coordinate { label: SNAPSHOT, values: index(snapshots) },
-        ],
-        arrays: numbers.chain(series).collect(),
-        texts: TextArray::columns(&WORDS, rows, CANDIDATE.name),
+    );
+    dataset.coordinate(CANDIDATE, index(rows.len()));
+    dataset.coordinate(SNAPSHOT, index(snapshots));
+    let (numbers, words): (Vec<_>, Vec<_>) =
+        READINGS.iter().map(|it| it.variable(CANDIDATE.name, rows)).partition(Variable::is_numeric);
+    dataset.variables.extend(numbers);
+    let plane = [(CANDIDATE.name, rows.len()), (SNAPSHOT.name, snapshots)];
+    for reading in &AT_SNAPSHOTS {
+        let of = |row: &CandidateResult, at: usize| row.errors.get(at).map_or(Value::Missing, reading.of);
+        let values = rows.iter().flat_map(|row| (0..snapshots).map(move |at| of(row, at)));
+        dataset.add(Variable::new(reading.quantity, &plane, Value::all(values, reading.is_word)));
     }
-}
-
-fn csv(rows: &[Row]) -> String {
-    let columns = columns(rows);
-    let names = WORDS.iter().map(|it| it.0).chain(columns.iter().map(|it| it.0.name));
-    let cells = rows.iter().enumerate().map(|(place, row)| {
-        let words = WORDS.iter().map(|(_, _, word)| data::quoted(word(row)));
-        words.chain(columns.iter().map(|(_, values)| data::cell(values[place]))).collect()
-    });
-    data::table(names, cells)
+    dataset.variables.extend(words);
+    dataset
 }

@@ -11,7 +11,7 @@ const CLEAR: f64 = 3.0;
 
 /// Who judged a snapshot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum ReferenceKind {
     /// Nobody: the reference has no snapshot of that time, and the limit is far.
     None,
     /// The closed-form limit.
@@ -22,7 +22,7 @@ pub enum Source {
     Reference,
 }
 
-impl Source {
+impl ReferenceKind {
     /// All of them; the place is the number in files.
     pub const ALL: [Self; 4] = [Self::None, Self::Limit, Self::Gibson, Self::Reference];
 
@@ -76,7 +76,7 @@ pub struct Errors {
     /// That of the judge, m³.
     pub wear_volume_judge: f64,
     /// Who judged volume and depth.
-    pub sources: [Source; 2],
+    pub sources: [ReferenceKind; 2],
     /// Uncertainty of the judge in the volume and in the depth.
     pub uncertainty: [f64; 2],
     /// Error of the worn volume.
@@ -101,7 +101,7 @@ pub struct Worst {
 impl Worst {
     /// None where no snapshot could be judged.
     pub fn of(errors: &[Errors]) -> Option<Self> {
-        let judged = errors.iter().filter(|it| !it.sources.contains(&Source::None));
+        let judged = errors.iter().filter(|it| !it.sources.contains(&ReferenceKind::None));
         judged.map(|it| Self { volume: it.volume, profile: it.profile, nodes: it.nodes }).reduce(|a, b| {
             Self {
                 volume: a.volume.larger(b.volume),
@@ -114,7 +114,7 @@ impl Worst {
 
 /// What somebody holds to be right, and how far he may be off.
 struct Truth<T> {
-    source: Source,
+    source: ReferenceKind,
     uncertainty: f64,
     value: T,
 }
@@ -227,17 +227,17 @@ impl Judge {
     /// The worn volume, m³, after some cycles.
     fn volume(&self, cycles: f64, tau: f64) -> Option<Truth<f64>> {
         let reference = self.reference_at(cycles).map(|(it, uncertainty)| Truth {
-            source: Source::Reference,
+            source: ReferenceKind::Reference,
             uncertainty: uncertainty[0],
             value: it.wear_volume,
         });
         let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
-            source: Source::Limit,
+            source: ReferenceKind::Limit,
             uncertainty,
             value: limit.wear_volume(),
         });
         let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Truth {
-            source: Source::Gibson,
+            source: ReferenceKind::Gibson,
             uncertainty: *uncertainty,
             value: gibson.wear_volume(tau),
         });
@@ -248,17 +248,17 @@ impl Judge {
     fn depths(&self, cycles: f64, tau: f64) -> Option<Truth<Depths<'_>>> {
         let own = &self.reference.header.radius;
         let reference = self.reference_at(cycles).map(|(it, uncertainty)| Truth {
-            source: Source::Reference,
+            source: ReferenceKind::Reference,
             uncertainty: uncertainty[1],
             value: Box::new(move |radii: &[f64]| self.shape.depth_at(own, it, radii)) as Depths,
         });
         let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
-            source: Source::Limit,
+            source: ReferenceKind::Limit,
             uncertainty,
             value: Box::new(move |radii: &[f64]| limit_depths(limit, radii)) as Depths,
         });
         let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Truth {
-            source: Source::Gibson,
+            source: ReferenceKind::Gibson,
             uncertainty: *uncertainty,
             value: Box::new(move |radii: &[f64]| radii.iter().map(|r| gibson.wear_depth(*r, tau)).collect())
                 as Depths,
@@ -278,7 +278,7 @@ impl Judge {
             tau: snapshot.tau,
             wear_volume: snapshot.wear_volume,
             wear_volume_judge: f64::NAN,
-            sources: [Source::None; 2],
+            sources: [ReferenceKind::None; 2],
             uncertainty: [f64::NAN; 2],
             volume: unknown,
             profile: unknown,

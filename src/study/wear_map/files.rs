@@ -4,24 +4,24 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use super::{Control, Isoline, MapStudy, OptimumCurve};
-use crate::data::layout::{Label, label};
-use crate::data::{self, Array, ArrayFile, AtomicFile, Coordinate, Format, Mark, cell};
+use crate::data::quantity::{Quantity, quantity};
+use crate::data::{self, AtomicFile, Dataset, Format, Mark, Variable, cell};
 use crate::error::Result;
 use crate::scene::MapScene;
 
-const GRADING: Label<'static> = label("grading", "1", "grading k of E = E0 (z/z0)^k");
-const AMPLITUDE: Label<'static> =
-    label("amplitude_ratio", "1", "tangential amplitude over friction coefficient times indentation");
-const OPTIMUM_AMPLITUDE: Label<'static> = label(
+const GRADING: Quantity = quantity("grading", "1", "grading k of E = E0 (z/z0)^k");
+const AMPLITUDE: Quantity =
+    quantity("amplitude_ratio", "1", "tangential amplitude over friction coefficient times indentation");
+const OPTIMUM_AMPLITUDE: Quantity = quantity(
     "optimum_amplitude_ratio",
     "1",
     "tangential amplitude over friction coefficient times indentation of the homogeneous contact",
 );
-const REFERENCE_DEPTH: Label<'static> =
-    label("reference_depth", "1", "depth z0 over contact radius of the homogeneous contact");
-const PROFILE_GRADING: Label<'static> = label("profile_grading", "1", "grading of the worn profiles");
-const PROFILE_RADIUS: Label<'static> =
-    label("profile_radius", "1", "radius over (d/(n A))^(1/n), which is sqrt(R d) for a paraboloid");
+const REFERENCE_DEPTH: Quantity =
+    quantity("reference_depth", "1", "depth z0 over contact radius of the homogeneous contact");
+const PROFILE_GRADING: Quantity = quantity("profile_grading", "1", "grading of the worn profiles");
+const PROFILE_RADIUS: Quantity =
+    quantity("profile_radius", "1", "radius over (d/(n A))^(1/n), which is sqrt(R d) for a paraboloid");
 
 /// Name of a file, what its first line begins with, and how its text is made.
 type Table = (&'static str, &'static str, fn(&MapStudy) -> String);
@@ -36,6 +36,9 @@ const TABLES: [Table; 5] = [
 ];
 
 const ARRAYS: &str = "map.h5";
+
+/// What the names of isolines begin with: of the exact map, and of that for small amplitudes.
+const ISOLINES: [&str; 2] = ["isoline", "small_amplitude_isoline"];
 
 /// Makes the directory if it is missing, and checks that all files can be written there; creates no file.
 ///
@@ -54,7 +57,7 @@ pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
 /// [`Error::File`](crate::Error::File) names the file and the cure.
 pub fn write(scene: &MapScene, study: &MapStudy, folder: &Path, overwrite: bool) -> Result<Vec<PathBuf>> {
     let arrays = folder.join(ARRAYS);
-    array_file(scene, study).write(&arrays, overwrite)?;
+    dataset(scene, study).write(&arrays, overwrite)?;
     let mut written = vec![arrays];
     for (name, _, table) in TABLES {
         let path = folder.join(name);
@@ -64,36 +67,37 @@ pub fn write(scene: &MapScene, study: &MapStudy, folder: &Path, overwrite: bool)
     Ok(written)
 }
 
-fn array_file(scene: &MapScene, study: &MapStudy) -> ArrayFile {
+fn dataset(scene: &MapScene, study: &MapStudy) -> Dataset {
     let (map, profiles) = (&study.map, &study.profiles);
-    let mut file = ArrayFile {
-        format: Format::Map,
-        attributes: vec![
+    let mut dataset = Dataset::of(
+        Format::Map,
+        &[
             ("title", scene.title.clone().unwrap_or_default()),
             ("map", scene.text.clone()),
             ("indenter_exponent", scene.exponent.to_string()),
         ],
-        coordinates: vec![],
-        arrays: vec![],
-        texts: vec![],
-    };
-    let mut coordinate = |label: Label<'static>, values: &[f64]| {
-        file.coordinates.push(Coordinate { label, values: values.to_vec() })
-    };
-    coordinate(GRADING, &map.gradings);
-    coordinate(AMPLITUDE, &map.amplitude_ratios);
-    coordinate(OPTIMUM_AMPLITUDE, &scene.optimum_amplitude_ratios);
-    coordinate(REFERENCE_DEPTH, &scene.reference_depths);
-    coordinate(PROFILE_GRADING, &profiles.gradings);
-    coordinate(PROFILE_RADIUS, &profiles.radii);
-    let plane = [GRADING.name, AMPLITUDE.name];
-    let curves = [PROFILE_GRADING.name, PROFILE_RADIUS.name];
-    let mut array = |name, long_name, axes: &[&'static str], values: &[f64]| {
-        file.arrays.push(Array {
-            label: label(name, "1", long_name),
-            axes: axes.to_vec(),
-            values: values.to_vec(),
-        });
+    );
+    // All dimensions come before the first variable.
+    for (quantity, values) in [
+        (GRADING, &map.gradings),
+        (AMPLITUDE, &map.amplitude_ratios),
+        (OPTIMUM_AMPLITUDE, &scene.optimum_amplitude_ratios),
+        (REFERENCE_DEPTH, &scene.reference_depths),
+        (PROFILE_GRADING, &profiles.gradings),
+        (PROFILE_RADIUS, &profiles.radii),
+    ] {
+        dataset.coordinate(quantity, values.clone());
+    }
+    for (prefix, lines) in ISOLINES.into_iter().zip([&study.isolines, &study.small_amplitude_isolines]) {
+        let count = lines.iter().map(|line| line.points.len()).sum();
+        let vertices: Vec<f64> = (0..count).map(|index: usize| index as f64).collect();
+        dataset.coordinate(quantity(&format!("{prefix}_vertex"), "1", "index of the vertex"), vertices);
+    }
+    let plane = [(GRADING.name, map.gradings.len()), (AMPLITUDE.name, map.amplitude_ratios.len())];
+    let curves =
+        [(PROFILE_GRADING.name, profiles.gradings.len()), (PROFILE_RADIUS.name, profiles.radii.len())];
+    let mut array = |name, long_name, dimensions: &[(&str, usize)], values: &[f64]| {
+        dataset.add(Variable::new(quantity(name, "1", long_name), dimensions, values.to_vec()));
     };
     array(
         "wear_volume",
@@ -134,24 +138,11 @@ fn array_file(scene: &MapScene, study: &MapStudy) -> ArrayFile {
     ] {
         array(name, long_name, &curves[..1], values);
     }
-    add_optimum(&mut file, &study.optimum);
-    add_isolines(
-        &mut file,
-        &study.isolines,
-        ["isoline_vertex", "isoline_number", "isoline_level", "isoline_grading", "isoline_amplitude_ratio"],
-    );
-    add_isolines(
-        &mut file,
-        &study.small_amplitude_isolines,
-        [
-            "small_amplitude_isoline_vertex",
-            "small_amplitude_isoline_number",
-            "small_amplitude_isoline_level",
-            "small_amplitude_isoline_grading",
-            "small_amplitude_isoline_amplitude_ratio",
-        ],
-    );
-    file
+    add_optimum(&mut dataset, scene, &study.optimum);
+    for (prefix, lines) in ISOLINES.into_iter().zip([&study.isolines, &study.small_amplitude_isolines]) {
+        add_isolines(&mut dataset, prefix, lines);
+    }
+    dataset
 }
 
 /// Name of a control in the tables.
@@ -163,70 +154,52 @@ fn control_name(control: Control) -> &'static str {
     }
 }
 
-/// Dataset names of the optimum under one control.
-fn optimum_names(control: Control) -> [&'static str; 3] {
-    match control {
-        Control::Indentation => ["optimal_grading", "optimal_wear_volume_ratio", "optimal_indentation_ratio"],
-        Control::Force { .. } => {
-            ["optimal_grading_force", "optimal_wear_volume_ratio_force", "optimal_indentation_ratio_force"]
-        }
-        Control::ForceDepthOnly { .. } => [
-            "optimal_grading_force_depth_only",
-            "optimal_wear_volume_ratio_force_depth_only",
-            "optimal_indentation_ratio_force_depth_only",
-        ],
-    }
-}
-
-fn add_optimum(file: &mut ArrayFile, curves: &[OptimumCurve]) {
-    const MEANINGS: [&str; 3] = [
-        "grading of least wear; 1 and -1 where the least is a limit",
-        "least worn volume over that of the homogeneous medium",
-        "indentation over that of the homogeneous contact, at the optimum",
+/// Adds the optimum under each control, by names that end in that of the control unless it is the indentation.
+fn add_optimum(dataset: &mut Dataset, scene: &MapScene, curves: &[OptimumCurve]) {
+    const NAMES: [(&str, &str); 3] = [
+        ("optimal_grading", "grading of least wear; 1 and -1 where the least is a limit"),
+        ("optimal_wear_volume_ratio", "least worn volume over that of the homogeneous medium"),
+        ("optimal_indentation_ratio", "indentation over that of the homogeneous contact, at the optimum"),
     ];
-    for kind in ["indentation", "force", "force_depth_only"] {
+    let depths = (REFERENCE_DEPTH.name, scene.reference_depths.len());
+    let amplitudes = (OPTIMUM_AMPLITUDE.name, scene.optimum_amplitude_ratios.len());
+    for (kind, ending) in
+        [("indentation", ""), ("force", "_force"), ("force_depth_only", "_force_depth_only")]
+    {
         let same = || curves.iter().filter(|curve| control_name(curve.control) == kind);
-        let Some(first) = same().next() else { continue };
-        let axes = match first.control {
-            Control::Indentation => vec![OPTIMUM_AMPLITUDE.name],
-            _ => vec![REFERENCE_DEPTH.name, OPTIMUM_AMPLITUDE.name],
-        };
-        let of = |which: usize| {
+        if same().next().is_none() {
+            continue;
+        }
+        let dimensions = if ending.is_empty() { vec![amplitudes] } else { vec![depths, amplitudes] };
+        for (which, (name, meaning)) in NAMES.into_iter().enumerate() {
             let points = same().flat_map(|curve| &curve.points);
-            points.map(move |it| [it.grading, it.volume_ratio, it.indentation_ratio][which]).collect()
-        };
-        for (which, (name, meaning)) in optimum_names(first.control).into_iter().zip(MEANINGS).enumerate() {
-            let label = label(name, "1", meaning);
-            file.arrays.push(Array { label, axes: axes.clone(), values: of(which) });
+            let values: Vec<f64> =
+                points.map(|it| [it.grading, it.volume_ratio, it.indentation_ratio][which]).collect();
+            let name = format!("{name}{ending}");
+            dataset.add(Variable::new(quantity(&name, "1", meaning), &dimensions, values));
         }
     }
 }
 
-/// Lines one after the other along one dimension: where the number changes, a new line begins.
-fn add_isolines(
-    file: &mut ArrayFile,
-    lines: &[Isoline],
-    [vertex, number, level, grading, amplitude]: [&'static str; 5],
-) {
-    let points = || {
-        (0..).zip(lines).flat_map(|(number, line)| {
-            line.points
-                .iter()
-                .map(move |&[grading, amplitude]| [f64::from(number), line.level, grading, amplitude])
-        })
-    };
-    let count = points().count();
-    let values = (0..count).map(|index| index as f64).collect();
-    file.coordinates.push(Coordinate { label: label(vertex, "1", "index of the vertex"), values });
+/// Adds lines one after the other along one dimension: where the number changes, a new line begins.
+fn add_isolines(dataset: &mut Dataset, prefix: &str, lines: &[Isoline]) {
+    let points = (0..).zip(lines).flat_map(|(number, line)| {
+        let point =
+            move |&[grading, amplitude]: &[f64; 2]| [f64::from(number), line.level, grading, amplitude];
+        line.points.iter().map(point)
+    });
+    let points: Vec<[f64; 4]> = points.collect();
+    let vertex = format!("{prefix}_vertex");
     let columns = [
-        (number, "number of the line"),
-        (level, "worn volume over that of the homogeneous medium"),
-        (grading, "grading"),
-        (amplitude, "amplitude ratio"),
+        ("number", "number of the line"),
+        ("level", "worn volume over that of the homogeneous medium"),
+        ("grading", "grading"),
+        ("amplitude_ratio", "amplitude ratio"),
     ];
     for (column, (name, meaning)) in columns.into_iter().enumerate() {
-        let values = points().map(|point| point[column]).collect();
-        file.arrays.push(Array { label: label(name, "1", meaning), axes: vec![vertex], values });
+        let values: Vec<f64> = points.iter().map(|point| point[column]).collect();
+        let name = format!("{prefix}_{name}");
+        dataset.add(Variable::new(quantity(&name, "1", meaning), &[(&vertex, points.len())], values));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::StickEdge;
 use crate::error::Result;
 use crate::numerics::roots::bracketed;
-use crate::solver::model::{Model, Past, Place, State};
+use crate::solver::model::{Model, Past, State, StickZone};
 
 /// Steps of the integrals over the ground that comes to rest, or that leaves it, in a jump of the edge of stick.
 const JUMP_STEPS: usize = 1000;
@@ -17,7 +17,7 @@ struct Ground<'a> {
     /// Squared radius of the edge of stick, m².
     stick_area: f64,
     /// `Z`, m².
-    edge: f64,
+    slip_area: f64,
     /// Compressions at the springs, the contact edge included, m.
     compression: Vec<f64>,
     /// That at the edge of stick, m.
@@ -32,7 +32,7 @@ impl Ground<'_> {
             return self.stick.raised_at_rest(squared);
         }
         let (nodes, model) = (&self.model.operators.abel.nodes()[1..], self.model);
-        let compression = match (squared - self.stick_area) / self.edge {
+        let compression = match (squared - self.stick_area) / self.slip_area {
             // Next to the old edge, where springs may have lost their load within the first cell, the first spring's.
             x if x < nodes[0] => {
                 self.compression[0] + (self.before - self.compression[0]) * (1.0 - x / nodes[0])
@@ -74,8 +74,8 @@ impl Model {
     /// [`Error::NotConverged`](crate::Error::NotConverged) if no spring has the compression at which stick would end.
     pub fn begin_block(&self, state: State) -> Result<State> {
         let (Some(moving), Some(stick)) = (&self.moving, &state.stick) else { return Ok(state) };
-        let drive = self.schedule.drive(state.cycles, state.cycles);
-        let compression = drive.slip_compression(self.contact.half_space().stiffness_ratio());
+        let loading = self.schedule.loading(state.cycles, state.cycles);
+        let compression = loading.slip_compression(self.contact.half_space().stiffness_ratio());
         let before = self.contact.indentation() - stick.depth;
         if !moving.jumps || (compression / before - 1.0).abs() < SAME_PLACE {
             return Ok(state);
@@ -84,10 +84,11 @@ impl Model {
         let exponent = 1.0 + profile.grading();
         let mut on_springs = state.compression.clone();
         on_springs.push(0.0);
-        let (old, edge) = (stick.area, state.edge);
-        let ground = Ground { model: self, stick_area: old, edge, compression: on_springs, before, stick };
+        let (old, slip_area) = (stick.area, state.slip_area);
+        let ground =
+            Ground { model: self, stick_area: old, slip_area, compression: on_springs, before, stick };
         let excess = |squared: f64| ground.compression(squared) - compression;
-        let [least, most] = [self.place.stick_area, old + edge];
+        let [least, most] = [self.stick_zone.stick_area, old + slip_area];
         let new = match compression {
             _ if compression < before => bracketed(excess, old, most, 0.0)?,
             _ if excess(least) <= 0.0 => least,
@@ -137,28 +138,28 @@ impl Model {
                 left_behind.fill(0.0);
             }
         }
-        let next = Place { stick_area: new, slip_compression: compression, stick_load: load };
+        let next = StickZone { stick_area: new, slip_compression: compression, stick_load: load };
         // Slip is what is carried over: small numbers next to the edge of stick, where compressions differ by little.
-        let edge = edge - (new - old);
+        let slip_area = slip_area - (new - old);
         let mut fields = self.fields(&state);
-        self.evaluate_at(&next, edge, &state.compression, &mut fields);
+        self.evaluate_at(&next, slip_area, &state.compression, &mut fields);
         let nodes = &self.operators.abel.nodes()[1..];
         let (radius, at_edge) = (new.sqrt(), ground.raised(new));
         let slipping = nodes.iter().map(|x| {
-            let rise = profile.rise(radius, edge * x) + ground.raised(new + edge * x) - at_edge;
+            let rise = profile.rise(radius, slip_area * x) + ground.raised(new + slip_area * x) - at_edge;
             rise.max(0.0)
         });
         let slip = self.carried(&fields, slipping);
         // What is left behind is by another quadrature than the slip: the contact edge stays where it is.
-        let behind = moving.left_behind(&left_behind, new + edge);
-        let off = self.mismatch_at(&next, edge, |i, _| slip[i]) - behind;
+        let behind = moving.left_behind(&left_behind, new + slip_area);
+        let off = self.mismatch_at(&next, slip_area, |i, _| slip[i]) - behind;
         left_behind.iter_mut().for_each(|value| *value += off);
-        let moved = self.compression_at(&next, edge, |i, _| slip[i]);
+        let moved = self.compression_at(&next, slip_area, |i, _| slip[i]);
         Ok(State {
-            edge,
+            slip_area,
             compression_rate: vec![0.0; moved.len()],
             compression: moved,
-            edge_rate: 0.0,
+            slip_area_rate: 0.0,
             past: Past::default(),
             stick: Some(StickEdge {
                 area: new,

@@ -2,349 +2,425 @@
 
 use faer::Mat;
 
-use super::{Cause, StickEdge};
+use super::{Cause, MovingStick, StickEdge};
 use crate::numerics::grid::lagrange;
-use crate::solver::model::schedule::Drive;
-use crate::solver::model::{CycleFields, Fields, Model, Place};
+use crate::solver::model::schedule::CycleLoading;
+use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
 
-/// Change of edge, stick edge or depth, relative, by which slopes are found.
+/// Change of slip area, stick area or depth, relative, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
 
-/// What a stage of a step starts from: the sums of the stages before, and what acts.
+/// What a stage with an edge of stick that moves starts from.
 #[derive(Debug, Clone)]
 pub struct StickTarget {
-    /// `λ` at the springs.
-    pub log_slip: Vec<f64>,
-    /// `Z`, m².
-    pub edge: f64,
+    /// As where the edge rests.
+    pub springs: Target,
     /// Area, depth, load and what was left behind.
     pub stick: StickEdge,
     /// `q_c`, m.
     pub slip_compression: f64,
-    /// Step times the diagonal coefficient, cycles.
-    pub step: f64,
-    /// What acts.
-    pub drive: Drive,
 }
 
-/// A state tried in a stage, with everything that follows from it.
+/// What follows from the unknowns tried in a stage.
 #[derive(Debug, Clone, Default)]
 pub struct StickTrial {
-    /// Where the mesh begins.
-    pub place: Place,
+    /// The stick zone, at whose edge the mesh begins.
+    pub stick_zone: StickZone,
     /// The fields.
     pub fields: Fields,
     /// What a cycle does.
     pub cycle: CycleFields,
-    /// What acts, with the amplitude of the contact.
-    pub drive: Option<Drive>,
     /// What is left of the equations: springs, contact edge, stick edge, depth.
     pub residual: Vec<f64>,
 }
 
+/// The equations of a stage with an edge of stick that moves.
+#[derive(Debug)]
+pub struct StickStage<'a> {
+    model: &'a Model,
+    moving: &'a MovingStick,
+    target: StickTarget,
+}
+
+/// Ground that the edge of stick has passed in a stage.
+struct Passed {
+    /// Change of `C`, m².
+    area: f64,
+    /// Change of `G`, m.
+    risen: f64,
+    /// Change of `g_0(c)`, m.
+    unworn_rise: f64,
+}
+
 impl Model {
-    /// Compression at the edge of stick at the end of a stage, m, where friction alone decides it.
-    pub fn known_slip_compression(&self, target: &StickTarget) -> Option<f64> {
-        let moving = self.moving.as_ref()?;
-        (moving.cause == Cause::Friction && !moving.jumps)
-            .then(|| target.drive.slip_compression(self.contact.half_space().stiffness_ratio()))
+    /// The equations of a stage; none where the edge of stick rests.
+    pub fn stick_stage(&self, target: StickTarget) -> Option<StickStage<'_>> {
+        self.moving.as_ref().map(|moving| StickStage { model: self, moving, target })
+    }
+}
+
+impl StickStage<'_> {
+    /// What the stage starts from.
+    pub fn target(&self) -> &StickTarget {
+        &self.target
     }
 
-    /// Tries a state in a stage.
-    pub fn try_stick(
-        &self,
-        target: &StickTarget,
-        edge: f64,
-        area: f64,
-        depth: f64,
-        compression: &[f64],
-        trial: &mut StickTrial,
-    ) -> bool {
-        let moving = self.moving.as_ref().expect("called where the stick edge moves");
-        let half_space = self.contact.half_space();
-        let exponent = 1.0 + half_space.grading();
-        let profile = self.contact.equivalent_profile();
-        let least = self.place.stick_area;
-        if !(edge > 0.0 && area > 0.99 * least && area + edge < least + self.unworn.largest_edge()) {
+    /// Compression at the edge of stick at the end of the stage, m, where friction alone decides it.
+    pub fn known_slip_compression(&self) -> Option<f64> {
+        (self.moving.cause == Cause::Friction && !self.moving.jumps).then(|| self.driven_slip_compression())
+    }
+
+    /// Recomputes everything that follows from the unknowns; whether they are those of a contact.
+    pub fn evaluate(&self, at: &Unknowns, trial: &mut StickTrial) -> bool {
+        let model = self.model;
+        let slip_compression = self.slip_compression(at);
+        if !self.is_on_mesh(at) || slip_compression.is_nan() || slip_compression <= 0.0 {
             return false;
         }
-        let held = self.contact.indentation();
-        let (slip_compression, drive) = match moving.cause {
-            Cause::Tangential => (held - depth, self.displaced(target.drive.clone(), held - depth)),
-            Cause::Sliding(_) => (depth, target.drive.clone()),
-            _ => (target.drive.slip_compression(half_space.stiffness_ratio()), target.drive.clone()),
-        };
-        if slip_compression.is_nan() || slip_compression <= 0.0 {
-            return false;
-        }
-        let radius = area.sqrt();
-        let (passed, risen) = moving.motion(target, area, depth);
-        let deeper = match moving.cause {
-            Cause::NormalForce(_) => risen + slip_compression - target.slip_compression,
-            _ => 0.0,
-        };
-        let load = if moving.slides() {
-            target.stick.load
-                + (slip_compression - target.slip_compression) * radius.powf(exponent) / exponent
-        } else {
-            target.stick.load
-                + deeper * radius.powf(exponent) / exponent
-                + 0.5 * slip_compression * radius.powf(exponent - 2.0) * passed
-        };
-        trial.place = Place { stick_area: area, slip_compression, stick_load: load };
-        self.evaluate_at(&trial.place, edge, compression, &mut trial.fields);
+        let loading = self.loading(at);
+        trial.stick_zone = self.stick_zone(at, slip_compression);
+        model.evaluate_at(&trial.stick_zone, at.slip_area, &at.compression, &mut trial.fields);
         if !trial.fields.are_physical() {
             return false;
         }
-        trial.cycle = self.cycle(&drive, compression, &trial.fields);
-        let fields = &trial.fields;
-        let unworn_rise = self.unworn_rise(area, passed);
-        let n = self.springs();
-        let nodes = &self.operators.abel.nodes()[1..];
-        let along = self.stick_slopes(&fields.log_slip);
-        trial.residual.clear();
-        for i in 0..n - 1 {
-            let values = &fields.unworn[i];
-            let per_slip = values.limit_slip / slip_compression / values.slip;
-            let singular = per_slip * (unworn_rise - risen * (-fields.log_slip[i]).exp());
-            let moved = along[i] / nodes[i] * (passed + nodes[i] * (edge - target.edge)) / edge;
-            trial.residual.push(
-                fields.log_slip[i]
-                    - target.log_slip[i]
-                    - target.step * trial.cycle.growth[i]
-                    - singular
-                    - moved,
-            );
-        }
-        let behind = self.left_behind(target, area, edge, unworn_rise, risen, slip_compression);
-        let free = fields.slip_depth[n - 1] - behind;
-        if free.is_nan() || free <= 0.0 {
+        trial.cycle = model.cycle(&loading, &at.compression, &trial.fields);
+        let passed = self.passed(at);
+        let contact_edge = self.at_contact_edge(at, &passed, trial);
+        if contact_edge.is_nan() {
             return false;
         }
-        trial.residual.push((free / fields.unworn[n - 1].slip).ln());
-        trial.residual.push(if moving.rests() {
-            area / target.stick.area - 1.0
-        } else if moving.outwards {
-            (unworn_rise - risen * self.at_stick_edge(|i| (-fields.log_slip[i]).exp())) / slip_compression
-        } else {
-            (profile.value(radius) - depth) / slip_compression
-        });
-        let balance = match moving.cause {
-            _ if moving.jumps => risen / slip_compression,
-            Cause::Friction => (depth - (held - slip_compression)) / slip_compression,
-            Cause::NormalForce(force) | Cause::Sliding(force) => self.normal_force(fields) / force - 1.0,
-            Cause::Tangential => {
-                let amplitude = drive.amplitude;
-                let force = self.force(&drive, compression, fields, amplitude);
-                target.drive.excess(force, amplitude) / target.drive.asked()
-            }
-        };
-        trial.residual.push(balance);
-        trial.drive = Some(drive);
+        trial.residual.clear();
+        self.push_on_springs(at, &passed, trial);
+        let stick_edge = self.at_stick_edge(at, &passed, trial);
+        let depth = self.balance(at, &passed, &loading, trial);
+        trial.residual.extend([contact_edge, stick_edge, depth]);
         trial.residual.iter().all(|value| value.is_finite())
     }
 
-    /// By how much the unworn profile rises, m, where the square of the stick radius grows by `passed`, m².
-    fn unworn_rise(&self, area: f64, passed: f64) -> f64 {
-        let radius = area.sqrt();
-        0.5 * self.contact.equivalent_profile().derivative(radius) / radius * passed
-    }
-
-    /// `K` at the contact edge, m, at the end of a stage.
-    fn left_behind(
-        &self,
-        target: &StickTarget,
-        area: f64,
-        edge: f64,
-        unworn_rise: f64,
-        risen: f64,
-        slip_compression: f64,
-    ) -> f64 {
-        let moving = self.moving.as_ref().expect("called where the stick edge moves");
-        if !moving.outwards {
-            return 0.0;
-        }
-        let uniform = self.unworn.at_stick(area, slip_compression, edge).limit_slip / slip_compression;
-        moving.left_behind(&target.stick.left_behind, area + edge) - (risen - unworn_rise) * uniform
-    }
-
-    /// A quantity at the edge of stick, by the parabola through the first three springs.
-    ///
-    /// By the first spring alone, what the springs next to it are off by would grow in time on meshes as fine as these.
-    fn at_stick_edge(&self, value: impl Fn(usize) -> f64) -> f64 {
-        let mut weights = [0.0; 3];
-        lagrange(&self.operators.abel.nodes()[1..4], 0.0, &mut weights);
-        weights.iter().enumerate().map(|(i, weight)| weight * value(i)).sum()
-    }
-
-    /// `ξ ∂λ/∂ξ`, leaning to where the ground comes from: outwards, or inwards next to an edge of stick that recedes.
-    fn stick_slopes(&self, log_slip: &[f64]) -> Vec<f64> {
-        let moving = self.moving.as_ref().expect("called where the stick edge moves");
-        let mut along = self.along_annulus(log_slip);
-        if !moving.outwards && !moving.slides() {
-            let nodes = self.operators.abel.nodes();
-            for (i, slope) in along.iter_mut().enumerate().take(log_slip.len() / 2) {
-                let before = if i == 0 { 0.0 } else { log_slip[i - 1] };
-                *slope = nodes[i + 1] * (log_slip[i] - before) / (nodes[i + 1] - nodes[i]);
-            }
-        }
-        along
-    }
-
-    /// Newton's matrix of a stage: columns the compressions, contact edge, stick edge and depth.
-    pub fn stick_matrix(
-        &self,
-        target: &StickTarget,
-        edge: f64,
-        area: f64,
-        depth: f64,
-        compression: &[f64],
-        trial: &StickTrial,
-    ) -> Option<Mat<f64>> {
-        let moving = self.moving.as_ref().expect("called where the stick edge moves");
-        let (n, inner) = (self.springs(), self.springs() - 1);
-        let fields = &trial.fields;
-        let drive = trial.drive.as_ref().expect("set by the trial");
-        let (passed, risen) = moving.motion(target, area, depth);
-        let nodes = &self.operators.abel.nodes()[1..];
-        let mut growth = Mat::zeros(n, n);
-        self.add_growth_slopes(drive, compression, fields, &trial.cycle, -target.step, &mut growth);
+    /// Newton's matrix: columns the compressions, contact edge, stick edge and depth. None if a state next to this one is none of a contact.
+    pub fn matrix(&self, at: &Unknowns, trial: &StickTrial) -> Option<Mat<f64>> {
+        let n = self.model.springs();
         let mut matrix = Mat::zeros(n + 2, n + 2);
-        let scale = fields.edge.powf(self.mu());
-        let behind = fields.slip_depth[inner] - fields.unworn[inner].slip * trial.residual[inner].exp();
-        let mut slopes = vec![0.0; n];
-        for j in 0..inner {
-            for (i, slope) in slopes.iter_mut().enumerate() {
-                *slope = -scale * self.elastic_depth_by_compression(fields, i, j) / fields.slip_depth[i];
-            }
-            let along = self.stick_slopes(&slopes);
-            for i in 0..inner {
-                let values = &fields.unworn[i];
-                let per_slip = values.limit_slip / trial.place.slip_compression / values.slip;
-                let moved = along[i] / nodes[i] * (passed + nodes[i] * (edge - target.edge)) / edge;
-                matrix[(i, j)] = growth[(i, j)]
-                    + slopes[i] * (1.0 - per_slip * risen * (-fields.log_slip[i]).exp())
-                    - moved;
-            }
-            matrix[(inner, j)] =
-                slopes[inner] * fields.slip_depth[inner] / (fields.slip_depth[inner] - behind);
-            if moving.outwards && !moving.jumps {
-                let slope = self.at_stick_edge(|i| (-fields.log_slip[i]).exp() * slopes[i]);
-                matrix[(n, j)] = risen * slope / trial.place.slip_compression;
-            }
-            let weight = self.contact.half_space().normal_stiffness()
-                * fields.edge
-                * self.operators.abel.spring_sum()[j]
-                * fields.density_factor[j];
-            matrix[(n + 1, j)] = match moving.cause {
-                Cause::Friction => 0.0,
-                Cause::NormalForce(force) | Cause::Sliding(force) => weight / force,
-                Cause::Tangential => {
-                    let ratio = self.contact.half_space().stiffness_ratio();
-                    let q = compression[j];
-                    let slips = drive.friction.kinetic_strength(q) < ratio * drive.amplitude;
-                    let step = DIFFERENCE * trial.place.slip_compression;
-                    let slope = (drive.friction.kinetic_strength(q + step)
-                        - drive.friction.kinetic_strength(q))
-                        / step;
-                    let [by_force, _] = target.drive.demand.factors();
-                    if slips { by_force * weight * slope / target.drive.asked() } else { 0.0 }
-                }
-            };
+        self.fill_by_compressions(at, trial, &mut matrix);
+        let step = DIFFERENCE * at.slip_area;
+        let moved = Unknowns { slip_area: at.slip_area + step, ..at.clone() };
+        self.fill_by_difference(n - 1, step, &moved, trial, &mut matrix)?;
+        if self.moving.rests() {
+            matrix[(n, n)] = self.target.stick.area.recip();
+        } else {
+            let step = DIFFERENCE * at.stick_area;
+            let moved = Unknowns { stick_area: at.stick_area + step, ..at.clone() };
+            self.fill_by_difference(n, step, &moved, trial, &mut matrix)?;
         }
-        let mut nearby = StickTrial::default();
-        let steps = [
-            (n - 1, [DIFFERENCE * edge, 0.0, 0.0]),
-            (n, [0.0, DIFFERENCE * area, 0.0]),
-            (n + 1, [0.0, 0.0, DIFFERENCE * trial.place.slip_compression]),
-        ];
-        for (column, [by_edge, by_area, by_depth]) in steps {
-            if let (Cause::Sliding(force), true) = (moving.cause, column == n + 1) {
-                // By a difference the small slip next to the core would change its sign.
-                let uniform = |i: usize| fields.unworn[i].limit_slip / trial.place.slip_compression;
-                let slopes: Vec<f64> = (0..n).map(|i| uniform(i) / fields.slip_depth[i]).collect();
-                let along = self.stick_slopes(&slopes);
-                for i in 0..inner {
-                    let moved = along[i] * (edge - target.edge) / edge;
-                    matrix[(i, column)] = slopes[i] * (1.0 + target.step * trial.cycle.growth[i]) - moved;
-                }
-                matrix[(inner, column)] = slopes[inner];
-                let exponent = 1.0 + self.contact.half_space().grading();
-                let stiffness = self.contact.half_space().normal_stiffness();
-                matrix[(n + 1, column)] = 2.0 * stiffness * area.powf(0.5 * exponent) / (exponent * force);
-                continue;
-            }
-            if (moving.jumps && column >= n) || (moving.slides() && column == n) {
-                // The edge of stick stays.
-                matrix[(column, column)] = if column == n {
-                    target.stick.area.recip()
-                } else {
-                    trial.place.slip_compression.recip()
-                };
-                continue;
-            }
-            let step = by_edge + by_area + by_depth;
-            let found = self.try_stick(
-                target,
-                edge + by_edge,
-                area + by_area,
-                depth + by_depth,
-                compression,
-                &mut nearby,
-            );
-            if !found {
-                return None;
-            }
-            for i in 0..n + 2 {
-                matrix[(i, column)] = (nearby.residual[i] - trial.residual[i]) / step;
+        match self.moving.cause {
+            Cause::Sliding(force) => self.fill_by_sliding_depth(force, at, trial, &mut matrix),
+            _ if self.moving.jumps => matrix[(n + 1, n + 1)] = trial.stick_zone.slip_compression.recip(),
+            _ => {
+                let step = DIFFERENCE * trial.stick_zone.slip_compression;
+                let moved = Unknowns { stick_depth: at.stick_depth + step, ..at.clone() };
+                self.fill_by_difference(n + 1, step, &moved, trial, &mut matrix)?;
             }
         }
         Some(matrix)
     }
 
     /// Slopes, per cycle, of what the stick edge carries along: load, what was left behind, wear depth at the radii of the output.
-    pub fn stick_rates(&self, target: &StickTarget, area: f64, depth: f64, trial: &StickTrial) -> StickEdge {
-        let moving = self.moving.as_ref().expect("called where the stick edge moves");
-        let (passed, risen) = moving.motion(target, area, depth);
-        let changed = depth - target.stick.depth;
-        let per_step = target.step.recip();
-        let unworn_rise = self.unworn_rise(area, passed);
+    pub fn rates(&self, at: &Unknowns, trial: &StickTrial) -> StickEdge {
+        let (model, target) = (self.model, &self.target);
+        let passed = self.passed(at);
+        let per_step = target.springs.step.recip();
+        let (area, q) = (at.stick_area, trial.stick_zone.slip_compression);
         let (mut left_behind, mut wear_depth) = (vec![], vec![]);
-        if moving.outwards {
-            let q = trial.place.slip_compression;
-            let uniform = |squared: f64| self.unworn.at_stick(area, q, squared - area).limit_slip / q;
-            left_behind = moving
-                .stations()
-                .map(|squared| -per_step * (risen - unworn_rise) * uniform(squared))
-                .collect();
-            let worn: Vec<f64> = trial
-                .cycle
-                .growth
-                .iter()
-                .zip(&trial.fields.log_slip)
-                .map(|(growth, log_slip)| growth * log_slip.exp())
-                .collect();
-            wear_depth = self
-                .offsets()
-                .iter()
-                .map(|offset| {
-                    let z = self.place.stick_area + offset - area;
-                    let x = z / trial.fields.edge;
-                    if x <= 0.0 || x >= 1.0 {
-                        return 0.0;
-                    }
-                    self.between_springs(&worn, x) * self.unworn.at_stick(area, q, z).slip
-                })
-                .collect();
+        if self.moving.outwards {
+            let uniform = |squared: f64| model.unworn.at_stick(area, q, squared - area).limit_slip / q;
+            let kept = |squared| -per_step * (passed.risen - passed.unworn_rise) * uniform(squared);
+            left_behind = self.moving.stations().map(kept).collect();
+            let growth = trial.cycle.growth.iter().zip(&trial.fields.log_slip);
+            let worn: Vec<f64> = growth.map(|(growth, log_slip)| growth * log_slip.exp()).collect();
+            let depth = |offset: &f64| {
+                let z = model.stick_zone.stick_area + offset - area;
+                let x = z / trial.fields.slip_area;
+                if x <= 0.0 || x >= 1.0 {
+                    return 0.0;
+                }
+                model.between_springs(&worn, x) * model.unworn.at_stick(area, q, z).slip
+            };
+            wear_depth = model.output.offsets().iter().map(depth).collect();
         }
         StickEdge {
-            area: per_step * passed,
-            depth: per_step * changed,
-            load: per_step * (trial.place.stick_load - target.stick.load),
+            area: per_step * passed.area,
+            depth: per_step * (at.stick_depth - target.stick.depth),
+            load: per_step * (trial.stick_zone.stick_load - target.stick.load),
             left_behind,
             wear_depth,
-            rates: [0.0; 2],
             ..StickEdge::default()
         }
     }
+
+    fn is_on_mesh(&self, at: &Unknowns) -> bool {
+        let least = self.model.stick_zone.stick_area;
+        at.slip_area > 0.0
+            && at.stick_area > 0.99 * least
+            && at.stick_area + at.slip_area < least + self.model.unworn.largest_slip_area()
+    }
+
+    /// `q_c`, m.
+    fn slip_compression(&self, at: &Unknowns) -> f64 {
+        match self.moving.cause {
+            Cause::Tangential => self.model.contact.indentation() - at.stick_depth,
+            Cause::Sliding(_) => at.stick_depth,
+            _ => self.driven_slip_compression(),
+        }
+    }
+
+    /// `q_c` at the amplitude that acts, m.
+    fn driven_slip_compression(&self) -> f64 {
+        self.target.springs.loading.slip_compression(self.model.contact.half_space().stiffness_ratio())
+    }
+
+    /// What acts, with the amplitude of the contact.
+    fn loading(&self, at: &Unknowns) -> CycleLoading {
+        let loading = self.target.springs.loading.clone();
+        match self.moving.cause {
+            Cause::Tangential => self.model.displaced(loading, self.slip_compression(at)),
+            _ => loading,
+        }
+    }
+
+    fn passed(&self, at: &Unknowns) -> Passed {
+        let stick = &self.target.stick;
+        let (area, risen) = if self.moving.slides() {
+            (0.0, 0.0)
+        } else {
+            (at.stick_area - stick.area, at.stick_depth - stick.depth)
+        };
+        let radius = at.stick_area.sqrt();
+        let slope = self.model.contact.equivalent_profile().derivative(radius);
+        Passed { area, risen, unworn_rise: 0.5 * slope / radius * area }
+    }
+
+    /// Where the mesh begins: the load grows by that of the ground passed, and with `q_c` on all of the stick zone where a normal force is held.
+    fn stick_zone(&self, at: &Unknowns, slip_compression: f64) -> StickZone {
+        let target = &self.target;
+        let exponent = 1.0 + self.model.contact.half_space().grading();
+        let radius = at.stick_area.sqrt();
+        let passed = self.passed(at);
+        let stick_load = if self.moving.slides() {
+            target.stick.load
+                + (slip_compression - target.slip_compression) * radius.powf(exponent) / exponent
+        } else {
+            let deeper = match self.moving.cause {
+                Cause::NormalForce(_) => passed.risen + slip_compression - target.slip_compression,
+                _ => 0.0,
+            };
+            target.stick.load
+                + deeper * radius.powf(exponent) / exponent
+                + 0.5 * slip_compression * radius.powf(exponent - 2.0) * passed.area
+        };
+        StickZone { stick_area: at.stick_area, slip_compression, stick_load }
+    }
+
+    /// Equations of the inner springs.
+    fn push_on_springs(&self, at: &Unknowns, passed: &Passed, trial: &mut StickTrial) {
+        let StickTrial { fields, cycle, residual, .. } = trial;
+        let target = &self.target.springs;
+        let along = self.along_annulus(&fields.log_slip);
+        for i in 0..at.compression.len() {
+            let singular =
+                per_slip(fields, i) * (passed.unworn_rise - passed.risen * (-fields.log_slip[i]).exp());
+            residual.push(
+                fields.log_slip[i]
+                    - target.log_slip[i]
+                    - target.step * cycle.growth[i]
+                    - singular
+                    - self.carried(at, passed, &along, i),
+            );
+        }
+    }
+
+    /// What the motion of spring `i` makes of a quantity whose `ξ ∂/∂ξ` is given.
+    fn carried(&self, at: &Unknowns, passed: &Passed, along: &[f64], i: usize) -> f64 {
+        let node = self.model.operators.abel.nodes()[i + 1];
+        along[i] / node * self.motion(at, passed, node) / at.slip_area
+    }
+
+    /// By how much ground has passed the node `ξ` in the stage, m².
+    fn motion(&self, at: &Unknowns, passed: &Passed, node: f64) -> f64 {
+        passed.area + node * (at.slip_area - self.target.springs.slip_area)
+    }
+
+    /// `ln((S - K)/S_0)` at the contact edge; not a number where less slipped than was left behind.
+    fn at_contact_edge(&self, at: &Unknowns, passed: &Passed, trial: &StickTrial) -> f64 {
+        let (last, fields) = (at.compression.len(), &trial.fields);
+        let free = fields.slip_depth[last] - self.left_behind(at, passed, &trial.stick_zone);
+        if free > 0.0 { (free / fields.unworn[last].slip).ln() } else { f64::NAN }
+    }
+
+    /// `K` at the contact edge, m, at the end of the stage.
+    fn left_behind(&self, at: &Unknowns, passed: &Passed, stick_zone: &StickZone) -> f64 {
+        if !self.moving.outwards {
+            return 0.0;
+        }
+        let q = stick_zone.slip_compression;
+        let uniform = self.model.unworn.at_stick(at.stick_area, q, at.slip_area).limit_slip / q;
+        self.moving.left_behind(&self.target.stick.left_behind, at.stick_area + at.slip_area)
+            - (passed.risen - passed.unworn_rise) * uniform
+    }
+
+    /// What decides where the edge of stick is: the unworn profile inwards, what is left behind outwards.
+    fn at_stick_edge(&self, at: &Unknowns, passed: &Passed, trial: &StickTrial) -> f64 {
+        let q = trial.stick_zone.slip_compression;
+        if self.moving.rests() {
+            return at.stick_area / self.target.stick.area - 1.0;
+        }
+        if self.moving.outwards {
+            let slope = self.extrapolated(|i| (-trial.fields.log_slip[i]).exp());
+            return (passed.unworn_rise - passed.risen * slope) / q;
+        }
+        let profile = self.model.contact.equivalent_profile();
+        (profile.value(at.stick_area.sqrt()) - at.stick_depth) / q
+    }
+
+    /// What decides the height of the profile there: friction, or a balance of forces.
+    fn balance(&self, at: &Unknowns, passed: &Passed, loading: &CycleLoading, trial: &StickTrial) -> f64 {
+        let (model, q) = (self.model, trial.stick_zone.slip_compression);
+        match self.moving.cause {
+            _ if self.moving.jumps => passed.risen / q,
+            Cause::Friction => (at.stick_depth - (model.contact.indentation() - q)) / q,
+            Cause::NormalForce(force) | Cause::Sliding(force) => {
+                model.normal_force(&trial.fields) / force - 1.0
+            }
+            Cause::Tangential => {
+                let force = model.force(loading, &at.compression, &trial.fields, loading.amplitude);
+                let asked = &self.target.springs.loading;
+                asked.excess(force, loading.amplitude) / asked.asked()
+            }
+        }
+    }
+
+    /// A quantity at the edge of stick, by the parabola through the first three springs.
+    ///
+    /// By the first spring alone, what the springs next to it are off by would grow in time on meshes as fine as these.
+    fn extrapolated(&self, value: impl Fn(usize) -> f64) -> f64 {
+        let mut weights = [0.0; 3];
+        lagrange(&self.model.operators.abel.nodes()[1..4], 0.0, &mut weights);
+        weights.iter().enumerate().map(|(i, weight)| weight * value(i)).sum()
+    }
+
+    /// `ξ ∂/∂ξ`, leaning to where the ground comes from: outwards, or inwards next to an edge of stick that recedes.
+    fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
+        let mut along = self.model.along_annulus(values);
+        if !self.moving.outwards && !self.moving.slides() {
+            let nodes = self.model.operators.abel.nodes();
+            for (i, slope) in along.iter_mut().enumerate().take(values.len() / 2) {
+                let before = if i == 0 { 0.0 } else { values[i - 1] };
+                *slope = nodes[i + 1] * (values[i] - before) / (nodes[i + 1] - nodes[i]);
+            }
+        }
+        along
+    }
+
+    fn fill_by_compressions(&self, at: &Unknowns, trial: &StickTrial, matrix: &mut Mat<f64>) {
+        let (model, fields) = (self.model, &trial.fields);
+        let (n, inner) = (model.springs(), model.springs() - 1);
+        let (passed, loading) = (self.passed(at), self.loading(at));
+        let mut growth = Mat::zeros(n, n);
+        let step = self.target.springs.step;
+        model.add_growth_slopes(&loading, &at.compression, fields, &trial.cycle, -step, &mut growth);
+        let scale = fields.slip_area.powf(model.mu());
+        let behind = fields.slip_depth[inner] - fields.unworn[inner].slip * trial.residual[inner].exp();
+        let nodes = &model.operators.abel.nodes()[1..];
+        let singular = |i| 1.0 - per_slip(fields, i) * passed.risen * (-fields.log_slip[i]).exp();
+        let singular: Vec<f64> = (0..inner).map(singular).collect();
+        let motion: Vec<f64> = nodes[..inner].iter().map(|node| self.motion(at, &passed, *node)).collect();
+        let mut slopes = vec![0.0; n];
+        for j in 0..inner {
+            for (i, slope) in slopes.iter_mut().enumerate() {
+                *slope = -scale * model.elastic_depth_by_compression(fields, i, j) / fields.slip_depth[i];
+            }
+            let along = self.along_annulus(&slopes);
+            for i in 0..inner {
+                let carried = along[i] / nodes[i] * motion[i] / at.slip_area;
+                matrix[(i, j)] = growth[(i, j)] + slopes[i] * singular[i] - carried;
+            }
+            matrix[(inner, j)] =
+                slopes[inner] * fields.slip_depth[inner] / (fields.slip_depth[inner] - behind);
+            if self.moving.outwards && !self.moving.jumps {
+                let slope = self.extrapolated(|i| (-fields.log_slip[i]).exp() * slopes[i]);
+                matrix[(n, j)] = passed.risen * slope / trial.stick_zone.slip_compression;
+            }
+            matrix[(n + 1, j)] = self.balance_by_compression(j, at.compression[j], &loading, trial);
+        }
+    }
+
+    fn balance_by_compression(
+        &self,
+        spring: usize,
+        q: f64,
+        loading: &CycleLoading,
+        trial: &StickTrial,
+    ) -> f64 {
+        let half_space = self.model.contact.half_space();
+        let weight = half_space.normal_stiffness()
+            * trial.fields.slip_area
+            * self.model.operators.abel.spring_sum()[spring]
+            * trial.fields.density_factor[spring];
+        match self.moving.cause {
+            Cause::Friction => 0.0,
+            Cause::NormalForce(force) | Cause::Sliding(force) => weight / force,
+            Cause::Tangential => {
+                let strength = |q: f64| loading.friction.kinetic_strength(q);
+                if strength(q) >= half_space.stiffness_ratio() * loading.amplitude {
+                    return 0.0;
+                }
+                let step = DIFFERENCE * trial.stick_zone.slip_compression;
+                let slope = (strength(q + step) - strength(q)) / step;
+                let asked = &self.target.springs.loading;
+                let [by_force, _] = asked.control.factors();
+                by_force * weight * slope / asked.asked()
+            }
+        }
+    }
+
+    fn fill_by_difference(
+        &self,
+        column: usize,
+        step: f64,
+        moved: &Unknowns,
+        trial: &StickTrial,
+        matrix: &mut Mat<f64>,
+    ) -> Option<()> {
+        let mut nearby = StickTrial::default();
+        if !self.evaluate(moved, &mut nearby) {
+            return None;
+        }
+        for (i, (after, before)) in nearby.residual.iter().zip(&trial.residual).enumerate() {
+            matrix[(i, column)] = (after - before) / step;
+        }
+        Some(())
+    }
+
+    /// By a difference the small slip next to the core would change its sign.
+    fn fill_by_sliding_depth(&self, force: f64, at: &Unknowns, trial: &StickTrial, matrix: &mut Mat<f64>) {
+        let (model, fields) = (self.model, &trial.fields);
+        let (n, inner) = (model.springs(), model.springs() - 1);
+        let target = &self.target.springs;
+        let slopes: Vec<f64> = (0..n).map(|i| model.uniform_slip(fields, i) / fields.slip_depth[i]).collect();
+        let along = self.along_annulus(&slopes);
+        for i in 0..inner {
+            let moved = along[i] * (at.slip_area - target.slip_area) / at.slip_area;
+            matrix[(i, n + 1)] = slopes[i] * (1.0 + target.step * trial.cycle.growth[i]) - moved;
+        }
+        matrix[(inner, n + 1)] = slopes[inner];
+        let half_space = model.contact.half_space();
+        let exponent = 1.0 + half_space.grading();
+        matrix[(n + 1, n + 1)] =
+            2.0 * half_space.normal_stiffness() * at.stick_area.powf(0.5 * exponent) / (exponent * force);
+    }
+}
+
+/// `Φ/S_0` at a spring, 1/m.
+fn per_slip(fields: &Fields, spring: usize) -> f64 {
+    let values = &fields.unworn[spring];
+    values.limit_slip / fields.stick_zone.slip_compression / values.slip
 }

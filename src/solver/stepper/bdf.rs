@@ -1,12 +1,13 @@
-//! Implicit steps that remember several before: backward differentiation in the logarithm of time.
+//! Backward differentiation formulas in the logarithm of time: implicit steps that remember several before.
 
 use std::sync::Arc;
 
-use super::newton::{Kept, Newton, Target};
+use super::newton::Newton;
+use super::resting::{RestingStage, Tried, newton_tolerance};
 use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::numerics::abel::Backend;
-use crate::solver::model::{Linearised, Model, Past, PastPoint, State};
+use crate::solver::model::{Linearised, Model, Past, PastPoint, State, Target, Unknowns};
 
 /// Backward differentiation formulas of order 1 to 5, with variable steps and order, for wear that is smooth in time.
 ///
@@ -20,23 +21,25 @@ use crate::solver::model::{Linearised, Model, Past, PastPoint, State};
 /// while it converges; on many springs its factors serve the steps after it too. What lies within a step is on the same polynomial, so that
 /// outputs cost no steps.
 #[derive(Debug)]
-pub struct Multistep {
+pub struct Bdf {
     /// Largest error of one step.
     tolerance: f64,
+    /// What Newton's method may leave.
+    newton_tolerance: f64,
     newton: Newton,
-    factors: Kept,
+    tried: Tried,
     /// Cycles of the state that the last step was tried from.
     tried_from: Option<f64>,
 }
 
 /// Times remembered, the present one included: the error at the next order takes two more than that order.
-const REMEMBERED: usize = Multistep::HIGHEST_ORDER + 2;
+const REMEMBERED: usize = Bdf::HIGHEST_ORDER + 2;
 
 /// Error at the end of a run over that of its steps, measured (docs/numerics.md), so that a tolerance is about the error that comes of it.
 const ACCUMULATED: f64 = 8.0;
 
-/// Logarithm of the change of the step, and contraction of the corrections, up to which hierarchical factors serve another step: these take as
-/// long as eight corrections, dense ones of as many springs as those are for much less.
+/// Largest change of the step, as a logarithm, and contraction of the corrections with which hierarchical factors serve another step. Making them
+/// takes as long as eight corrections. Dense factors are made anew in every step: on so few springs that is cheap.
 const SAME_STEP: f64 = 0.3;
 const SAME_MATRIX: f64 = 0.4;
 
@@ -48,7 +51,7 @@ const SAFETY_OF_CHANGE: f64 = 0.7;
 const SMALLEST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 2.0;
 
-impl Stepper for Multistep {
+impl Stepper for Bdf {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let past = self.past(model, state);
         let now = state.cycles + cycles;
@@ -57,43 +60,48 @@ impl Stepper for Multistep {
         let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
         let target = Target {
             log_slip: gathered.log_slip,
-            edge: gathered.edge,
+            slip_area: gathered.slip_area,
             step: times.per_slope / times.leading(past.order),
-            drive: model.schedule().drive(state.cycles, now),
+            loading: model.schedule().loading(state.cycles, now),
         };
         self.take_up_factors(model, state, &target);
+        let step = target.step;
         let mut evaluations = 1;
-        // Where the past leads first, once more with factors of its own; on fine meshes with gradings near -1 that may be beyond what Newton's
-        // method comes back from.
+        // First guess: the polynomial through the past, then the same with new factors, then the state itself. On fine meshes with gradings near
+        // -1 the polynomial may lead too far for Newton's method.
         let led = (past.points.len() > 1).then(|| state_of(state, times.guess(&past), now));
-        let again = led.clone().filter(|_| self.factors.at().is_some());
+        let again = led.clone().filter(|_| self.newton.linearised().is_some());
         let still = State { cycles: now, past: Past::default(), ..state.clone() };
         let guesses = led.into_iter().chain(again).chain([still]).enumerate();
-        let mut guesses = guesses.map(|(attempt, mut at)| {
+        let (tolerance, newton) = (self.newton_tolerance, &mut self.newton);
+        let mut stage = RestingStage { model, target, tolerance, tried: &mut self.tried };
+        let found = guesses.into_iter().find_map(|(attempt, guess)| {
             if attempt > 0 {
-                self.factors.outdate();
+                newton.outdate();
             }
-            let (newton, factors) = (&mut self.newton, &mut self.factors);
-            newton.solve(model, &target, &mut at, factors, &mut evaluations).then_some(at)
+            let mut at = Unknowns::of(&guess);
+            newton.solve(&mut stage, &mut at, &mut evaluations).then_some(State {
+                slip_area: at.slip_area,
+                compression: at.compression,
+                ..guess
+            })
         });
-        let Some(mut at) = guesses.find_map(|found| found) else {
-            drop(guesses);
-            self.factors.outdate();
+        let Some(mut at) = found else {
+            self.newton.outdate();
             return Ok(Trial::failed(evaluations));
         };
-        drop(guesses);
         if self.newton.contraction > SAME_MATRIX {
-            self.factors.outdate();
+            self.newton.outdate();
         }
-        let cycle = &self.newton.cycle;
-        at.dissipated_energy = gathered.dissipated_energy + target.step * cycle.dissipation;
-        at.volume_by_rate = gathered.volume_by_rate + target.step * cycle.volume;
+        let cycle = &self.tried.cycle;
+        at.dissipated_energy = gathered.dissipated_energy + step * cycle.dissipation;
+        at.volume_by_rate = gathered.volume_by_rate + step * cycle.volume;
         at.least_stick_radius = state.least_stick_radius.min(cycle.stick_radius);
 
         let mut past = past;
-        past.points.insert(0, PastPoint::new(&at, &self.newton.fields.log_slip));
+        past.points.insert(0, PastPoint::new(&at, &self.tried.fields.log_slip));
         let error = match first {
-            // The guess and the step are off by as much to either side.
+            // Explicit and implicit Euler steps err by the same amount in opposite directions.
             Some(guess) => 0.5 * self.depth_error(model, &[1.0, -1.0], &[&past.points[0].log_slip, &guess]),
             None => self.error_at(model, past.order, &times, &past),
         };
@@ -101,15 +109,20 @@ impl Stepper for Multistep {
         past.order = order;
         past.points.truncate(REMEMBERED);
         let serves_more = model.operators().backend() == Backend::Hierarchical;
-        past.linearised = self.factors.at().filter(|_| serves_more).cloned();
+        past.linearised = self.newton.linearised().filter(|_| serves_more).cloned();
         at.past = past;
         Ok(Trial {
             state: Some(at),
-            fields: Some(std::mem::take(&mut self.newton.fields)),
+            fields: Some(std::mem::take(&mut self.tried.fields)),
             error: ACCUMULATED * error,
             rate_evaluations: evaluations,
             next_step: Some(cycles * factor.clamp(SMALLEST_FACTOR, LARGEST_FACTOR)),
         })
+    }
+
+    fn forget(&mut self) {
+        self.newton.outdate();
+        self.tried_from = None;
     }
 
     fn estimate_order(&self) -> f64 {
@@ -129,7 +142,7 @@ impl Stepper for Multistep {
     }
 }
 
-impl Multistep {
+impl Bdf {
     /// Highest order; from 6 on the formulas are not stable enough for stiff equations.
     pub const HIGHEST_ORDER: usize = 5;
 
@@ -137,28 +150,38 @@ impl Multistep {
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance: tolerance / ACCUMULATED,
-            newton: Newton::new(tolerance),
-            factors: Kept::default(),
+            newton_tolerance: newton_tolerance(tolerance),
+            newton: Newton::default(),
+            tried: Tried::default(),
             tried_from: None,
         }
     }
 
-    /// Takes up the factors that a state was left with, made again if this method did not make them itself, as long as they suit the step.
+    /// Takes up the factors of the step before, made again in a run that is resumed, as long as they suit the step.
     ///
-    /// A step that was rejected leaves its own to the next that is tried from the same state: so does it in a run that is resumed there.
+    /// A rejected step leaves its factors to the next one from the same state.
     fn take_up_factors(&mut self, model: &Model, state: &State, target: &Target) {
         if self.tried_from != Some(state.cycles) {
             self.tried_from = Some(state.cycles);
-            let known = self.factors.at().map(Arc::as_ptr);
+            let known = self.newton.linearised().map(Arc::as_ptr);
             match &state.past.linearised {
                 Some(left) if known == Some(Arc::as_ptr(left)) => {}
-                Some(left) => self.newton.recall(model, &target.drive, left, &mut self.factors),
-                None => self.factors.outdate(),
+                Some(left) => {
+                    let target = Target {
+                        log_slip: vec![],
+                        slip_area: left.gathered_slip_area,
+                        step: left.step,
+                        loading: target.loading.clone(),
+                    };
+                    let (tolerance, tried) = (self.newton_tolerance, &mut self.tried);
+                    self.newton.recall(&mut RestingStage { model, target, tolerance, tried }, left);
+                }
+                None => self.newton.outdate(),
             }
         }
         let suits = |at: &Arc<Linearised>| (target.step / at.step).ln().abs() <= SAME_STEP;
-        if model.operators().backend() == Backend::Dense || !self.factors.at().is_some_and(suits) {
-            self.factors.outdate();
+        if model.operators().backend() == Backend::Dense || !self.newton.linearised().is_some_and(suits) {
+            self.newton.outdate();
         }
     }
 
@@ -167,15 +190,15 @@ impl Multistep {
         if !state.past.points.is_empty() {
             return state.past.clone();
         }
-        model.evaluate(state.edge, &state.compression, &mut self.newton.fields);
-        Past { order: 1, points: vec![PastPoint::new(state, &self.newton.fields.log_slip)], linearised: None }
+        model.evaluate(state.slip_area, &state.compression, &mut self.tried.fields);
+        Past { order: 1, points: vec![PastPoint::new(state, &self.tried.fields.log_slip)], linearised: None }
     }
 
     /// `λ` where the rates at the start lead, from zero.
     fn first_log_slip(&mut self, model: &Model, state: &State, cycles: f64) -> Vec<f64> {
-        let fields = &self.newton.fields;
-        let drive = model.schedule().drive(state.cycles, state.cycles);
-        let cycle = model.cycle(&drive, &state.compression, fields);
+        let fields = &self.tried.fields;
+        let loading = model.schedule().loading(state.cycles, state.cycles);
+        let cycle = model.cycle(&loading, &state.compression, fields);
         fields
             .log_slip
             .iter()
@@ -184,9 +207,8 @@ impl Multistep {
             .collect()
     }
 
-    /// Largest error in depth of a step at some order, over the limit's largest depth, from the divided difference of the next order:
-    /// by as much do the step and the polynomial through the times before it miss each other, less the part of the latter. Infinite where the
-    /// past does not reach so far.
+    /// Largest error in depth of a step at some order, over the limit's largest depth, from the divided difference of the next order: the distance
+    /// of the step from the polynomial through the times before it, less that polynomial's own error. Infinite where the past is too short.
     fn error_at(&self, model: &Model, order: usize, times: &TimesBefore, past: &Past) -> f64 {
         let Some(before) = times.before.get(..order + 1) else { return f64::INFINITY };
         let farthest = before[order];
@@ -199,7 +221,7 @@ impl Multistep {
 
     /// Depth, over the limit's largest, of a weighted sum of logarithms of slip on the inner springs, the largest of all.
     fn depth_error(&self, model: &Model, weights: &[f64], log_slips: &[&[f64]]) -> f64 {
-        let slip = &self.newton.fields.slip_depth;
+        let slip = &self.tried.fields.slip_depth;
         let sum = |i: usize| {
             weights.iter().zip(log_slips).map(|(weight, log_slip)| weight * log_slip[i]).sum::<f64>()
         };
@@ -274,7 +296,7 @@ fn lagrange(times: &[f64]) -> Vec<f64> {
 fn state_of(state: &State, point: PastPoint, cycles: f64) -> State {
     State {
         cycles,
-        edge: point.edge,
+        slip_area: point.slip_area,
         compression: point.compression,
         dissipated_energy: point.dissipated_energy,
         volume_by_rate: point.volume_by_rate,

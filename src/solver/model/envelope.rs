@@ -1,41 +1,36 @@
-//! How far wear can reach: the contact at the largest indentation of a run and the smallest stick radius.
+//! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::laws::friction::FrictionLaw;
 use crate::laws::loading::TangentialControl;
-use crate::numerics::quadrature::Rule;
 use crate::numerics::roots::bracketed;
 
-/// Radius, over that of the contact, of the core within which nothing is worn under full sliding: the springs need a smallest radius, and
-/// 60 of them serve for 1e-3, 120 for 1e-4.
+/// Radius, over that of the contact, of the core that stays unworn in gross slip, since the mesh needs a smallest radius: 1e-3 takes 60 springs,
+/// 1e-4 would take 120.
 const CORE: f64 = 1e-3;
 
 /// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact slides as a whole: the
 /// slip depth, of which wear is the growth, keeps its digits next to the core, however flat the profile is there.
 const LEAST_SURPLUS: f64 = 1e-2;
 
-/// Largest one: more says nothing more about the slip of springs, and would cost digits of the depth.
+/// Largest surplus: a larger one changes nothing in the slip of springs and would cost digits of the depth.
 const LARGEST_SURPLUS: f64 = 1e3;
 
 /// Largest share of the load on the core for which full sliding is followed.
 const LARGEST_CORE_SHARE: f64 = 5e-3;
 
-/// Share of the load, in order of size, on the core that stays unworn under full sliding.
+/// Share of the load, in order of magnitude, on the core that stays unworn in gross slip.
 pub(super) fn core_share(grading: f64) -> f64 {
     CORE.powf(1.0 + grading)
 }
 
-/// Nodes of the quadrature of the first cycle's force.
-const FORCE_NODES: usize = 100;
-
 /// Steps in the search for the last stick radius.
 const SEARCH: usize = 400;
 
-/// Where springs slip and wear in some cycle of a run.
+/// Bounds of where springs slip and wear in some cycle of a run.
 #[derive(Debug, Clone)]
-pub struct Reach {
+pub struct Envelope {
     /// The contact at the largest indentation, with the smallest stick radius.
     pub contact: InitialContact,
     /// Whether no stick radius is left in some cycle.
@@ -47,16 +42,16 @@ pub struct Reach {
 impl Schedule {
     /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
     ///
-    /// Under full sliding a core stays of a thousandth of the contact radius.
+    /// In gross slip a core of a thousandth of the contact radius is left.
     ///
     /// # Errors
     /// [`Error::Inconsistent`](crate::Error::Inconsistent) if nothing slips; those of [`InitialContact::at`].
-    pub fn reach(&self, contact: &InitialContact) -> Result<Reach> {
+    pub fn envelope(&self, contact: &InitialContact) -> Result<Envelope> {
         let ratio = contact.half_space().stiffness_ratio();
         let depth = self.largest_indentation();
         let compression = match self.conditions().tangential_control {
             TangentialControl::Displacement => {
-                self.extremes().map(|drive| drive.slip_compression(ratio)).fold(0.0, f64::max)
+                self.extremes().map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
             }
             _ => self.last_slip_compression(contact)?,
         };
@@ -81,14 +76,14 @@ impl Schedule {
             });
         }
         if !slides {
-            return Ok(Reach { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
+            return Ok(Envelope { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
         }
         let held = self.conditions().tangential_control != TangentialControl::Displacement;
         let contact = contact.with_core(depth, CORE * radius)?;
         let at_core = contact.slip_compression();
         let surplus = (compression - at_core).clamp(LEAST_SURPLUS * at_core, LARGEST_SURPLUS * at_core);
         // Under a held tangential force the core gives way only in the end, and all slip is counted from there.
-        Ok(Reach { contact, slides, surplus: if held { 0.0 } else { surplus } })
+        Ok(Envelope { contact, slides, surplus: if held { 0.0 } else { surplus } })
     }
 
     /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the
@@ -103,12 +98,12 @@ impl Schedule {
         let exponent = 1.0 + half_space.grading();
         let profile = contact.equivalent_profile();
         let mut largest = 0.0_f64;
-        for drive in self.extremes() {
-            let depth = self.largest_indentation() - drive.lift;
+        for loading in self.extremes() {
+            let depth = self.largest_indentation() - loading.lift;
             let excess = |radius: f64| {
-                let strength = drive.friction.static_strength(depth - profile.value(radius));
+                let strength = loading.friction.static_strength(depth - profile.value(radius));
                 let force = 2.0 * half_space.normal_stiffness() * strength * radius.powf(exponent) / exponent;
-                drive.excess(force, strength / ratio)
+                loading.excess(force, strength / ratio)
             };
             // From the contact edge inwards: stick is lost from there.
             let radius = profile.radius_at(depth)?;
@@ -121,37 +116,8 @@ impl Schedule {
                 }
                 None => depth,
             };
-            largest = largest.max(compression + drive.lift);
+            largest = largest.max(compression + loading.lift);
         }
         Ok(largest)
     }
-}
-
-/// Amplitude of the tangential force, N, on the unworn contact under the law of friction at the start.
-///
-/// ```text
-/// F_x = 2 c_T ∫_0^a x^k min(U, μ_f(q) q/M) dx
-/// ```
-pub(super) fn first_force(
-    contact: &InitialContact,
-    friction: &FrictionLaw,
-    amplitude: f64,
-    depth: f64,
-) -> Result<f64> {
-    let half_space = contact.half_space();
-    let (ratio, exponent) = (half_space.stiffness_ratio(), 1.0 + half_space.grading());
-    let profile = contact.equivalent_profile();
-    let edge = profile.radius_at(depth)?;
-    let sticking = friction.compression_at(ratio * amplitude);
-    let stick = if sticking < depth { profile.radius_at(depth - sticking)? } else { 0.0 };
-    let stuck = ratio * amplitude * stick.powf(exponent) / exponent;
-    // In y = x^(1+k), which leaves no power of x.
-    let (low, high) = (stick.powf(exponent), edge.powf(exponent));
-    let rule = Rule::legendre(FORCE_NODES)?;
-    let strength = |part: f64| {
-        let x = (low + (high - low) * part).powf(exponent.recip());
-        friction.kinetic_strength(depth - profile.value(x))
-    };
-    let slipping = (high - low) / exponent * rule.mean(strength);
-    Ok(2.0 * half_space.normal_stiffness() * (stuck + slipping))
 }

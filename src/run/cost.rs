@@ -1,4 +1,4 @@
-//! What a run comes to, before it begins: steps and time.
+//! What a run costs, before it begins: steps and time.
 
 use std::time::Instant;
 
@@ -7,15 +7,15 @@ use crate::scene::Stepper as Choice;
 use crate::solver::model::{Model, State};
 use crate::solver::simulation::{End, Simulation};
 
-/// Most steps of a method that needs one for every cycle or for every relaxation of the stiffest springs, and of any for blocks: a day or so.
+/// Most steps of an explicit method, and most ends of blocks in a run: about a day.
 const MOST_STEPS: f64 = 1e9;
 
-/// Wall time of a run, s, from which on it deserves a word.
+/// Wall time of a run, s, above which a user is warned.
 const LONG: f64 = 60.0;
 
-/// Steps of an implicit run beside those to outputs and breaks, and what its pilot takes, as a part.
+/// Steps of an implicit run beside those to outputs and breaks, and its time with its companion over that without.
 const FREE_STEPS: f64 = 30.0;
-const WITH_PILOT: f64 = 1.5;
+const WITH_COMPANION: f64 = 1.5;
 
 /// Dimensionless time for which a run that ends at a rate may last.
 const SOME_TAU: f64 = 30.0;
@@ -26,11 +26,20 @@ const STABLE: f64 = 2.5;
 /// Iterations of the power method; the estimate is one of magnitude.
 const ITERATIONS: usize = 30;
 
-/// Refuses what would take days, and gives a word about what will take more than a minute, as one step tells.
+/// What a run will take, where that is long.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Expected {
+    /// Wall time, s, in order of size; none where it is short.
+    pub seconds: Option<f64>,
+    /// The same in a sentence, with its cause.
+    pub warning: Option<String>,
+}
+
+/// Refuses what would take days, and a first cycle that is too coarse a step.
 ///
 /// # Errors
-/// [`Error::Inconsistent`] beyond [`MOST_STEPS`].
-pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<Expected> {
+/// [`Error::Inconsistent`] beyond [`MOST_STEPS`]; those of a step of one cycle where the method makes one of every cycle.
+pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<()> {
     let breaks = breaks(simulation);
     if breaks > MOST_STEPS || breaks.is_nan() {
         let why = format!(
@@ -38,41 +47,56 @@ pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<Expec
         );
         return Err(Error::Inconsistent { what: "loading.blocks", why });
     }
+    if choice == Choice::Implicit {
+        return Ok(());
+    }
     let steps = fewest_steps(choice, simulation);
-    let kind = match choice {
-        Choice::EveryCycle => "makes a step of every cycle",
-        Choice::CycleJump => "is explicit, and its steps are limited by the stiffest springs",
-        Choice::Implicit => return Ok(implicit(steps, simulation)),
-    };
     if steps > MOST_STEPS || steps.is_nan() {
         let why = format!(
-            "{:?} {kind}: at least {steps:.1e} steps, of which {MOST_STEPS:e} are allowed; take the stepper \"implicit\", or ask for fewer cycles \
+            "{:?} {}: at least {steps:.1e} steps, of which {MOST_STEPS:e} are allowed; take the stepper \"implicit\", or ask for fewer cycles \
              or less time",
-            choice.name()
+            choice.name(),
+            kind(choice)
         );
         return Err(Error::Inconsistent { what: "numerics.stepper", why });
     }
-    // A first cycle that is too coarse a step is refused here as well.
-    let begun = Instant::now();
-    simulation.measure_step(1.0)?;
-    let seconds = steps * begun.elapsed().as_secs_f64();
-    Ok(Expected::of(seconds, || {
-        format!(
-            "the stepper {:?} {kind}: at least {steps:.1e} steps, some {} as things are; \"implicit\" needs some hundred",
-            choice.name(),
-            span(seconds)
-        )
-    }))
+    simulation.try_step(1.0)
 }
 
-/// What an implicit run of so many steps takes.
-fn implicit(steps: f64, simulation: &mut Simulation) -> Expected {
+/// What a run will take, by the time of one step, and a word about it if that is more than a minute.
+pub(super) fn expected(choice: Choice, simulation: &mut Simulation) -> Expected {
+    let length = if choice == Choice::Implicit { simulation.progress().next_step } else { 1.0 };
+    let steps = fewest_steps(choice, simulation);
     let begun = Instant::now();
     // Where it fails, the run will say so.
-    let _ = simulation.measure_step(simulation.progress().next_step);
+    let _ = simulation.try_step(length);
     let step = begun.elapsed().as_secs_f64();
-    let seconds = WITH_PILOT * steps * step;
-    let model = simulation.model();
+    if choice == Choice::Implicit {
+        return implicit(steps, step, simulation.model());
+    }
+    let seconds = steps * step;
+    Expected::of(seconds, || {
+        format!(
+            "the stepper {:?} {}: at least {steps:.1e} steps, some {} as things are; \"implicit\" needs some hundred",
+            choice.name(),
+            kind(choice),
+            span(seconds)
+        )
+    })
+}
+
+/// What limits the steps of a method, in words.
+fn kind(choice: Choice) -> &'static str {
+    match choice {
+        Choice::EveryCycle => "makes a step of every cycle",
+        Choice::CycleJump => "is explicit, and its steps are limited by the stiffest springs",
+        Choice::Implicit => "chooses its steps by their error",
+    }
+}
+
+/// What an implicit run of so many steps, each of so many seconds, takes.
+fn implicit(steps: f64, step: f64, model: &Model) -> Expected {
+    let seconds = WITH_COMPANION * steps * step;
     Expected::of(seconds, || {
         let resolved =
             if model.schedule().resolves() { ", numerics.substeps = 24 or fewer rows of a path" } else { "" };
@@ -83,15 +107,6 @@ fn implicit(steps: f64, simulation: &mut Simulation) -> Expected {
             model.springs()
         )
     })
-}
-
-/// What a run will take, where that is long.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Expected {
-    /// Wall time, s, in order of size; none where it is short.
-    pub seconds: Option<f64>,
-    /// The same in a sentence, with its cause.
-    pub warning: Option<String>,
 }
 
 impl Expected {
@@ -122,7 +137,7 @@ fn breaks(simulation: &Simulation) -> f64 {
     model.schedule().breaks_until(cycles)
 }
 
-/// A number of steps that the method cannot do with less than; about those of implicit ones.
+/// Fewest steps of an explicit method; about those of an implicit one.
 fn fewest_steps(choice: Choice, simulation: &Simulation) -> f64 {
     let cycles = match simulation.plan().end {
         End::Cycles(cycles) => cycles,
@@ -140,16 +155,16 @@ fn fewest_steps(choice: Choice, simulation: &Simulation) -> f64 {
 ///
 /// What is left of the slip depth, `δ = S_∞ - S`, presses the springs by `F⁻¹ δ` and falls by the growth of `S` under that pressure.
 fn stiffness(model: &Model, start: &State) -> f64 {
-    let edge = model.unworn().limit_edge();
-    let drive = model.schedule().drive(0.0, 0.0);
+    let slip_area = model.unworn().limit_slip_area();
+    let loading = model.schedule().loading(0.0, 0.0);
     let small = 1e-3 * model.depth_scale();
     let mut left: Vec<f64> = (0..model.springs()).map(|i| if i % 2 == 0 { small } else { -small }).collect();
     let mut rate = 0.0;
     let mut fields = model.fields(start);
     for _ in 0..ITERATIONS {
-        let compression = model.compression(edge, |i, unworn| unworn.limit_slip - left[i]);
-        model.evaluate(edge, &compression, &mut fields);
-        let cycle = model.cycle(&drive, &compression, &fields);
+        let compression = model.compression(slip_area, |i, unworn| unworn.limit_slip - left[i]);
+        model.evaluate(slip_area, &compression, &mut fields);
+        let cycle = model.cycle(&loading, &compression, &fields);
         let fall: Vec<f64> = cycle
             .growth
             .iter()

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::text::{Rows, number};
+use super::{Control, MapStudy, Optimum};
 use crate::error::Result;
+use crate::report::{TextTable, number};
 use crate::scene::MapScene;
-use crate::study::wear_map::{self, Control, MapStudy, Optimum};
 
 /// Summary of a wear map; the serialised fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -56,9 +56,9 @@ impl MapReport {
     /// # Errors
     /// Those of the closed form; [`Error::File`](crate::Error::File) names a file that cannot be written, before anything is.
     pub fn write(scene: &MapScene, folder: &Path, overwrite: bool) -> Result<Self> {
-        wear_map::check_folder(folder, overwrite)?;
+        super::check_folder(folder, overwrite)?;
         let study = MapStudy::new(scene)?;
-        let files = wear_map::write(scene, &study, folder, overwrite)?;
+        let files = super::write(scene, &study, folder, overwrite)?;
         let map = &study.map;
         let ends = |values: &[f64]| [values[0], values[values.len() - 1]];
         let ratios = || map.ratio.iter().copied().filter(|ratio| ratio.is_finite());
@@ -92,7 +92,7 @@ impl MapReport {
         const MOST_ROWS: usize = 12;
         let range = |[from, to]: [f64; 2]| format!("{} to {}", number(from), number(to));
         let amplitude = |value: Option<f64>| value.map(|it| format!("U/(μ_f d) = {}", number(it)));
-        let mut rows = Rows::titled(self.title.as_deref());
+        let mut rows = TextTable::titled(self.title.as_deref());
         rows.row("indenter", format!("f = A r^{}", number(self.exponent)));
         rows.row("grading k", format!("{}, {} values", range(self.grading_range), self.points[0]));
         rows.row(
@@ -120,6 +120,6 @@ impl MapReport {
         for file in &self.files {
             rows.row("written", file.display());
         }
-        rows.finish()
+        rows.text()
     }
 }

@@ -6,7 +6,7 @@ use fretwear::numerics::grid::Clustering;
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
-use fretwear::solver::stepper::Multistep;
+use fretwear::solver::stepper::Bdf;
 
 /// Grading, exponent of the indenter, stick ratio, dimensionless time.
 type Case = (f64, f64, f64, f64);
@@ -46,7 +46,7 @@ fn error(case: Case, file: &RunFile) -> f64 {
     let outputs: Vec<f64> = file.snapshots[1..].iter().map(|it| it.cycles).collect();
     let plan = Plan { end: End::Cycles(outputs[outputs.len() - 1]), outputs };
     let mut seen = Seen::default();
-    let mut simulation = Simulation::new(model, Box::new(Multistep::new(1e-9)), 1e-9, plan).expect("a start");
+    let mut simulation = Simulation::new(model, Box::new(Bdf::new(1e-9)), 1e-9, plan).expect("a start");
     simulation.run(&mut [&mut seen]).expect("a run");
     let model = simulation.into_model();
     let stick_area = contact.stick_radius().expect("partial slip").powi(2);

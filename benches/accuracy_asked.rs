@@ -1,6 +1,6 @@
 //! Whether `numerics.accuracy` gives what is asked for: random scenes against a converged reference.
 //!
-//! `cargo bench --bench knob -- 200` prints the tables of docs/accuracy.md for so many scenes (default 200) of a fixed seed, asked for 1e-2,
+//! `cargo bench --bench accuracy_asked -- 200` prints the tables of docs/accuracy.md for so many scenes (default 200) of a fixed seed, asked for 1e-2,
 //! 1e-3 and 1e-4; with `fine` as well, for 1e-6, which takes longer: how often the
 //! actual error is within the asked one, how often the estimate is within a factor of five of it, and the misses. Errors are the largest
 //! over all snapshots, of the worn volume relative to the limit's or of the profile at any radius of the run relative to the limit's
@@ -15,7 +15,7 @@ use fretwear::numerics::grid::Clustering;
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
-use fretwear::solver::stepper::Multistep;
+use fretwear::solver::stepper::Bdf;
 
 /// What is asked for, springs and tolerance of the reference, and those with which the reference is itself judged.
 const COARSE: Plans = Plans { accuracies: &[1e-2, 1e-3, 1e-4], reference: (160, 2e-8), second: (112, 6e-8) };
@@ -103,7 +103,7 @@ impl Reference {
         )?;
         let plan = Plan { outputs: cycles.to_vec(), end: End::Cycles(cycles[cycles.len() - 1]) };
         let mut seen = Seen::default();
-        let mut simulation = Simulation::new(model, Box::new(Multistep::new(tolerance)), tolerance, plan)?;
+        let mut simulation = Simulation::new(model, Box::new(Bdf::new(tolerance)), tolerance, plan)?;
         simulation.run(&mut [&mut seen])?;
         Ok(Self { model: simulation.into_model(), states: seen.0 })
     }
@@ -120,8 +120,10 @@ impl Reference {
                 let exact = self.model.wear_depth_at(state, &fields, r * r - stick_area);
                 let off = (w - exact).abs() / self.model.depth_scale();
                 if off > depth {
-                    (depth, place) =
-                        (off, [(r * r - stick_area) / self.model.unworn().limit_edge(), state.cycles / end]);
+                    (depth, place) = (
+                        off,
+                        [(r * r - stick_area) / self.model.unworn().limit_slip_area(), state.cycles / end],
+                    );
                 }
             }
         }

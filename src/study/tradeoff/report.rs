@@ -5,12 +5,11 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::text::{Rows, Scale, number};
-use super::{TableFile, json};
+use super::files::{OBJECT, READINGS};
+use super::{CandidateResult, Choice, Errors, FRONTS, Front, Measured, Outcome, ReferenceKind, pareto_front};
+use crate::data::quantity::Entries;
 use crate::error::Result;
-use crate::study::tradeoff::{
-    Choice, Errors, FRONTS, Front, Measured, OBJECT, Outcome, Row, Source, pareto_front,
-};
+use crate::report::{Scale, TableFile, TextTable, json, number};
 
 /// Summary of a trade-off; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -28,7 +27,7 @@ pub struct TradeoffReport {
     /// The runs that judged where nothing else was known better.
     pub reference: ReferenceReport,
     /// The fronts by name; each a list of places in `candidates`, by rising cost.
-    pub fronts: Fronts,
+    pub fronts: Entries<Vec<usize>>,
     /// All candidates.
     pub candidates: Vec<CandidateReport>,
 }
@@ -48,98 +47,44 @@ pub struct ReferenceReport {
     pub profile_uncertainty: f64,
 }
 
-/// Places of candidates.
-#[derive(Debug, Clone, Serialize)]
-pub struct Fronts {
-    /// Error of the volume against wall time.
-    pub volume_time: Vec<usize>,
-    /// Error of the profile against wall time.
-    pub profile_time: Vec<usize>,
-    /// Error of the volume against rate evaluations.
-    pub volume_evaluations: Vec<usize>,
-    /// Error of the profile against rate evaluations.
-    pub profile_evaluations: Vec<usize>,
-}
+/// Keys of a candidate that are columns too.
+const KEYS: &str = "accuracy stepper cycle springs tolerance status reason wall_seconds wall_seconds_file repeats \
+                    rate_evaluations steps rejected_steps memory";
 
 /// One candidate; what is not known is null.
 #[derive(Debug, Clone, Serialize)]
 pub struct CandidateReport {
-    /// Accuracy asked of the knob; null where springs and tolerance were given by hand.
-    pub accuracy: Option<f64>,
-    /// Method of time stepping.
-    pub stepper: &'static str,
-    /// How a cycle is passed through.
-    pub cycle: &'static str,
-    /// Springs, asked for or chosen.
-    pub springs: Option<usize>,
-    /// Tolerance of a step, asked for or chosen.
-    pub tolerance: Option<f64>,
-    /// `done`, `failed`, `stopped` or `skipped`.
-    pub status: &'static str,
-    /// Why it was not run to its end.
-    pub reason: Option<String>,
-    /// Least wall time in memory, s, setting up included.
-    pub wall_seconds: Option<f64>,
-    /// Least wall time with the result file, s.
-    pub wall_seconds_file: Option<f64>,
-    /// Runs of which the least time was taken.
-    pub repeats: Option<usize>,
-    /// Evaluations of pressure, slip and wear.
-    pub rate_evaluations: Option<u64>,
-    /// Steps accepted.
-    pub steps: Option<u64>,
-    /// Steps rejected.
-    pub rejected_steps: Option<u64>,
-    /// Memory of the dense operators, bytes, estimated.
-    pub memory: Option<f64>,
+    #[serde(flatten)]
+    readings: Entries,
     /// Largest error of the worn volume over all snapshots, or its bound.
-    pub volume_error: Option<f64>,
+    volume_error: Option<f64>,
     /// Largest error of the depth on common radii, or its bound.
-    pub profile_error: Option<f64>,
+    profile_error: Option<f64>,
     /// Largest error of the depth at its own radii, or its bound.
-    pub node_error: Option<f64>,
+    node_error: Option<f64>,
     /// Which of the three are bounds.
-    pub bounded: Option<[bool; 3]>,
-    /// For the knob: its cost over that of the cheapest candidate by hand with at most its error, by front.
-    pub over_front: Option<OverFront>,
+    bounded: Option<[bool; 3]>,
+    /// For the knob: its cost over that of the cheapest candidate by hand with at most its error, by front; null where no candidate by hand is as
+    /// accurate.
+    over_front: Option<Entries>,
     /// The snapshots after the start.
-    pub snapshots: Vec<SnapshotReport>,
-}
-
-/// Costs of the knob over those of the fronts; null where no candidate by hand is as accurate.
-#[derive(Debug, Clone, Serialize)]
-pub struct OverFront {
-    /// Error of the volume, wall time.
-    pub volume_time: Option<f64>,
-    /// Error of the profile, wall time.
-    pub profile_time: Option<f64>,
-    /// Error of the volume, rate evaluations.
-    pub volume_evaluations: Option<f64>,
-    /// Error of the profile, rate evaluations.
-    pub profile_evaluations: Option<f64>,
+    snapshots: Vec<SnapshotReport>,
 }
 
 /// Errors of one snapshot; null where nobody could judge.
 #[derive(Debug, Clone, Serialize)]
-pub struct SnapshotReport {
-    /// Cycles.
-    pub cycles: f64,
-    /// Dimensionless time.
-    pub tau: f64,
+struct SnapshotReport {
+    cycles: f64,
+    tau: f64,
     /// Who judged volume and depth: `none`, `limit`, `gibson` or `reference`.
-    pub judges: [&'static str; 2],
-    /// Worn volume, m³.
-    pub wear_volume: f64,
-    /// That of the judge, m³.
-    pub wear_volume_judge: f64,
-    /// Error of the worn volume, or its bound.
-    pub volume_error: f64,
-    /// Error of the depth on common radii, or its bound.
-    pub profile_error: f64,
-    /// Error of the depth at its own radii, or its bound.
-    pub node_error: f64,
+    judges: [&'static str; 2],
+    wear_volume: f64,
+    wear_volume_judge: f64,
+    volume_error: f64,
+    profile_error: f64,
+    node_error: f64,
     /// Which of the three are bounds.
-    pub bounded: Option<[bool; 3]>,
+    bounded: Option<[bool; 3]>,
 }
 
 impl SnapshotReport {
@@ -148,47 +93,28 @@ impl SnapshotReport {
         Self {
             cycles: errors.cycles,
             tau: errors.tau,
-            judges: errors.sources.map(Source::name),
+            judges: errors.sources.map(ReferenceKind::name),
             wear_volume: errors.wear_volume,
             wear_volume_judge: errors.wear_volume_judge,
             volume_error: errors.volume.value,
             profile_error: errors.profile.value,
             node_error: errors.nodes.value,
-            bounded: (!errors.sources.contains(&Source::None)).then(|| three.map(|it| it.bounded)),
+            bounded: (!errors.sources.contains(&ReferenceKind::None)).then(|| three.map(|it| it.bounded)),
         }
     }
 }
 
 impl CandidateReport {
-    fn new(row: &Row) -> Self {
-        let cost = row.measurement.cost();
-        let (springs, tolerance) = match row.candidate.choice {
-            Choice::Hand { springs, tolerance } => (Some(springs), Some(tolerance)),
-            Choice::Knob(_) => (cost.map(|it| it.springs), cost.map(|it| it.tolerance)),
-        };
+    fn new(row: &CandidateResult) -> Self {
         let three = row.worst.map(|it| [it.volume, it.profile, it.nodes]);
-        let [volume_time, profile_time, volume_evaluations, profile_evaluations] = row.over_front;
-        let over_front = OverFront { volume_time, profile_time, volume_evaluations, profile_evaluations };
+        let over_fronts = || FRONTS.iter().zip(row.over_front).map(|(front, over)| (front.name, over.into()));
         Self {
-            accuracy: row.candidate.accuracy(),
-            stepper: row.candidate.stepper.name(),
-            cycle: row.candidate.cycle.name(),
-            springs,
-            tolerance,
-            status: row.measurement.name(),
-            reason: Some(row.measurement.reason().to_owned()).filter(|why| !why.is_empty()),
-            wall_seconds: cost.map(|it| it.wall_seconds),
-            wall_seconds_file: cost.map(|it| it.wall_seconds_file),
-            repeats: cost.map(|it| it.repeats),
-            rate_evaluations: cost.map(|it| it.rate_evaluations),
-            steps: cost.map(|it| it.steps),
-            rejected_steps: cost.map(|it| it.rejected_steps),
-            memory: cost.map(|it| it.memory),
+            readings: Entries::some(&READINGS, row, KEYS),
             volume_error: three.map(|it| it[0].value),
             profile_error: three.map(|it| it[1].value),
             node_error: three.map(|it| it[2].value),
             bounded: three.map(|it| it.map(|error| error.bounded)),
-            over_front: row.candidate.accuracy().map(|_| over_front),
+            over_front: row.candidate.accuracy().map(|_| over_fronts().collect()),
             snapshots: row.errors.iter().map(SnapshotReport::new).collect(),
         }
     }
@@ -198,8 +124,6 @@ impl TradeoffReport {
     /// The summary of a trade-off that is done.
     pub fn new(outcome: &Outcome) -> Self {
         let reference = &outcome.reference;
-        let [volume_time, profile_time, volume_evaluations, profile_evaluations] =
-            FRONTS.each_ref().map(|front| places(front, &outcome.rows));
         Self {
             title: outcome.title.clone(),
             files: outcome.files.clone(),
@@ -213,7 +137,7 @@ impl TradeoffReport {
                 volume_uncertainty: reference.uncertainty[0],
                 profile_uncertainty: reference.uncertainty[1],
             },
-            fronts: Fronts { volume_time, profile_time, volume_evaluations, profile_evaluations },
+            fronts: FRONTS.iter().map(|front| (front.name, places(front, &outcome.rows))).collect(),
             candidates: outcome.rows.iter().map(CandidateReport::new).collect(),
         }
     }
@@ -249,12 +173,12 @@ impl TradeoffReport {
             let [volume, profile, ..] = row.over_front;
             line(row, &format!("  {accuracy:e}: {}, {}", times(volume), times(profile)), &mut text);
         }
-        text + "\n" + &self.rows()
+        text + "\n" + &self.rows(&outcome.rows)
     }
 
-    fn rows(&self) -> String {
-        let mut rows = Rows::default();
-        let count = |status: &str| self.candidates.iter().filter(|it| it.status == status).count();
+    fn rows(&self, candidates: &[CandidateResult]) -> String {
+        let mut rows = TextTable::default();
+        let count = |status: &str| candidates.iter().filter(|it| it.measurement.name() == status).count();
         let counts = ["done", "failed", "stopped", "skipped"].map(|it| format!("{} {it}", count(it)));
         rows.row("candidates", counts.join(", "));
         let reference = &self.reference;
@@ -272,13 +196,13 @@ impl TradeoffReport {
         for file in &self.files {
             rows.row("written", file.display());
         }
-        rows.finish()
+        rows.text()
     }
 }
 
 const HEADER: &str = "  stepper      cycle        springs  tolerance   wall time    with file  evaluations  volume error  profile error";
 
-fn places(front: &Front, rows: &[Row]) -> Vec<usize> {
+fn places(front: &Front, rows: &[CandidateResult]) -> Vec<usize> {
     let points = rows.iter().map(|row| match row.candidate.choice {
         Choice::Hand { .. } => front.point(row),
         Choice::Knob(_) => (f64::NAN, f64::NAN),
@@ -286,7 +210,7 @@ fn places(front: &Front, rows: &[Row]) -> Vec<usize> {
     pareto_front(&points.collect::<Vec<_>>())
 }
 
-fn line(row: &Row, more: &str, text: &mut String) {
+fn line(row: &CandidateResult, more: &str, text: &mut String) {
     let error = |it: Option<Measured>| {
         it.map_or("-".into(), |it| format!("{}{:.1e}", if it.bounded { "<" } else { "" }, it.value))
     };

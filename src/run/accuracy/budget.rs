@@ -1,0 +1,186 @@
+//! How an accuracy is shared out: to springs, to the tolerance of the time stepping, to the substeps of a period.
+//!
+//! Springs and tolerance follow from the measured errors of random scenes (docs/accuracy.md). Where the estimate of a run's error is larger
+//! than was asked for, the run is repeated on more springs.
+
+use crate::contact::InitialContact;
+use crate::contact::stick_slip::Regime;
+use crate::numerics::grid::Clustering;
+use crate::solver::model::Schedule;
+
+/// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
+pub(in crate::run) const MOST_RAISED: usize = 600;
+
+/// Error of the profile on 24 springs of a smooth mesh, and the power with which it falls, fitted to 118 random scenes on 16 to 54 springs:
+/// `ln e = A + B k + C ln n + D ln(a0/c) + E ln n ln(a0/c)` with `k > 0` or zero. Nine of ten lie within a factor of 2.8, 98 of 100 below 7.7.
+const ERROR: [f64; 5] = [-10.0, 2.9, 0.30, 0.36, 0.30];
+const ORDER: [f64; 2] = [4.5, 1.3];
+const FITTED_SPRINGS: f64 = 24.0;
+
+/// Next to the edge of stick the profile is of third order only, `e = A e^(B k) N⁻³` for gradings from the first number on, below which that
+/// is not seen: `A` and `B` through the errors at k = 0.5 and 0.9 on 120 springs, with a little to spare.
+const THIRD_ORDER_FROM: f64 = 0.4;
+const THIRD_ORDER: [f64; 2] = [0.35, 4.5];
+
+/// Part of the accuracy asked for that the fitted error may take up, so that scenes off the fit keep to it too.
+const MARGIN: f64 = 0.35;
+
+/// Part of the accuracy asked for that the error of the time stepping may take up.
+const OF_TIME: f64 = 0.3;
+
+/// Springs added, as a part, for every unit of `n ln(a0/c)` beyond the first number, up to the second: with a small stick zone the fit's order sets
+/// in late.
+const ADDED: f64 = 0.1;
+const SMALLNESS: [f64; 2] = [2.0, 5.0];
+
+/// Fewest springs that the fit gives; on fewer than 18 the errors of half of the scenes are off the fit.
+const FEWEST: f64 = 14.0;
+const FEWEST_BELOW_A_HUNDREDTH: f64 = 18.0;
+
+/// How often a run is repeated on more springs, and the least and the largest factor by which they are raised.
+pub(in crate::run) const REFINEMENTS: usize = 3;
+const RAISES: [f64; 2] = [1.15, 2.0];
+
+/// Part of the accuracy that an estimate may take up before the run is repeated: of twenty errors one is 1.7 times its estimate.
+pub(in crate::run) const SURE: f64 = 0.6;
+
+/// Most springs of a repeated run: more would take longer than a user may wait without having been asked.
+const MOST_REFINED: usize = 400;
+
+/// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
+pub(super) const CAUTIOUS_ORDER: f64 = 4.0;
+const AIM: f64 = 0.5;
+
+/// `n ln(a0/c)`: the logarithm of the profile's height at the first contact edge over that at the edge of stick.
+pub(in crate::run) fn smallness(contact: &InitialContact) -> f64 {
+    exponent(contact) * contact.stick_logarithm().unwrap_or(0.0)
+}
+
+/// `n` of a power law; other profiles begin as a paraboloid.
+fn exponent(contact: &InitialContact) -> f64 {
+    contact.equivalent_profile().exponent().unwrap_or(2.0)
+}
+
+/// Springs that keep the error of volume and profile below `accuracy`.
+pub(in crate::run) fn springs_for(
+    clustering: Clustering,
+    contact: &InitialContact,
+    schedule: &Schedule,
+    accuracy: f64,
+) -> usize {
+    if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip {
+        let [springs, at] = SPRINGS_UNDER_FORCE;
+        return (springs * (at / accuracy).sqrt()).clamp(FEWEST_BELOW_A_HUNDREDTH, MOST_REFINED as f64).ceil()
+            as usize;
+    }
+    if clustering != Clustering::Smooth {
+        // The worn volume is of third order there (docs/numerics.md).
+        return (120.0 * (1e-4 / accuracy).cbrt()).ceil() as usize;
+    }
+    let [wide, next_to_stick] = Falling::of(contact);
+    let fewest = if accuracy < 1e-2 { FEWEST_BELOW_A_HUNDREDTH } else { FEWEST };
+    let added = 1.0 + ADDED * (smallness(contact).clamp(SMALLNESS[0], SMALLNESS[1]) - SMALLNESS[0]);
+    let wanted = MARGIN * accuracy;
+    let springs = (added * wide.springs(wanted)).max(next_to_stick.springs(wanted));
+    springs.clamp(fewest, MOST_RAISED as f64).ceil() as usize
+}
+
+/// An error that falls with a power of the springs.
+pub(super) struct Falling {
+    /// On [`FITTED_SPRINGS`].
+    error: f64,
+    order: f64,
+}
+
+impl Falling {
+    /// Errors of the profile on smooth meshes: over the annulus, and next to the edge of stick.
+    pub(super) fn of(contact: &InitialContact) -> [Self; 2] {
+        let grading = contact.half_space().grading().max(0.0);
+        let (exponent, stick) = (exponent(contact).ln(), contact.stick_logarithm().unwrap_or(0.0));
+        let [a, b, c, d, e] = ERROR;
+        let wide = (a + b * grading + c * exponent + d * stick + e * exponent * stick).exp();
+        let [scale, growth] = THIRD_ORDER;
+        let seen = if grading >= THIRD_ORDER_FROM { scale * (growth * grading).exp() } else { 0.0 };
+        [
+            Self { error: wide, order: ORDER[0] + ORDER[1] * grading },
+            Self { error: seen / FITTED_SPRINGS.powi(3), order: 3.0 },
+        ]
+    }
+
+    pub(super) fn at(&self, springs: f64) -> f64 {
+        self.error * (FITTED_SPRINGS / springs).powf(self.order)
+    }
+
+    fn springs(&self, error: f64) -> f64 {
+        FITTED_SPRINGS * (self.error / error).powf(self.order.recip())
+    }
+}
+
+/// Tolerance of the time stepping, whose error is about as large, that leaves most of `accuracy` to the springs.
+pub(in crate::run) fn tolerance_for(accuracy: f64) -> f64 {
+    OF_TIME * accuracy
+}
+
+/// Springs with which a held normal force is followed to an accuracy: the edge of stick creeps over worn ground, to second order
+/// (docs/accuracy.md).
+const SPRINGS_UNDER_FORCE: [f64; 2] = [200.0, 1e-4];
+
+/// Substeps of a period that is sampled: the fewest and the most, the accuracy up to which the fewest serve, and the power with which they
+/// grow beyond: four times as many for a tenth of the error.
+const SUBSTEPS: [f64; 2] = [192.0, 768.0];
+const SAMPLED_AT: f64 = 3.2e-4;
+const ORDER_OF_SUBSTEPS: f64 = 0.602;
+
+/// Substeps of a period that is sampled, a multiple of four.
+pub(in crate::run) fn substeps_for(accuracy: f64) -> usize {
+    let [fewest, most] = SUBSTEPS;
+    let wanted = fewest * (SAMPLED_AT / accuracy).powf(ORDER_OF_SUBSTEPS);
+    4 * (0.25 * wanted.clamp(fewest, most)).round() as usize
+}
+
+/// The estimate where nothing is known: as much as all that wears.
+pub(in crate::run) const UNKNOWN: f64 = 1.0;
+
+/// What an error comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(in crate::run) struct Shares {
+    /// Springs and steps.
+    pub springs: f64,
+    /// Order with which it falls with the springs.
+    pub order: f64,
+    /// Substeps of a period.
+    pub substeps: f64,
+    /// What neither cures.
+    pub left_out: f64,
+}
+
+impl Shares {
+    /// The whole of it.
+    pub fn error(&self) -> f64 {
+        self.springs + self.substeps + self.left_out
+    }
+}
+
+/// Springs with which to repeat a run that is off by `error`, or by nobody knows how much; none if it is accurate enough, or springs are as many
+/// as a run may take.
+pub(in crate::run) fn refined(springs: usize, error: Option<f64>, accuracy: f64) -> Option<usize> {
+    if error.is_some_and(|error| error <= SURE * accuracy) {
+        return None;
+    }
+    let factor =
+        error.map_or(RAISES[1].sqrt(), |error| (error / (AIM * accuracy)).powf(CAUTIOUS_ORDER.recip()));
+    let refined = (springs as f64 * factor.clamp(RAISES[0], RAISES[1])).ceil() as usize;
+    (refined <= MOST_REFINED).then_some(refined)
+}
+
+/// As [`refined`] where the order of convergence was observed: only if the springs that this order asks for are within what a run may take.
+pub(in crate::run) fn refined_by_order(springs: usize, shares: Shares, accuracy: f64) -> Option<usize> {
+    let rest = shares.substeps + shares.left_out;
+    let aim = AIM * accuracy - rest;
+    if shares.error() <= SURE * accuracy || aim <= 0.0 || shares.springs >= UNKNOWN {
+        return None;
+    }
+    let factor = (shares.springs / aim).powf(shares.order.recip()).max(RAISES[0]);
+    let refined = (springs as f64 * factor).ceil();
+    (refined <= MOST_REFINED as f64).then_some(refined as usize)
+}

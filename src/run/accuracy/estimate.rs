@@ -1,0 +1,242 @@
+//! How far off a run is: what coarser companions of the same scene differ by.
+//!
+//! On a smooth mesh the order of convergence is known, and one companion tells the error. Elsewhere a second, still coarser one shows by how the
+//! differences fall from the second to the first which order there is, of which no more than second is believed, and less where it is not seen.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
+use super::companion::{Coarser, Companion, Worn};
+use super::substeps::larger;
+use crate::data::{Snapshot, same_cycles};
+use crate::laws::loading::TangentialControl;
+use crate::numerics::grid::Clustering;
+use crate::scene::{Numerics, Scene, Stepper};
+use crate::solver::model::{MovingStick, OperatorStore};
+use crate::solver::simulation::{End, Outcome, Simulation};
+
+/// Springs of a run over those of its companion, and of that over those of the next; fewest of a companion.
+const RATIO: f64 = 5.0 / 3.0;
+const FEWEST: usize = 10;
+
+/// Tolerance of a companion over that of the run, the same of the accuracy that its mesh has to carry on a smooth one, and the largest of both.
+const COARSER: f64 = 5.0;
+const COARSEST: f64 = 0.1;
+
+/// Error of a run over its difference `δ` from its companion, `e = C δ/(ρ^p - 1)` with `ρ` the ratio of the springs: `C` and `p` in the middle of the
+/// random scenes, on smooth meshes, on those where the error next to the edge of stick is the larger one, and on meshes of cubics.
+const ERROR_PER_DIFFERENCE: [[f64; 2]; 3] = [[1.3, 4.0], [1.0, 3.0], [0.4, 3.0]];
+
+/// Part of the tolerance of the time stepping that is the least error told: as much is of steps, and companion and run may share it.
+const LEAST_OF_TIME: f64 = 0.15;
+
+/// Least ratio of the springs that tells anything: a mesh may have to be raised to carry the companion.
+const LEAST_RATIO: f64 = 1.2;
+
+/// Orders that are believed: edges that move outwards and kinks of wear are of second order at best, edges that may move inwards of first, and
+/// below the last number nothing is known.
+const ORDER: f64 = 2.0;
+const ORDER_INWARDS: f64 = 1.0;
+const LEAST_ORDER: f64 = 0.5;
+
+/// Steps after which a companion is lost, with a known order and without: at the round-off of a coarse mesh a rate of nearly nothing may never be
+/// reached.
+const MOST_STEPS: [u64; 2] = [2000, 4000];
+
+/// Coarser runs of a scene.
+#[derive(Debug)]
+pub(in crate::run) struct Companions {
+    springs: usize,
+    /// Whether the order of convergence is known.
+    smooth: bool,
+    /// The largest order believed, where it is not known.
+    order: f64,
+    /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
+    every: usize,
+    /// Those radii over the contact radius, where the edge of stick moves.
+    radii: Option<Vec<f64>>,
+    /// Volume and depth of the limit, where there is one.
+    limit: Option<[f64; 2]>,
+    /// What the discretisation leaves out in any case.
+    left_out: f64,
+    first: Option<Companion>,
+    second: Option<Companion>,
+}
+
+impl Companions {
+    /// Runs the companions of a run.
+    ///
+    /// # Arguments
+    /// * `limited` -- whether the scene has a limit in closed form
+    pub(in crate::run) fn run(
+        scene: &Scene,
+        simulation: &Simulation,
+        limited: bool,
+        store: &OperatorStore,
+        stop: &Arc<AtomicBool>,
+    ) -> Self {
+        let (model, numerics) = (simulation.model(), scene.numerics());
+        let smooth = numerics.stepper == Stepper::Implicit && model.wears_smoothly();
+        let offsets = model.offsets();
+        let every = (offsets.len() / model.springs()).max(1);
+        let offsets: Vec<f64> = offsets.into_iter().step_by(every).collect();
+        let coarser = |steps: i32| {
+            let coarser = |value: f64| (value * COARSER.powi(steps)).min(COARSEST);
+            let accuracy = if smooth { coarser(numerics.accuracy) } else { numerics.accuracy };
+            let tolerance = Some(coarser(simulation.tolerance()));
+            Companion::run(&Coarser {
+                scene,
+                numerics: Numerics { accuracy, tolerance, ..*numerics },
+                springs: ((model.springs() as f64 / RATIO.powi(steps)).ceil() as usize).max(FEWEST),
+                offsets: &offsets,
+                samples: steps == 1,
+                most_steps: MOST_STEPS[usize::from(!smooth)],
+                store,
+                stop,
+            })
+        };
+        let first = coarser(1);
+        let second = (first.is_some() && !smooth).then(|| coarser(2)).flatten();
+        let radius = model.contact().contact_radius();
+        let shown = model.radii().into_iter().step_by(every);
+        let radii = model.moving().map(|_| shown.map(|r| r / radius).collect());
+        let held = scene.conditions().tangential_control != TangentialControl::Displacement;
+        let inwards = held || model.slides() || model.moving().is_some_and(MovingStick::recedes);
+        let unseen = || model.unseen_depth().unwrap_or(0.0);
+        Self {
+            springs: model.springs(),
+            smooth,
+            order: if inwards { ORDER_INWARDS } else { ORDER },
+            every,
+            radii,
+            limit: (limited || smooth).then(|| [model.limit_volume(), model.depth_scale()]),
+            left_out: if smooth { 0.0 } else { model.core_uncertainty().max(unseen()) },
+            first,
+            second,
+        }
+    }
+
+    /// Whether the order of convergence is known.
+    pub(in crate::run) fn is_smooth(&self) -> bool {
+        self.smooth
+    }
+
+    /// Whether the first companion came to no end.
+    pub(in crate::run) fn is_lost(&self) -> bool {
+        self.first.is_none()
+    }
+
+    /// Estimated error at the snapshots of the run: of the worn volume or of the profile at any radius, whichever is larger, relative to the
+    /// limit's, or to the largest of the run where there is none. None before the first snapshot that a companion saw.
+    pub(in crate::run) fn shares(&self, simulation: &Simulation, snapshots: &[Snapshot]) -> Option<Shares> {
+        let worn: Vec<Worn> = snapshots.iter().map(|it| Worn::shown(it, self.every)).collect();
+        let own = |value: fn(&Worn) -> f64| worn.iter().map(value).fold(0.0, f64::max);
+        let scale = self.limit.unwrap_or_else(|| [own(|it| it.volume), own(Worn::deepest)]);
+        if !(self.smooth || scale[0] > 0.0 && scale[1] > 0.0) {
+            return None;
+        }
+        let unknown = Shares { springs: UNKNOWN, left_out: self.left_out, ..Shares::default() };
+        let Some(first) = &self.first else { return Some(unknown) };
+        let ratio = self.springs as f64 / first.springs as f64;
+        let spent = !self.smooth
+            && matches!(simulation.plan().end, End::Rate(_))
+            && matches!(simulation.outcome(), Some(Outcome::Rate | Outcome::WornOut));
+        let nearest = gap(&worn, &first.seen, spent && first.spent, |a, b| self.apart(a, b, scale))?;
+        let finite = |value: f64| if value.is_finite() { value } else { UNKNOWN };
+        if self.smooth {
+            return by_known_order(simulation, ratio, nearest);
+        }
+        let (order, difference) = self.observed_order(first, nearest, scale);
+        let substeps = first.unsampled.as_ref().map_or(0.0, |it| it.error(scale));
+        Some(Shares {
+            springs: finite(difference / (ratio.powf(order) - 1.0)),
+            order,
+            substeps: finite(substeps),
+            left_out: finite(self.left_out),
+        })
+    }
+
+    /// The order that two companions show, and the difference that falls with it.
+    fn observed_order(&self, first: &Companion, nearest: f64, scale: [f64; 2]) -> (f64, f64) {
+        let farther = self.second.as_ref().and_then(|second| {
+            let spent = first.spent && second.spent;
+            let gap = gap(&first.seen, &second.seen, spent, |a, b| self.apart(a, b, scale))?;
+            Some((gap, first.springs as f64 / second.springs as f64))
+        });
+        let Some((gap, step)) = farther else { return (LEAST_ORDER, nearest) };
+        let observed = (gap / nearest).ln() / step.ln();
+        let grows = if observed > 0.0 { nearest } else { nearest.max(gap) };
+        (observed.clamp(LEAST_ORDER, self.order), grows)
+    }
+
+    /// The larger of the differences of volume and profile, relative.
+    ///
+    /// Where the edge of stick moves, the profile is steep at places that are known to the error of that edge only: there it is the distance of
+    /// the curves, of depth over the largest or of radius over that of the contact, whichever is larger.
+    fn apart(&self, one: &Worn, other: &Worn, [volume, depth]: [f64; 2]) -> f64 {
+        let of_volume = (one.volume - other.volume).abs() / volume;
+        let by_depth = |i: usize| (one.depth[i] - other.depth[i]).abs() / depth;
+        let of_profile = (0..one.depth.len().min(other.depth.len())).map(|i| match &self.radii {
+            None => by_depth(i),
+            Some(radii) => {
+                let to = |j: usize| [radii[j] - radii[i], (other.depth[j] - one.depth[i]) / depth];
+                let mut least = by_depth(i);
+                // Segments farther away than what was found are not the nearest.
+                let left = (0..i).rev().take_while(|j| radii[i] - radii[j + 1] < least);
+                least = left.map(|j| nearest(to(j), to(j + 1))).fold(least, f64::min);
+                let right = (i + 1..radii.len()).take_while(|j| radii[j - 1] - radii[i] < least);
+                right.map(|j| nearest(to(j - 1), to(j))).fold(least, f64::min)
+            }
+        });
+        of_profile.fold(of_volume, larger)
+    }
+}
+
+/// The error on a smooth mesh, for which a ratio of springs and a difference from the companion were compared with finer runs.
+fn by_known_order(simulation: &Simulation, ratio: f64, difference: f64) -> Option<Shares> {
+    let model = simulation.model();
+    if ratio < LEAST_RATIO {
+        return None;
+    }
+    let [smooth, next_to_stick, cubic] = ERROR_PER_DIFFERENCE;
+    let errors = Falling::of(model.contact()).map(|error| error.at(model.springs() as f64));
+    let [factor, order] = match model.operators().mesh().clustering() {
+        Clustering::Smooth if errors[1] > errors[0] => next_to_stick,
+        Clustering::Smooth => smooth,
+        _ => cubic,
+    };
+    let least = LEAST_OF_TIME * simulation.tolerance();
+    let springs = (factor * difference / (ratio.powf(order) - 1.0)).max(least);
+    Some(Shares { springs, order: CAUTIOUS_ORDER, ..Shares::default() })
+}
+
+/// Distance of the origin from a straight line between two points, by the larger of the coordinates.
+fn nearest(from: [f64; 2], to: [f64; 2]) -> f64 {
+    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+    let size = |part: f64| {
+        let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+        (from[0] + part * dx).abs().max((from[1] + part * dy).abs())
+    };
+    // Where a coordinate is zero, or both are as large: there the larger one has its least.
+    let places = [
+        0.0,
+        1.0,
+        -from[0] / dx,
+        -from[1] / dy,
+        (from[1] - from[0]) / (dx - dy),
+        -(from[0] + from[1]) / (dx + dy),
+    ];
+    places.into_iter().map(size).fold(f64::INFINITY, f64::min)
+}
+
+/// The largest difference of two runs at the times that both saw, the ends of wear included where both came to them.
+fn gap(one: &[Worn], other: &[Worn], spent: bool, apart: impl Fn(&Worn, &Worn) -> f64) -> Option<f64> {
+    let worn = one.iter().filter(|it| it.cycles > 0.0);
+    let common = worn.filter_map(|it| {
+        let same = other.iter().find(|that| same_cycles(that.cycles, it.cycles))?;
+        Some(apart(it, same))
+    });
+    let ends = one.last().zip(other.last()).filter(|_| spent).map(|(a, b)| apart(a, b));
+    common.chain(ends).reduce(larger)
+}

@@ -1,0 +1,79 @@
+//! What the substeps of a period leave out.
+
+use super::super::parts::resolution;
+use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
+use crate::scene::{Numerics, Scene};
+use crate::solver::model::{Model, Schedule};
+use crate::solver::simulation::Simulation;
+
+/// Substeps of a period with which those of a run are compared, over these. Halves would tell little: as more substeps come next to a reversal,
+/// the error may stand still and then fall at once.
+const FINER: usize = 8;
+
+/// The larger of two numbers; infinite where one is not a number.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
+
+/// What the substeps of a period leave out: the integral over the cycles of what more of them would wear in the same states.
+#[derive(Debug)]
+pub(super) struct Unsampled {
+    finer: Schedule,
+    /// Change of the limit's volume, relative.
+    limit: f64,
+    cycles: f64,
+    /// Rates that are left out: of the volume, m³ per cycle, and of the depth at the springs, m per cycle.
+    rates: Vec<f64>,
+    /// What has been left out so far, as the rates, and the most of it at any time.
+    sums: Vec<f64>,
+    most: [f64; 2],
+}
+
+impl Unsampled {
+    pub(super) fn new(scene: &Scene, numerics: &Numerics, model: &Model) -> Option<Self> {
+        let contact = scene.contact().ok()?;
+        let points = model.schedule().loop_steps(1);
+        let finer = Numerics { substeps: Some(FINER * points), ..*numerics };
+        let finer = Schedule::new(&contact, scene.conditions(), resolution(scene, &finer)).ok()?;
+        let volume = |contact: &InitialContact| {
+            let limit = LimitingShape::from_contact(contact).ok().flatten()?;
+            Some(limit.wear_volume())
+        };
+        let limit = if model.slides() {
+            0.0
+        } else {
+            let reach = finer.envelope(&contact).ok()?.contact;
+            volume(&reach)
+                .zip(volume(model.contact()))
+                .map_or(0.0, |(fine, coarse)| (fine / coarse - 1.0).abs())
+        };
+        Some(Self { finer, limit, cycles: 0.0, rates: vec![], sums: vec![], most: [0.0; 2] })
+    }
+
+    /// Takes the state of a simulation into account.
+    pub(super) fn see(&mut self, simulation: &Simulation) {
+        let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
+        let loading = model.loading_in(state, self.finer.loading(state.cycles, state.cycles));
+        let (fine, coarse) = (model.cycle(&loading, &state.compression, fields), simulation.cycle());
+        let depths = fine.growth.iter().zip(&coarse.growth).zip(&fields.slip_depth);
+        let depths = depths.map(|((fine, coarse), slip)| (fine - coarse) * slip);
+        let rates: Vec<f64> = std::iter::once(fine.volume - coarse.volume).chain(depths).collect();
+        let elapsed = state.cycles - self.cycles;
+        self.cycles = state.cycles;
+        if self.rates.is_empty() {
+            self.sums = vec![0.0; rates.len()];
+        } else {
+            for (sum, (now, before)) in self.sums.iter_mut().zip(rates.iter().zip(&self.rates)) {
+                *sum += 0.5 * elapsed * (now + before);
+            }
+        }
+        self.rates = rates;
+        let depth = self.sums[1..].iter().map(|it| it.abs()).fold(0.0, larger);
+        self.most = [larger(self.most[0], self.sums[0].abs()), larger(self.most[1], depth)];
+    }
+
+    pub(super) fn error(&self, [volume, depth]: [f64; 2]) -> f64 {
+        larger(self.most[0] / volume, self.most[1] / depth).max(self.limit)
+    }
+}

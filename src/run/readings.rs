@@ -1,0 +1,163 @@
+//! What a run and a closed form come to, each result declared once: JSON, columns of sweeps and lines for people are made from it.
+
+use super::Results;
+use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
+use crate::data::quantity::{Reading, number, word};
+use crate::data::{LimitDistance, Value};
+use crate::error::Result;
+use crate::scene::Scene;
+
+/// The results of a run, in the order of the keys of the JSON.
+pub const RUN: [Reading<Results>; 18] = [
+    word("stop_reason", "why the run stopped", |it| it.stop_reason().name().into()),
+    number(
+        "error_estimate",
+        "1",
+        "estimated error of worn volume and profile, relative to those of the limit",
+        |it| it.checkpoint().error_estimate.into(),
+    ),
+    number(
+        "accuracy_met",
+        "1",
+        "1 if the estimated error is as small as was asked for, 0 if not; missing where springs were given by hand",
+        |it| it.accuracy_met().into(),
+    ),
+    number("cycles", "1", "number of fretting cycles", |it| it.last().cycles.into()),
+    number("tau", "1", "dimensionless time", |it| it.last().tau.into()),
+    number("steps", "1", "steps accepted", |it| it.checkpoint().progress.steps.into()),
+    number("rejected_steps", "1", "steps rejected", |it| it.checkpoint().progress.rejected_steps.into()),
+    number("rate_evaluations", "1", "evaluations of the wear rate", |it| {
+        it.checkpoint().progress.rate_evaluations.into()
+    }),
+    number("wall_seconds", "s", "wall time used", |it| it.checkpoint().wall_seconds.into()),
+    number("indentation", "m", "indentation depth", |it| it.last().indentation.into()),
+    number("normal_force", "N", "normal force", |it| it.last().normal_force.into()),
+    number("contact_radius", "m", "contact radius", |it| it.last().contact_radius.into()),
+    number("stick_radius", "m", "radius of the stick zone", |it| it.last().stick_radius.into()),
+    number("wear_volume", "m3", "worn volume", |it| it.last().wear_volume.into()),
+    number("wear_volume_limit", "m3", "worn volume in the limit of many cycles", |it| {
+        it.limit().map(LimitingShape::wear_volume).into()
+    }),
+    number(
+        "limit_distance",
+        "1",
+        "largest distance of the profile to the limit, over the indentation",
+        |it| it.distance().map(|it| it.distance).into(),
+    ),
+    number("limit_distance_relative", "1", "the same over the largest wear depth of the limit", |it| {
+        it.distance().and_then(|LimitDistance { distance_relative, .. }| distance_relative).into()
+    }),
+    number("dissipated_energy", "J", "energy dissipated by friction since the start", |it| {
+        it.last().dissipated_energy.into()
+    }),
+];
+
+/// The first contact of a scene and its limiting shape.
+#[derive(Debug, Clone)]
+pub struct ClosedForm {
+    /// The contact before any wear.
+    pub contact: InitialContact,
+    /// What it tends to; none under full sliding.
+    pub limit: Option<LimitingShape>,
+}
+
+impl ClosedForm {
+    /// The closed form for a scene.
+    ///
+    /// # Errors
+    /// As [`InitialContact::new`] and [`LimitingShape::from_contact`].
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let contact = scene.contact()?;
+        Ok(Self { limit: LimitingShape::from_contact(&contact)?, contact })
+    }
+
+    fn of_limit(&self, of: fn(&LimitingShape) -> f64) -> Value {
+        // Zero without its sign.
+        self.limit.as_ref().map(|shape| of(shape) + 0.0).into()
+    }
+}
+
+/// A number with its name in lines for people.
+const fn line(
+    heading: &'static str,
+    name: &'static str,
+    units: &'static str,
+    long_name: &'static str,
+    of: fn(&ClosedForm) -> Value,
+) -> Reading<ClosedForm> {
+    number(name, units, long_name, of).headed(heading)
+}
+
+/// The results of a closed form, in the order of the keys of the JSON.
+pub const LIMIT: [Reading<ClosedForm>; 17] = [
+    line("grading k", "grading", "1", "grading k of E = E0 (z/z0)^k", |it| {
+        it.contact.half_space().grading().into()
+    }),
+    line("stiffness ratio M", "stiffness_ratio", "1", "tangential over normal stiffness", |it| {
+        it.contact.half_space().stiffness_ratio().into()
+    }),
+    line("normal stiffness c_N", "normal_stiffness", "1", "normal stiffness c_N, N/m^(2+k)", |it| {
+        it.contact.half_space().normal_stiffness().into()
+    }),
+    line("friction coefficient", "friction_coefficient", "1", "friction coefficient", |it| {
+        it.contact.friction().coefficient.into()
+    }),
+    line("indentation d", "indentation", "m", "indentation depth", |it| it.contact.indentation().into()),
+    line("normal force F_N, unworn", "normal_force", "N", "normal force before any wear", |it| {
+        it.contact.normal_force().into()
+    }),
+    line("amplitude U", "amplitude", "m", "tangential amplitude", |it| it.contact.amplitude().into()),
+    line(
+        "amplitude of full sliding",
+        "amplitude_full_sliding",
+        "m",
+        "tangential amplitude from which on everything slides",
+        |it| it.contact.amplitude_full_sliding().into(),
+    ),
+    word("regime", "what the oscillation does to the contact", |it| it.contact.regime().name().into()),
+    line(
+        "contact radius a0, unworn",
+        "contact_radius_initial",
+        "m",
+        "contact radius before any wear",
+        |it| it.contact.contact_radius().into(),
+    ),
+    line("stick radius c", "stick_radius", "m", "radius of the stick zone", |it| {
+        it.contact.stick_radius().into()
+    }),
+    line(
+        "contact radius a∞, limit",
+        "contact_radius_limit",
+        "m",
+        "contact radius in the limit of many cycles",
+        |it| it.of_limit(LimitingShape::contact_radius_limit),
+    ),
+    line(
+        "width of the worn annulus a∞ - c",
+        "slip_width_limit",
+        "m",
+        "width of the worn annulus in the limit",
+        |it| it.of_limit(LimitingShape::slip_width_limit),
+    ),
+    line(
+        "growth of the contact a∞ - a0",
+        "contact_growth_limit",
+        "m",
+        "growth of the contact radius up to the limit",
+        |it| it.of_limit(LimitingShape::contact_growth_limit),
+    ),
+    line("worn volume ΔV∞", "wear_volume_limit", "m3", "worn volume in the limit of many cycles", |it| {
+        it.of_limit(LimitingShape::wear_volume)
+    }),
+    line(
+        "worn volume, small amplitudes",
+        "wear_volume_asymptotic",
+        "m3",
+        "the same for small amplitudes",
+        |it| it.of_limit(LimitingShape::wear_volume_asymptotic),
+    ),
+    line("largest wear depth", "wear_depth_max", "m", "largest wear depth of the limit", |it| {
+        it.of_limit(LimitingShape::wear_depth_max)
+    }),
+];

@@ -1,0 +1,93 @@
+//! Settings: single keys of a scene in place of those that it has, as `--set` and the axes of studies give them.
+
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use super::document::{Section, Source};
+use super::{Rows, Scene, base_table, keys, read_text};
+use crate::error::Result;
+use crate::units::Kind;
+
+impl Scene {
+    /// Reads a scene from a file, with other values of some of its keys. What cannot stand beside a key that is set is left out: an amplitude takes
+    /// the place of a stick ratio, a law that of another.
+    ///
+    /// # Arguments
+    /// * `settings` -- each `key=value`, such as `loading.amplitude=2 um`; the value as in TOML, texts without quotes as well
+    ///
+    /// # Errors
+    /// As [`Scene::read`]; also where a setting is not of a key, with the one that is nearest, or has not its dimension or range.
+    pub fn read_with(path: &Path, settings: &[String]) -> Result<Self> {
+        if settings.is_empty() {
+            return Self::read(path);
+        }
+        let mut scene = base_table(&read_text(path)?, path)?;
+        let mut taken: Vec<&str> = vec![];
+        for setting in settings {
+            let (key, value) = parsed(setting)?;
+            let wrong = |why: String| outer(setting).unplaced(why);
+            if let Some(other) = taken.iter().find(|other| keys::exclude(other, key)) {
+                return Err(wrong(format!("{key} and {other} exclude each other; set one of the two")));
+            }
+            set(&mut scene, key, value).map_err(wrong)?;
+            taken.push(key);
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::with_rows(&scene.to_string(), &Self::name_with(path, settings), &Rows::In(folder))
+    }
+
+    /// What messages call a scene that [`Scene::read_with`] read: lines are those of the scene with the settings.
+    pub fn name_with(path: &Path, settings: &[String]) -> String {
+        match settings.is_empty() {
+            true => path.display().to_string(),
+            false => format!("{} with {}", path.display(), settings.join(", ")),
+        }
+    }
+}
+
+/// The document that messages about a setting show.
+fn outer(text: &str) -> Source<'_> {
+    Source { name: "setting", text, kind: "a scene" }
+}
+
+/// Key and value of a setting, checked by themselves.
+fn parsed(setting: &str) -> Result<(&str, Value)> {
+    let wrong = |why: String| outer(setting).unplaced(format_args!("{setting:?} {why}"));
+    let (key, value) = setting.split_once('=').ok_or_else(|| wrong("is not of the form key=value".into()))?;
+    let (key, value) = (key.trim(), value.trim());
+    let declared = keys::find(key).map_err(|cure| wrong(format!("is not of a key of a scene; {cure}")))?;
+    let literal = |text: &str| format!("value = {text}").parse::<Table>().ok()?.remove("value");
+    let value = literal(value).unwrap_or_else(|| Value::String(value.into()));
+    // Shown as it would stand in a scene.
+    let text = format!("{key} = {value}");
+    let source = outer(&text);
+    let document = source.parse()?;
+    let mut section = Section::root(source, document.get_ref());
+    let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
+    for table in tables.split('.').filter(|it| !it.is_empty()) {
+        section = section.required(table, "")?.section()?;
+    }
+    section.required(last, "")?.check(declared)?;
+    Ok((key, value))
+}
+
+/// Sets a dotted key of a scene, and leaves out what cannot stand beside it.
+///
+/// # Errors
+/// The name of what should be a table of the scene and is none.
+pub(super) fn set(scene: &mut Table, dotted: &str, value: Value) -> std::result::Result<(), String> {
+    let (tables, last) = dotted.rsplit_once('.').unwrap_or(("", dotted));
+    let (mut table, mut declared) = (scene, &keys::SCENE);
+    for name in tables.split('.').filter(|it| !it.is_empty()) {
+        declared.rivals(name).into_iter().for_each(|rival| drop(table.remove(rival)));
+        let inner = table.entry(name).or_insert_with(|| Value::Table(Table::new()));
+        table = inner.as_table_mut().ok_or_else(|| format!("{name} is no table in the base scene"))?;
+        if let Some(Kind::Table(inner)) = declared.key(name).map(|key| key.kind) {
+            declared = inner;
+        }
+    }
+    declared.rivals(last).into_iter().for_each(|rival| drop(table.remove(rival)));
+    table.insert(last.into(), value);
+    Ok(())
+}

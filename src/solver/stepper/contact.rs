@@ -1,0 +1,296 @@
+//! What an SDIRK step asks of a contact, whether its edge of stick rests or moves.
+//!
+//! The quantities that a step carries on are one vector: `λ` at the springs, the slip area, what belongs to an edge of stick that moves, the
+//! dissipated energy, the worn volume.
+
+use super::moving::MovingStage;
+use super::newton::Newton;
+use super::resting::{RestingStage, Tried, newton_tolerance};
+use super::tableau::ALEXANDER;
+use crate::numerics::grid::lagrange;
+use crate::solver::model::{
+    Fields, Model, Past, State, StickEdge, StickTarget, StickTrial, Target, Unknowns,
+};
+
+/// A contact during a step.
+pub(super) trait Stages {
+    /// The quantities at the start.
+    fn start(&mut self) -> Vec<f64>;
+
+    /// What a sum over the stages' slopes makes of the quantities at the start.
+    fn gathered(&self, start: &[f64], slopes: &[Vec<f64>], weights: [f64; 3], cycles: f64) -> Vec<f64>;
+
+    /// Solves a stage; the slopes of the quantities in it.
+    fn solve(
+        &mut self,
+        index: usize,
+        gathered: Vec<f64>,
+        cycles: f64,
+        evaluations: &mut u64,
+    ) -> Option<Vec<f64>>;
+
+    /// The model, and the fields in the stage solved last.
+    fn solved(&self) -> (&Model, &Fields);
+
+    /// The state after the step, from the quantities there.
+    fn end(self, quantities: Vec<f64>, cycles: f64) -> State;
+}
+
+/// `(now - before)/step`.
+fn slopes<'a>(
+    now: impl IntoIterator<Item = &'a f64>,
+    before: &'a [f64],
+    step: f64,
+) -> impl Iterator<Item = f64> {
+    now.into_iter().zip(before).map(move |(now, before)| (now - before) / step)
+}
+
+fn target(model: &Model, state: &State, gathered: &[f64], index: usize, cycles: f64) -> Target {
+    let springs = model.springs();
+    Target {
+        log_slip: gathered[..springs].to_vec(),
+        slip_area: gathered[springs],
+        step: ALEXANDER.diagonal * cycles,
+        loading: model.schedule().loading(state.cycles, state.cycles + ALEXANDER.times[index] * cycles),
+    }
+}
+
+/// The state after a step but for what belongs to an edge of stick that moves.
+fn state_after(state: &State, at: Unknowns, quantities: &[f64], stick_radius: f64, cycles: f64) -> State {
+    let [.., dissipated_energy, volume_by_rate] = *quantities else {
+        unreachable!("two quantities at least")
+    };
+    State {
+        cycles: state.cycles + cycles,
+        slip_area: at.slip_area,
+        dissipated_energy,
+        volume_by_rate,
+        least_stick_radius: state.least_stick_radius.min(stick_radius),
+        slip_area_rate: (at.slip_area - state.slip_area) / cycles,
+        compression_rate: slopes(&at.compression, &state.compression, cycles).collect(),
+        compression: at.compression,
+        stick: state.stick.clone(),
+        past: state.past.clone(),
+    }
+}
+
+/// Where the edge of stick rests.
+pub(super) struct RestingContact<'a> {
+    model: &'a Model,
+    state: &'a State,
+    tolerance: f64,
+    newton: &'a mut Newton,
+    tried: &'a mut Tried,
+    at: Unknowns,
+}
+
+impl<'a> RestingContact<'a> {
+    pub fn new(
+        model: &'a Model,
+        state: &'a State,
+        tolerance: f64,
+        newton: &'a mut Newton,
+        tried: &'a mut Tried,
+    ) -> Self {
+        let tolerance = newton_tolerance(tolerance);
+        Self { model, state, tolerance, newton, tried, at: Unknowns::of(state) }
+    }
+
+    /// First guess of a stage: at the rates of the last step as long as that is a contact, then on the straight line from the state through the
+    /// stage before.
+    fn guess(&mut self, index: usize, cycles: f64) {
+        let (model, state) = (self.model, self.state);
+        if index > 0 {
+            let factor = ALEXANDER.times[index] / ALEXANDER.times[index - 1];
+            self.at.slip_area = state.slip_area + (self.at.slip_area - state.slip_area) * factor;
+            for (q, start) in self.at.compression.iter_mut().zip(&state.compression) {
+                *q = start + (*q - start) * factor;
+            }
+            return;
+        }
+        let ahead = Unknowns::ahead(state, ALEXANDER.times[0] * cycles);
+        if ahead.slip_area > 0.0 && ahead.slip_area < model.unworn().largest_slip_area() {
+            model.evaluate(ahead.slip_area, &ahead.compression, &mut self.tried.fields);
+            if self.tried.fields.are_physical() {
+                self.at = ahead;
+            }
+        }
+    }
+}
+
+impl Stages for RestingContact<'_> {
+    fn start(&mut self) -> Vec<f64> {
+        let state = self.state;
+        self.model.evaluate(state.slip_area, &state.compression, &mut self.tried.fields);
+        let others = [state.slip_area, state.dissipated_energy, state.volume_by_rate];
+        self.tried.fields.log_slip.iter().copied().chain(others).collect()
+    }
+
+    fn gathered(&self, start: &[f64], slopes: &[Vec<f64>], weights: [f64; 3], cycles: f64) -> Vec<f64> {
+        let sum = |i: usize| {
+            slopes.iter().zip(weights).map(|(slopes, weight)| cycles * weight * slopes[i]).sum::<f64>()
+        };
+        start.iter().enumerate().map(|(i, value)| value + sum(i)).collect()
+    }
+
+    fn solve(
+        &mut self,
+        index: usize,
+        gathered: Vec<f64>,
+        cycles: f64,
+        evaluations: &mut u64,
+    ) -> Option<Vec<f64>> {
+        let target = target(self.model, self.state, &gathered, index, cycles);
+        let step = target.step;
+        self.guess(index, cycles);
+        let mut stage =
+            RestingStage { model: self.model, target, tolerance: self.tolerance, tried: self.tried };
+        if !self.newton.solve(&mut stage, &mut self.at, evaluations) {
+            return None;
+        }
+        let Tried { fields, cycle } = &*self.tried;
+        let now = fields.log_slip.iter().chain([&self.at.slip_area]);
+        Some(slopes(now, &gathered, step).chain([cycle.dissipation, cycle.volume]).collect())
+    }
+
+    fn solved(&self) -> (&Model, &Fields) {
+        (self.model, &self.tried.fields)
+    }
+
+    fn end(self, quantities: Vec<f64>, cycles: f64) -> State {
+        state_after(self.state, self.at, &quantities, self.tried.cycle.stick_radius, cycles)
+    }
+}
+
+/// Where the edge of stick moves.
+pub(super) struct MovingContact<'a> {
+    model: &'a Model,
+    state: &'a State,
+    stick: &'a StickEdge,
+    tolerance: f64,
+    newton: &'a mut Newton,
+    trial: &'a mut StickTrial,
+    /// The start and the stages solved.
+    known: Vec<Unknowns>,
+}
+
+impl<'a> MovingContact<'a> {
+    pub fn new(
+        model: &'a Model,
+        state: &'a State,
+        stick: &'a StickEdge,
+        tolerance: f64,
+        newton: &'a mut Newton,
+        trial: &'a mut StickTrial,
+    ) -> Self {
+        Self { model, state, stick, tolerance, newton, trial, known: vec![Unknowns::of(state)] }
+    }
+
+    fn target(&self, index: usize, gathered: &[f64], cycles: f64) -> StickTarget {
+        let springs = target(self.model, self.state, gathered, index, cycles);
+        let [slip_compression, area, depth, load] =
+            *gathered[self.model.springs() + 1..].first_chunk().expect("four numbers of the edge of stick");
+        let left_behind = self.carried(gathered)[0].to_vec();
+        let stick = StickEdge { area, depth, load, left_behind, ..StickEdge::default() };
+        StickTarget { springs, stick, slip_compression }
+    }
+
+    /// What was left behind, and wear depth, among the quantities.
+    fn carried<'b>(&self, quantities: &'b [f64]) -> [&'b [f64]; 2] {
+        let all = &quantities[self.model.springs() + 5..quantities.len() - 2];
+        let (left_behind, wear_depth) = all.split_at(self.stick.left_behind.len());
+        [left_behind, wear_depth]
+    }
+
+    /// By the polynomial through the start and the stages before; in the first one at the rates of the last step.
+    fn guess(&self, index: usize, cycles: f64) -> Unknowns {
+        if index == 0 {
+            return Unknowns::ahead(self.state, ALEXANDER.times[0] * cycles);
+        }
+        let [first, second, third] = ALEXANDER.times;
+        let times = &[0.0, first, second, third][..=index];
+        let mut weights = vec![0.0; times.len()];
+        lagrange(times, ALEXANDER.times[index], &mut weights);
+        let sum = |part: &dyn Fn(&Unknowns) -> f64| {
+            self.known.iter().zip(&weights).map(|(it, weight)| weight * part(it)).sum()
+        };
+        Unknowns {
+            compression: (0..self.state.compression.len()).map(|i| sum(&|it| it.compression[i])).collect(),
+            slip_area: sum(&|it| it.slip_area),
+            stick_area: sum(&|it| it.stick_area),
+            stick_depth: sum(&|it| it.stick_depth),
+        }
+    }
+}
+
+impl Stages for MovingContact<'_> {
+    fn start(&mut self) -> Vec<f64> {
+        let (state, stick) = (self.state, self.stick);
+        let fields = self.model.fields(state);
+        let of_edges =
+            [state.slip_area, fields.stick_zone.slip_compression, stick.area, stick.depth, stick.load];
+        let carried = stick.left_behind.iter().chain(&stick.wear_depth);
+        let sums = [state.dissipated_energy, state.volume_by_rate];
+        fields.log_slip.iter().chain(&of_edges).chain(carried).chain(&sums).copied().collect()
+    }
+
+    fn gathered(&self, start: &[f64], slopes: &[Vec<f64>], weights: [f64; 3], cycles: f64) -> Vec<f64> {
+        let sum =
+            |i: usize| -> f64 { slopes.iter().zip(weights).map(|(slopes, weight)| weight * slopes[i]).sum() };
+        start.iter().enumerate().map(|(i, value)| value + cycles * sum(i)).collect()
+    }
+
+    fn solve(
+        &mut self,
+        index: usize,
+        gathered: Vec<f64>,
+        cycles: f64,
+        evaluations: &mut u64,
+    ) -> Option<Vec<f64>> {
+        let stage = self.model.stick_stage(self.target(index, &gathered, cycles))?;
+        let before = self.known.last()?.clone();
+        let mut at = self.guess(index, cycles);
+        let mut stage = MovingStage::new(stage, self.tolerance, self.model, self.trial);
+        if !stage.solve(&mut at, self.newton, evaluations) {
+            // What was before may lead astray.
+            at = before;
+            self.newton.outdate();
+            if !stage.solve(&mut at, self.newton, evaluations) {
+                return None;
+            }
+        }
+        let stick = stage.rates(&at);
+        let (trial, step) = (&*self.trial, ALEXANDER.diagonal * cycles);
+        let now = trial.fields.log_slip.iter().chain([&at.slip_area, &trial.stick_zone.slip_compression]);
+        let found = slopes(now, &gathered, step)
+            .chain([stick.area, stick.depth, stick.load])
+            .chain(stick.left_behind)
+            .chain(stick.wear_depth)
+            .chain([trial.cycle.dissipation, trial.cycle.volume])
+            .collect();
+        self.known.push(at);
+        Some(found)
+    }
+
+    fn solved(&self) -> (&Model, &Fields) {
+        (self.model, &self.trial.fields)
+    }
+
+    fn end(mut self, quantities: Vec<f64>, cycles: f64) -> State {
+        let at = self.known.pop().expect("the start at least is known");
+        let [left_behind, wear_depth] = self.carried(&quantities).map(<[f64]>::to_vec);
+        let stick = StickEdge {
+            area: at.stick_area,
+            depth: at.stick_depth,
+            load: self.trial.stick_zone.stick_load,
+            left_behind,
+            wear_depth,
+            rates: [(at.stick_area - self.stick.area) / cycles, (at.stick_depth - self.stick.depth) / cycles],
+            ..self.stick.clone()
+        };
+        let after = state_after(self.state, at, &quantities, self.trial.cycle.stick_radius, cycles);
+        let mut next = State { stick: Some(stick), past: Past::default(), ..after };
+        self.model.settle_depth(&mut next, &self.trial.fields);
+        next
+    }
+}

@@ -1,0 +1,85 @@
+//! Equations of an implicit stage where the edge of stick moves, for Newton's method.
+
+use super::newton::{Correction, Equations, Factorised, Newton};
+use super::resting::{ROUND_OFF, newton_tolerance};
+use crate::numerics::linear::Factors;
+use crate::solver::model::{Model, StickEdge, StickStage, StickTrial, Target, Unknowns};
+
+/// Most that Newton's method may leave: the edge of stick takes more digits than the springs.
+const MOST_LEFT: f64 = 1e-8;
+
+/// Corrections of the edge of stick, relative, that are round-off of the balance that decides it.
+const STICK_ROUND_OFF: f64 = 1e-11;
+
+/// What may be left of a balance of forces, relative.
+const BALANCED: f64 = 1e-12;
+
+/// A stage and what was found at the unknowns tried last.
+pub(super) struct MovingStage<'a> {
+    stage: StickStage<'a>,
+    /// What Newton's method may leave.
+    tolerance: f64,
+    held: f64,
+    trial: &'a mut StickTrial,
+}
+
+impl<'a> MovingStage<'a> {
+    pub fn new(stage: StickStage<'a>, tolerance: f64, model: &Model, trial: &'a mut StickTrial) -> Self {
+        let tolerance = newton_tolerance(tolerance).min(MOST_LEFT);
+        Self { stage, tolerance, held: model.contact().indentation(), trial }
+    }
+
+    /// Newton's method from a guess; where the compression at the edge of stick is known, with that one: next to the edge slip is the small
+    /// difference of both.
+    pub fn solve(&mut self, at: &mut Unknowns, newton: &mut Newton, evaluations: &mut u64) -> bool {
+        if let Some(known) = self.stage.known_slip_compression() {
+            let factor = known / (self.held - at.stick_depth);
+            at.compression.iter_mut().for_each(|q| *q *= factor);
+            at.stick_depth = self.held - known;
+        }
+        *evaluations += 1;
+        newton.solve(self, at, evaluations)
+    }
+
+    /// Slopes, per cycle, of what the edge of stick carries along.
+    pub fn rates(&self, at: &Unknowns) -> StickEdge {
+        self.stage.rates(at, self.trial)
+    }
+}
+
+impl Equations for MovingStage<'_> {
+    fn target(&self) -> &Target {
+        &self.stage.target().springs
+    }
+
+    fn evaluate(&mut self, at: &Unknowns) -> bool {
+        self.stage.evaluate(at, self.trial)
+    }
+
+    fn residual(&self) -> Vec<f64> {
+        self.trial.residual.clone()
+    }
+
+    fn scale(&self) -> f64 {
+        self.trial.stick_zone.slip_compression
+    }
+
+    fn factorise(&self, at: &Unknowns, _: Option<Factorised>) -> Option<Factorised> {
+        self.stage.matrix(at, self.trial).map(|matrix| Factorised::Dense(Factors::new(matrix)))
+    }
+
+    fn evaluations_of_matrix(&self) -> u64 {
+        4
+    }
+
+    fn is_last(&self, correction: &Correction) -> bool {
+        correction.springs <= self.tolerance * correction.compression + 10.0 * ROUND_OFF
+            && correction.stick <= STICK_ROUND_OFF
+            && self.trial.residual.last().is_some_and(|it| it.abs() <= BALANCED)
+    }
+
+    /// The edge of stick has to be found to the last digit.
+    fn is_round_off(&self) -> bool {
+        false
+    }
+}

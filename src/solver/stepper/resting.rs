@@ -1,0 +1,158 @@
+//! Equations of an implicit stage where the edge of stick rests, with their analytic Jacobian.
+
+use faer::Mat;
+
+use super::newton::{Correction, Equations, Factorised};
+use crate::numerics::linear::Factors;
+use crate::solver::model::{CycleFields, Fields, Model, Target, Unknowns};
+
+/// Corrections, relative to `q_c` or the slip area, that are round-off.
+pub(super) const ROUND_OFF: f64 = 1e-14;
+
+/// Units of round-off in a slip depth of the unworn contact, by a series, and in what springs take away from it, by a sum over all of them.
+const RESIDUAL_ROUND_OFF: f64 = 64.0;
+
+/// The largest part of the tolerance of the time stepping that Newton's method may leave, and its bounds.
+const OF_TOLERANCE: f64 = 1e-3;
+const BOUNDS: [f64; 2] = [1e-12, 1e-5];
+
+/// Fields and cycle of the unknowns tried last.
+#[derive(Debug, Default)]
+pub(super) struct Tried {
+    pub fields: Fields,
+    pub cycle: CycleFields,
+}
+
+/// ```text
+/// λ - λ̂ - (1 - Ẑ/Z) ξ ∂λ/∂ξ - h W/S = 0 on the inner springs,    w = 0 at the edge.
+/// ```
+#[derive(Debug)]
+pub(super) struct RestingStage<'a> {
+    pub model: &'a Model,
+    pub target: Target,
+    /// What Newton's method may leave.
+    pub tolerance: f64,
+    pub tried: &'a mut Tried,
+}
+
+/// What Newton's method may leave under a tolerance of the time stepping.
+pub(super) fn newton_tolerance(tolerance: f64) -> f64 {
+    let [least, most] = BOUNDS;
+    (OF_TOLERANCE * tolerance).clamp(least, most)
+}
+
+impl Equations for RestingStage<'_> {
+    fn target(&self) -> &Target {
+        &self.target
+    }
+
+    fn evaluate(&mut self, at: &Unknowns) -> bool {
+        let Self { model, target, tried, .. } = self;
+        if !(at.slip_area > 0.0 && at.slip_area < model.unworn().largest_slip_area()) {
+            return false;
+        }
+        model.evaluate(at.slip_area, &at.compression, &mut tried.fields);
+        if !tried.fields.are_physical() {
+            return false;
+        }
+        tried.cycle = model.cycle(&target.loading, &at.compression, &tried.fields);
+        true
+    }
+
+    fn residual(&self) -> Vec<f64> {
+        let (fields, growth) = (&self.tried.fields, &self.tried.cycle.growth);
+        let inner = self.model.springs() - 1;
+        let theta = self.theta();
+        let mut left = self.model.along_annulus(&fields.log_slip);
+        for (i, value) in left.iter_mut().enumerate().take(inner) {
+            *value =
+                fields.log_slip[i] - self.target.log_slip[i] - theta * *value - self.target.step * growth[i];
+        }
+        left[inner] = fields.log_slip[inner];
+        left
+    }
+
+    fn scale(&self) -> f64 {
+        self.model.contact().slip_compression()
+    }
+
+    fn factorise(&self, at: &Unknowns, memory: Option<Factorised>) -> Option<Factorised> {
+        let (model, target, Tried { fields, cycle }) = (self.model, &self.target, &*self.tried);
+        let by_slip_area = self.by_slip_area();
+        let slopes = model.plain_growth_slopes(&target.loading, fields, cycle, -target.step);
+        let (dense, hierarchical) = match memory {
+            Some(Factorised::Dense(factors)) => (Some(factors.into_matrix()), None),
+            Some(Factorised::Hierarchical(factors)) => (None, Some(factors)),
+            None => (None, None),
+        };
+        let factors = slopes.and_then(|slopes| {
+            model.stage_factors(fields, self.theta(), slopes, &by_slip_area, hierarchical)
+        });
+        Some(match factors {
+            Some(factors) => Factorised::Hierarchical(factors),
+            None => {
+                let n = model.springs();
+                let mut matrix = dense.filter(|it| it.nrows() == n).unwrap_or_else(|| Mat::zeros(n, n));
+                matrix.fill(0.0);
+                self.fill(&mut matrix, &at.compression, &by_slip_area);
+                Factorised::Dense(Factors::new(matrix))
+            }
+        })
+    }
+
+    fn evaluations_of_matrix(&self) -> u64 {
+        0
+    }
+
+    fn is_last(&self, correction: &Correction) -> bool {
+        correction.remaining <= self.tolerance * correction.compression || correction.springs <= ROUND_OFF
+    }
+
+    /// Slip is a difference of the depths without pressure and with it.
+    fn is_round_off(&self) -> bool {
+        let fields = &self.tried.fields;
+        let round_off = |i: usize| {
+            let cancelled = fields.unworn[i].limit_slip / fields.slip_depth[i];
+            RESIDUAL_ROUND_OFF * f64::EPSILON * (cancelled + fields.log_slip[i].abs())
+        };
+        self.residual().iter().enumerate().all(|(i, value)| value.abs() <= round_off(i))
+    }
+}
+
+impl RestingStage<'_> {
+    /// `1 - Ẑ/Z`.
+    fn theta(&self) -> f64 {
+        1.0 - self.target.slip_area / self.tried.fields.slip_area
+    }
+
+    /// Derivatives of the equations, but for the growth, by the slip area, shape `(springs,)`.
+    fn by_slip_area(&self) -> Vec<f64> {
+        let (model, fields) = (self.model, &self.tried.fields);
+        let inner = model.springs() - 1;
+        let mut by_slip_area = model.log_slip_by_slip_area(fields);
+        let carried = model.along_annulus(&by_slip_area);
+        let along = model.along_annulus(&fields.log_slip);
+        let theta = self.theta();
+        for i in 0..inner {
+            by_slip_area[i] -=
+                theta * carried[i] + along[i] * self.target.slip_area / (fields.slip_area * fields.slip_area);
+        }
+        by_slip_area
+    }
+
+    /// Adds Newton's matrix at the current fields, columns the compressions and then the slip area.
+    fn fill(&self, matrix: &mut Mat<f64>, compression: &[f64], by_slip_area: &[f64]) {
+        let (model, target, Tried { fields, cycle }) = (self.model, &self.target, &*self.tried);
+        let inner = model.springs() - 1;
+        model.add_growth_slopes(&target.loading, compression, fields, cycle, -target.step, matrix);
+        model.add_log_slip_by_compression(fields, self.theta(), matrix);
+        for i in 0..inner {
+            matrix[(i, inner)] += by_slip_area[i];
+        }
+        let scale = fields.slip_area.powf(model.mu()) / fields.slip_depth[inner];
+        for j in 0..inner {
+            matrix[(inner, j)] = -scale * model.elastic_depth_by_compression(fields, inner, j);
+        }
+        matrix[(inner, inner)] = by_slip_area[inner];
+    }
+}
