@@ -8,11 +8,10 @@
 
 use std::time::Instant;
 
-use fretwear::data::RunFile;
+use fretwear::Results;
 use fretwear::error::Result;
 use fretwear::laws::conditions::Conditions;
 use fretwear::numerics::grid::Clustering;
-use fretwear::run::{Run, Shared};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
@@ -142,8 +141,8 @@ impl Reference {
     }
 }
 
-fn shown(file: &RunFile) -> Vec<(f64, Vec<f64>)> {
-    file.snapshots[1..].iter().map(|it| (it.wear_volume, it.wear_depth.clone())).collect()
+fn shown(results: &Results) -> Vec<(f64, Vec<f64>)> {
+    results.snapshots()[1..].iter().map(|it| (it.wear_volume, it.wear_depth.clone())).collect()
 }
 
 struct Row {
@@ -160,34 +159,32 @@ struct Row {
 }
 
 fn judge(case: &Case, plans: &Plans) -> Result<Vec<Row>> {
-    let folder = std::env::temp_dir();
     let mut rows = vec![];
     let mut references: Option<(Reference, f64)> = None;
     for &accuracy in plans.accuracies {
         let scene = case.scene(&format!("accuracy = {accuracy:e}"))?;
         let begun = Instant::now();
-        let run = Run::one_of_many(&scene, &folder.join("never-written.h5"), &Shared::default())?;
-        let (result, file) = run.execute_keeping(None)?;
+        let results = scene.simulate()?;
         let milliseconds = 1e3 * begun.elapsed().as_secs_f64();
         if references.is_none() {
-            let cycles: Vec<f64> = file.snapshots[1..].iter().map(|it| it.cycles).collect();
+            let cycles: Vec<f64> = results.snapshots()[1..].iter().map(|it| it.cycles).collect();
             let reference = Reference::new(case, plans.reference, &cycles)?;
             let second = Reference::new(case, plans.second, &cycles)?;
             let off = reference.errors(&second.model.radii(), &second.shown());
             references = Some((reference, off.0.max(off.1)));
         }
         let (reference, uncertainty) = references.as_ref().expect("made above");
-        let (volume, depth, place) = reference.errors(&file.header.radius, &shown(&file));
+        let (volume, depth, place) = reference.errors(results.radius(), &shown(&results));
         rows.push(Row {
             case: *case,
             accuracy,
-            springs: result.checkpoint.state.compression.len() + 1,
-            steps: result.checkpoint.progress.steps,
+            springs: results.springs(),
+            steps: results.steps(),
             milliseconds,
             volume,
             depth,
             place,
-            estimate: result.checkpoint.error_estimate.unwrap_or(f64::NAN),
+            estimate: results.error_estimate().unwrap_or(f64::NAN),
             uncertainty: *uncertainty,
         });
     }

@@ -15,7 +15,7 @@ use fretwear::laws::loading::Mode;
 use fretwear::laws::path::SampledPath;
 use fretwear::numerics::abel::AbelOperators;
 use fretwear::numerics::grid::{Clustering, Mesh};
-use fretwear::run::Run;
+use fretwear::run::{Run, Stop};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Fields, Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Plan, Simulation};
@@ -85,7 +85,10 @@ fn whole_scene(criterion: &mut Criterion) {
     let run = |springs: usize| {
         let text = format!("{SCENE}\n[numerics]\nsprings = {springs}\n");
         let scene = Scene::from_toml(&text, "paraboloid.toml").expect("the scene is valid");
-        Run::new(&scene, &output, true).expect("a run").execute(None).expect("reaches its end")
+        Run::new(&scene, &output, true, &Stop::default())
+            .expect("a run")
+            .execute(None)
+            .expect("reaches its end")
     };
     for springs in SPRINGS {
         if springs <= MOST_REPEATED {

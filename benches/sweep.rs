@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use fretwear::run::{Run, Shared};
+use fretwear::run::{Shared, Simulation};
 use fretwear::scene::Study;
 use fretwear::study::sweep::{SweepOptions, sweep};
 use tempfile::TempDir;
@@ -79,14 +79,13 @@ fn main() {
     }
 
     let scenes: Vec<_> = (0..100).map(|scene| some.scene(scene).expect("valid")).collect();
-    let nowhere = place.path().join("never-written.h5");
     let all = |shared: &dyn Fn() -> Shared, common: bool| {
         let one = shared();
         seconds(|| {
             for scene in &scenes {
                 let own = shared();
-                let run = Run::one_of_many(scene, &nowhere, if common { &one } else { &own }).expect("a run");
-                run.execute(None).expect("reaches its end");
+                let run = Simulation::sharing(scene, if common { &one } else { &own }).expect("a run");
+                run.run().expect("reaches its end");
             }
         })
     };

@@ -6,36 +6,64 @@
 //! A file is laid out in memory, written to a temporary beside it, synchronised and renamed, so a run killed at
 //! any moment leaves either the previous save or the new one, never a torn file.
 
+#[cfg(feature = "hdf5")]
 mod atomic;
+mod cells;
 mod dataset;
 mod fingerprint;
+#[cfg(feature = "hdf5")]
 mod folder;
 mod format;
+#[cfg(feature = "hdf5")]
 mod labelled;
 pub mod layout;
 pub mod quantity;
+#[cfg(feature = "hdf5")]
 mod reader;
+#[cfg(feature = "hdf5")]
 mod run_file;
+mod save;
+#[cfg(feature = "hdf5")]
 mod scratch;
+#[cfg(feature = "hdf5")]
 mod seal;
+#[cfg(feature = "hdf5")]
 mod shard;
+#[cfg(feature = "hdf5")]
 mod surface;
+#[cfg(feature = "hdf5")]
 mod tables;
+#[cfg(feature = "hdf5")]
+mod target;
 mod writer;
 
+#[cfg(feature = "hdf5")]
 pub(crate) use atomic::{AtomicFile, failure, remove_abandoned};
+#[cfg(feature = "hdf5")]
+pub(crate) use cells::cell;
 pub use dataset::{Attribute, Dataset, Number, Values, Variable, Words};
-pub(crate) use fingerprint::{Fingerprint, scene_hash};
+#[cfg(feature = "hdf5")]
+pub(crate) use fingerprint::Fingerprint;
+pub(crate) use fingerprint::scene_hash;
+#[cfg(feature = "hdf5")]
 pub use folder::{Mark, check_distinct, check_own, make_folder};
-pub(crate) use folder::{cell, check_can_be_made, check_folder};
+#[cfg(feature = "hdf5")]
+pub(crate) use folder::{check_can_be_made, check_folder};
 pub use format::Format;
 pub use quantity::{Quantity, Reading, Value};
+#[cfg(feature = "hdf5")]
 pub use reader::format_of;
+#[cfg(feature = "hdf5")]
 pub use run_file::RunFile;
+#[cfg(feature = "hdf5")]
 pub(crate) use scratch::Scratch;
+#[cfg(feature = "hdf5")]
 pub use seal::ResultPath;
+#[cfg(feature = "hdf5")]
 pub use shard::{SweepFile, SweepHeader, column};
+#[cfg(feature = "hdf5")]
 pub use surface::SurfaceSeries;
+#[cfg(feature = "hdf5")]
 pub use tables::{DatasetSummary, ResultTables, TableSummary, VariableSummary};
 pub use writer::RunWriter;
 

@@ -1,4 +1,4 @@
-//! The one error type of the library.
+//! The error type of the library, and what an error is about.
 
 use std::path::PathBuf;
 
@@ -34,6 +34,28 @@ pub enum Error {
     /// A scene that cannot be used; the message shows the line and the key.
     #[error("{0}")]
     Scene(String),
+    /// What is asked of a study besides its file, such as a number of threads or of shards, cannot be.
+    #[error("{name}: {why}")]
+    Option {
+        /// What is asked, in words joined by dashes.
+        name: &'static str,
+        /// Why it cannot be, and what can.
+        why: String,
+    },
+    /// A file that exists and may not be replaced.
+    #[error("{}: exists already; choose another output", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file that is damaged or bears no checksum, so that it is not read.
+    #[error("{}: {why}; write it again with the command that wrote it", path.display())]
+    Unsealed {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
     /// A file that cannot be read or written.
     #[error("{}: {why}", path.display())]
     File {
@@ -42,6 +64,43 @@ pub enum Error {
         /// What went wrong and what to do about it.
         why: String,
     },
+}
+
+/// What an error is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Domain {
+    /// The text of a scene or study, or what is asked besides it.
+    Scene,
+    /// Values of the physics that cannot be, alone or together.
+    Physics,
+    /// An iteration that found no end.
+    Solver,
+    /// A file.
+    File,
+}
+
+impl Error {
+    /// What the error is about.
+    ///
+    /// ```
+    /// use fretwear::{Domain, Error, Scene};
+    /// let error = "[indenter.ball]".parse::<Scene>().unwrap_err();
+    /// assert_eq!((error.domain(), error.exit_code()), (Domain::Scene, 2));
+    /// ```
+    pub fn domain(&self) -> Domain {
+        match self {
+            Self::Scene(_) | Self::Option { .. } => Domain::Scene,
+            Self::OutOfRange { .. } | Self::Inconsistent { .. } => Domain::Physics,
+            Self::NotConverged { .. } => Domain::Solver,
+            Self::Exists { .. } | Self::Unsealed { .. } | Self::File { .. } => Domain::File,
+        }
+    }
+
+    /// Exit code of a program that ends with this error before anything has begun: 1 where a computation failed, 2 where what was given
+    /// cannot be used.
+    pub fn exit_code(&self) -> u8 {
+        if self.domain() == Domain::Solver { 1 } else { 2 }
+    }
 }
 
 /// Result of a fallible function of this library.

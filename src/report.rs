@@ -4,34 +4,43 @@
 
 mod check;
 mod conditions;
+#[cfg(feature = "hdf5")]
 pub mod export;
+#[cfg(feature = "hdf5")]
 mod info;
 mod limit;
 mod run;
 mod text;
 
 pub use check::CheckReport;
+#[cfg(feature = "hdf5")]
 pub use info::{InfoReport, arrays_text};
 pub use limit::{LimitReport, ProfileTable, parse_radii};
 pub use run::RunReport;
 pub(crate) use text::{Scale, TextTable, number};
 
+#[cfg(feature = "hdf5")]
 use std::path::Path;
 
 use serde::Serialize;
 
+#[cfg(feature = "hdf5")]
 use crate::data::AtomicFile;
-use crate::error::{Error, Result};
+use crate::error::Error;
+#[cfg(feature = "hdf5")]
+use crate::error::Result;
 
 /// One JSON object, keys in the order of declaration; a number that is not finite is null.
 pub fn json(report: &impl Serialize) -> String {
     serde_json::to_string_pretty(report).expect("reports have string keys and plain values only") + "\n"
 }
 
+#[cfg(feature = "hdf5")]
 /// A table of text that is written as a whole or not at all.
 #[derive(Debug)]
 pub struct TableFile(AtomicFile);
 
+#[cfg(feature = "hdf5")]
 impl TableFile {
     /// Checks that the file can be written; creates nothing.
     ///
@@ -55,6 +64,6 @@ fn unsigned_zero(value: f64) -> f64 {
     value + 0.0
 }
 
-fn bad_option(what: &'static str, why: String) -> Error {
-    Error::Inconsistent { what, why }
+fn bad_option(name: &'static str, why: String) -> Error {
+    Error::Option { name, why }
 }

@@ -40,6 +40,7 @@ use crate::laws::friction::Coulomb;
 use crate::laws::loading::{Loading, Mode, RecordedPath};
 use crate::laws::wear::Archard;
 
+mod builder;
 mod columns;
 mod document;
 pub(crate) mod input;
@@ -60,6 +61,7 @@ mod spacing;
 mod study;
 mod universality;
 
+pub use builder::SceneBuilder;
 use input::{Pipes, Unread};
 pub use keys::MOST_SCENES;
 pub use map::MapScene;

@@ -1,7 +1,10 @@
 //! Many scenes: sweeps and their jobs on clusters, the universality claim, the trade-off of time and error, wear maps.
 
+mod batch;
 pub mod submit;
 pub mod sweep;
 pub mod tradeoff;
 pub mod universality;
 pub mod wear_map;
+
+pub use batch::{Progress, most_threads};

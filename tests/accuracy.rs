@@ -3,7 +3,6 @@
 use fretwear::data::RunFile;
 use fretwear::laws::conditions::Conditions;
 use fretwear::numerics::grid::Clustering;
-use fretwear::run::{Run, Shared};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Observer, Plan, Simulation};
@@ -64,11 +63,8 @@ fn error(case: Case, file: &RunFile) -> f64 {
 }
 
 fn run(case: Case, numerics: &str) -> (f64, usize, RunFile) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let run = Run::one_of_many(&scene(case, numerics), &folder.path().join("run.h5"), &Shared::default());
-    let (result, file) = run.expect("a run").execute_keeping(None).expect("an end");
-    let checkpoint = result.checkpoint;
-    (checkpoint.error_estimate.expect("an estimate"), checkpoint.state.compression.len() + 1, file)
+    let results = scene(case, numerics).simulate().expect("an end");
+    (results.error_estimate().expect("an estimate"), results.springs(), results.into_file())
 }
 
 #[test]

@@ -3,11 +3,10 @@
 mod support;
 
 use std::fs;
-use std::path::Path;
 
+use fretwear::Results;
 use fretwear::laws::conditions::Conditions;
 use fretwear::numerics::grid::Clustering;
-use fretwear::run::{Run, RunResult, Shared};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Plan, Simulation};
@@ -76,30 +75,29 @@ fn kinds() -> Vec<(&'static str, String, String)> {
     ]
 }
 
-fn result(scene: &str) -> fretwear::Result<RunResult> {
+fn result(scene: &str) -> fretwear::Result<Results> {
     let scene = Scene::from_toml(scene, "kind.toml").expect("a scene");
-    let run = Run::one_of_many(&scene, Path::new("never-written.h5"), &Shared::default())?;
-    run.execute_keeping(None).map(|(result, _)| result)
+    scene.simulate()
 }
 
 /// What a run misses of one on finer numerics, which are given by hand, relative to the limit or to itself.
-fn miss(found: &RunResult, laws: &str, loading: &str, factor: usize) -> Option<f64> {
-    let springs = (factor * (found.checkpoint.state.compression.len() + 1)).min(240);
+fn miss(found: &Results, laws: &str, loading: &str, factor: usize) -> Option<f64> {
+    let springs = (factor * (found.checkpoint().state.compression.len() + 1)).min(240);
     let finer = scene(laws, loading, &format!("springs = {springs}\ntolerance = 1e-5\nsubsteps = 384"));
-    let finer = result(&finer).ok()?.last.wear_volume;
-    let scale = found.limit.as_ref().map_or(finer, |limit| limit.wear_volume());
-    Some((found.last.wear_volume - finer).abs() / scale)
+    let finer = result(&finer).ok()?.last().wear_volume;
+    let scale = found.limit().map_or(finer, |limit| limit.wear_volume());
+    Some((found.last().wear_volume - finer).abs() / scale)
 }
 
 /// Judges a kind at some accuracy; whether the run kept to it.
 fn judge(name: &str, laws: &str, loading: &str, accuracy: f64, factor: usize) -> f64 {
     let found = result(&scene(laws, loading, &format!("accuracy = {accuracy:e}")));
     let found = found.unwrap_or_else(|error| panic!("{name}: {error}"));
-    let estimate = found.checkpoint.error_estimate.expect("an estimate");
+    let estimate = found.checkpoint().error_estimate.expect("an estimate");
     let missed = miss(&found, laws, loading, factor);
     println!(
         "{name}: {accuracy:e} asked, {estimate:.1e} estimated, {missed:?} missed, V {:.7}",
-        found.last.wear_volume / VOLUME
+        found.last().wear_volume / VOLUME
     );
     assert!(estimate.is_finite() && estimate > 0.0, "{name}: {estimate}");
     assert_eq!(found.accuracy_met(), Some(estimate <= accuracy), "{name}");
@@ -146,10 +144,10 @@ fn edges_that_move_keep_to_the_references_of_another_code_or_say_that_they_do_no
             let tau = number("tau");
             let found =
                 result(&scene(&plain, &format!("{loading}tau = {tau}"), "accuracy = 1e-3")).expect("a run");
-            let estimate = found.checkpoint.error_estimate.expect("an estimate");
+            let estimate = found.checkpoint().error_estimate.expect("an estimate");
             let expected = number("V/(a0^2 d0)");
-            let scale = found.limit.as_ref().map_or(expected, |limit| limit.wear_volume() / VOLUME);
-            let missed = (found.last.wear_volume / VOLUME - expected).abs() / scale;
+            let scale = found.limit().map_or(expected, |limit| limit.wear_volume() / VOLUME);
+            let missed = (found.last().wear_volume / VOLUME - expected).abs() / scale;
             println!("{case}, τ = {tau}: missed {missed:.1e}, estimated {estimate:.1e}");
             let told = estimate > 1e-3;
             assert!(told || missed <= 1e-3, "{case}, τ = {tau}: missed {missed:e}, estimated {estimate:e}");
@@ -175,8 +173,8 @@ fn a_rig_moves_the_contact_so_that_the_first_stick_radius_is_the_one_asked_for()
         let far = contact.amplitude() + force / stiffness;
         let given = schedule.loading(0.0, 0.0).amplitude;
         assert!((given / far - 1.0).abs() < 1e-6, "{part}, {ratio}: {given:e} instead of {far:e}");
-        let run = Run::one_of_many(&scene, Path::new("never-written.h5"), &Shared::default()).expect("a run");
-        let first = run.simulation().cycle().stick_radius / contact.contact_radius();
+        let run = fretwear::Simulation::new(&scene).expect("a run");
+        let first = run.stepping().cycle().stick_radius / contact.contact_radius();
         assert!((first - ratio).abs() < 1e-5, "{part}: {first} instead of {ratio}");
         // An amplitude that is given stays that of the far end.
         let amplitude = format!("indentation = 1e-6\namplitude = 1e-7\ntau = 3\nrig_stiffness = {stiffness}");

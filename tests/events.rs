@@ -5,9 +5,8 @@ mod support;
 use std::fmt::Write;
 use std::fs;
 
-use fretwear::Error;
-use fretwear::data::{RunFile, StopReason};
-use fretwear::run::{Run, RunResult, Shared};
+use fretwear::{Error, Results, StopReason};
+
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
@@ -23,17 +22,15 @@ fn scene(amplitude: &str, end: &str, more: &str) -> String {
     )
 }
 
-fn run(text: &str) -> fretwear::Result<(RunResult, RunFile)> {
-    let folder = tempfile::tempdir().expect("a folder");
-    let scene = Scene::from_toml(text, "events.toml")?;
-    Run::one_of_many(&scene, &folder.path().join("run.h5"), &Shared::default())?.execute_keeping(None)
+fn run(text: &str) -> fretwear::Result<Results> {
+    Scene::from_toml(text, "events.toml")?.simulate()
 }
 
 /// Dimensionless times of the snapshots, and steps.
 fn seen(text: &str) -> (Vec<f64>, u64, f64) {
-    let (result, file) = run(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let times = file.snapshots.iter().map(|snapshot| snapshot.tau).collect();
-    (times, result.checkpoint.progress.steps, result.last.wear_volume)
+    let result = run(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let times = result.tau();
+    (times, result.checkpoint().progress.steps, result.last().wear_volume)
 }
 
 #[test]
@@ -234,20 +231,19 @@ fn the_smallest_rate_that_may_be_asked_for_is_reached_under_every_law() {
             } else {
                 text
             };
-            let folder = tempfile::tempdir().expect("a folder");
             let scene = Scene::from_toml(&text, "rate.toml").unwrap();
-            let run = Run::one_of_many(&scene, &folder.path().join("run.h5"), &Shared::default()).unwrap();
+            let run = fretwear::Simulation::new(&scene).unwrap();
             let result =
-                run.execute(Some(&mut Steps(3000))).unwrap_or_else(|error| panic!("{name}: {error}"));
+                run.run_with(Some(&mut Steps(3000))).unwrap_or_else(|error| panic!("{name}: {error}"));
             println!(
                 "{name}, {rate}: {:?} at τ = {:.3e}, {} steps, {:e} m³",
-                result.stop_reason,
-                result.last.tau,
-                result.checkpoint.progress.steps,
-                result.last.wear_volume
+                result.stop_reason(),
+                result.last().tau,
+                result.checkpoint().progress.steps,
+                result.last().wear_volume
             );
-            assert_ne!(result.stop_reason, StopReason::Interrupted, "{name}: no end after 3000 steps");
-            result.last.wear_volume
+            assert_ne!(result.stop_reason(), StopReason::Interrupted, "{name}: no end after 3000 steps");
+            result.last().wear_volume
         };
         let [late, last] = [at("1e-11"), at("1e-14")];
         assert!((late / last - 1.0).abs() < 1e-3, "{name}: {late:e} and {last:e} m³");

@@ -8,7 +8,7 @@ use std::path::Path;
 use fretwear::Error;
 use fretwear::data::{RunFile, Snapshot, StopReason};
 use fretwear::report::CheckReport;
-use fretwear::run::{Run, RunResult};
+use fretwear::run::{Results, Run, Stop};
 use fretwear::scene::Scene;
 use support::command;
 
@@ -61,14 +61,14 @@ impl Extreme {
     }
 
     /// Runs to the end; what is refused before that must leave nothing behind.
-    fn run_to(&self, output: &Path) -> fretwear::Result<RunResult> {
+    fn run_to(&self, output: &Path) -> fretwear::Result<Results> {
         let scene = Scene::from_toml(&self.text(), "extreme.toml")?;
-        let run = Run::new(&scene, output, false)
+        let run = Run::new(&scene, output, false, &Stop::default())
             .inspect_err(|_| assert!(!output.exists(), "refused and written"))?;
         run.execute(None)
     }
 
-    fn run(&self) -> fretwear::Result<RunResult> {
+    fn run(&self) -> fretwear::Result<Results> {
         let folder = tempfile::tempdir().expect("a folder");
         self.run_to(&folder.path().join("run.h5"))
     }
@@ -78,7 +78,7 @@ impl Extreme {
         match self.run() {
             Err(error @ Error::NotConverged { .. }) => panic!("{error}"),
             Err(error) => error.to_string(),
-            Ok(result) => panic!("ran to {:?}", result.stop_reason),
+            Ok(result) => panic!("ran to {:?}", result.stop_reason()),
         }
     }
 }
@@ -92,13 +92,13 @@ struct Off {
 }
 
 impl Off {
-    fn of(result: &RunResult) -> Self {
-        let limit = result.limit.as_ref().expect("a closed form");
+    fn of(result: &Results) -> Self {
+        let limit = result.limit().expect("a closed form");
         let relative = |found: f64, known: f64| (found / known - 1.0).abs();
         Self {
-            depth: result.distance.as_ref().and_then(|it| it.distance_relative).expect("a limit"),
-            volume: relative(result.last.wear_volume, limit.wear_volume()),
-            radius: relative(result.last.contact_radius, limit.contact_radius_limit()),
+            depth: result.distance().and_then(|it| it.distance_relative).expect("a limit"),
+            volume: relative(result.last().wear_volume, limit.wear_volume()),
+            radius: relative(result.last().contact_radius, limit.contact_radius_limit()),
         }
     }
 
@@ -125,7 +125,11 @@ fn worst(cases: impl IntoIterator<Item = Extreme>) -> Off {
         let off = Off::of(&result);
         println!(
             "k {} n {} {}: {off:?} {:?} after {} steps",
-            case.grading, case.exponent, case.amplitude, result.stop_reason, result.checkpoint.progress.steps
+            case.grading,
+            case.exponent,
+            case.amplitude,
+            result.stop_reason(),
+            result.checkpoint().progress.steps
         );
         most = most.largest(off);
     }
@@ -201,7 +205,7 @@ fn tally(gradings: &[f64], exponents: &[f64], amplitudes: &[f64]) -> (Tally, Off
                 match case.run() {
                     Ok(result) => {
                         let off = Off::of(&result);
-                        let steps = result.checkpoint.progress.steps;
+                        let steps = result.checkpoint().progress.steps;
                         println!(
                             "{name} {:.1e} | {:.1e} | {steps} | {:.2} |",
                             off.depth,
@@ -259,7 +263,7 @@ fn a_rate_that_comes_to_nothing_by_its_quadrature_alone_ends_no_run() {
     let late = |grading: f64, rate: &str| {
         let case = Extreme { grading, end: format!("until_rate = {rate}"), ..Extreme::default() };
         let result = case.run().unwrap();
-        (Off::of(&result), result.stop_reason)
+        (Off::of(&result), result.stop_reason())
     };
     for grading in [0.99, 0.0, -0.9] {
         let (off, stop) = late(grading, "1e-14");
@@ -273,8 +277,8 @@ fn a_rate_that_comes_to_nothing_by_its_quadrature_alone_ends_no_run() {
 fn wear_of_a_cycle() -> f64 {
     let case = Extreme { end: "cycles = 1".into(), wear: 1e-14, ..Extreme::default() };
     let result = case.run().unwrap();
-    let deepest = result.last.wear_depth.iter().fold(0.0_f64, |m, w| m.max(*w));
-    deepest / result.limit.unwrap().wear_depth_max() / 1e-14
+    let deepest = result.last().wear_depth.iter().fold(0.0_f64, |m, w| m.max(*w));
+    deepest / result.limit().unwrap().wear_depth_max() / 1e-14
 }
 
 #[test]
@@ -291,8 +295,8 @@ fn one_cycle_after_the_other_never_wears_beyond_the_limit() {
         let steady = steady.run().unwrap();
         match case.run() {
             Ok(result) => {
-                let limit = result.limit.as_ref().unwrap().wear_volume();
-                let (worn, known) = (result.last.wear_volume / limit, steady.last.wear_volume / limit);
+                let limit = result.limit().unwrap().wear_volume();
+                let (worn, known) = (result.last().wear_volume / limit, steady.last().wear_volume / limit);
                 let off = (worn - known).abs();
                 println!("{share:e} of the limit a cycle: {worn:e} after 100, {off:.1e} from small steps");
                 assert!(share <= 2e-2 && worn > 0.0 && worn < 1.0, "{share:e}: {worn:e}");
@@ -323,10 +327,9 @@ fn a_million_million_cycles_are_run_or_refused_but_never_waited_for() {
     // τ = 28 and 2.8e6.
     let implicit = with("implicit", 1e-19, "cycles = 1e12").run().unwrap();
     let explicit = with("cycle-jump", 1e-19, "cycles = 1e12").run().unwrap();
-    let [a, b] =
-        [&implicit, &explicit].map(|it| it.last.wear_volume / it.limit.as_ref().unwrap().wear_volume());
+    let [a, b] = [&implicit, &explicit].map(|it| it.last().wear_volume / it.limit().unwrap().wear_volume());
     assert!(
-        (a - b).abs() < 1e-4 && implicit.last.cycles == 1e12 && explicit.last.cycles == 1e12,
+        (a - b).abs() < 1e-4 && implicit.last().cycles == 1e12 && explicit.last().cycles == 1e12,
         "{a} and {b}"
     );
     let off = Off::of(&with("implicit", 1e-14, "cycles = 1e12").run().unwrap());
@@ -395,9 +398,9 @@ fn depths(grading: f64, exponent: f64, stick_ratio: f64, numerics: &str) -> (Vec
     let output = folder.path().join("run.h5");
     let text = case.text().replace("snapshots = 3", "at_tau = [0.01, 0.3, 2.0, 6.0]");
     let scene = Scene::from_toml(&text, "depths.toml").unwrap();
-    let result = Run::new(&scene, &output, false).unwrap().execute(None).unwrap();
+    let result = Run::new(&scene, &output, false, &Stop::default()).unwrap().execute(None).unwrap();
     let file = RunFile::open(&output).unwrap();
-    (file.header.radius, file.snapshots, result.limit.unwrap().wear_depth_max())
+    (file.header.radius, file.snapshots, result.limit().unwrap().wear_depth_max())
 }
 
 #[test]
@@ -426,8 +429,8 @@ fn five_thousand_springs_make_a_step() {
     let numerics = "springs = 5000\ntolerance = 1e-2".to_owned();
     let result = Extreme { numerics, end: "cycles = 1".into(), ..Extreme::default() }.run().unwrap();
     let few = Extreme { end: "cycles = 1".into(), ..Extreme::default() }.run().unwrap();
-    let off = (result.last.wear_volume / few.last.wear_volume - 1.0).abs();
-    assert!(off < 1e-3, "{} and {}", result.last.wear_volume, few.last.wear_volume);
+    let off = (result.last().wear_volume / few.last().wear_volume - 1.0).abs();
+    assert!(off < 1e-3, "{} and {}", result.last().wear_volume, few.last().wear_volume);
 }
 
 /// What a snapshot holds, in the powers of length and stiffness that it has.

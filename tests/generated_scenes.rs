@@ -5,16 +5,14 @@ mod support;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fretwear::Error;
 use fretwear::data::Snapshot;
 use fretwear::report::CheckReport;
-use fretwear::run::{Run, Shared};
 use fretwear::scene::schema::is_key;
+use fretwear::{Error, Simulation, Stop};
 use support::command;
 use support::scenes::{Length, RandomScene};
 
@@ -38,12 +36,12 @@ enum End {
 }
 
 /// Does something, and asks to stop, as a signal would, where it takes longer than `most`.
-fn stopped_after<T>(most: Duration, stop: &AtomicBool, action: impl FnOnce() -> T) -> T {
+fn stopped_after<T>(most: Duration, stop: &Stop, action: impl FnOnce() -> T) -> T {
     let (done, waiting) = mpsc::channel::<()>();
     thread::scope(|scope| {
         scope.spawn(move || {
             if let Err(mpsc::RecvTimeoutError::Timeout) = waiting.recv_timeout(most) {
-                stop.store(true, Ordering::Relaxed);
+                stop.stop();
             }
         });
         let result = action();
@@ -78,8 +76,8 @@ fn judge(random: &RandomScene, patience: Duration) -> Result<(End, String), Stri
         Err(error) => return Err(format!("read with an error that shows no place: {error}")),
     };
     let checked = CheckReport::new(&scene);
-    let shared = Shared::default();
-    let run = Run::one_of_many(&scene, &folder.path().join("run.h5"), &shared);
+    let stop = Stop::default();
+    let run = Simulation::new(&scene).map(|run| run.stopped_by(&stop));
     let run = match (checked, run) {
         (Ok(_), Ok(run)) => run,
         (Err(check), Err(run)) => {
@@ -96,20 +94,20 @@ fn judge(random: &RandomScene, patience: Duration) -> Result<(End, String), Stri
         (Err(error), Ok(_)) => return Err(format!("run says yes, check says {error}")),
     };
     // Coarser runs for the estimate of the error are stopped as well.
-    match stopped_after(patience, &shared.stop, || run.execute_keeping(None)) {
-        Ok((result, file)) => {
-            if let Some(off) = file.snapshots.iter().find(|snapshot| !numbers_are_numbers(snapshot)) {
+    match stopped_after(patience, &stop, || run.run()) {
+        Ok(result) => {
+            if let Some(off) = result.snapshots().iter().find(|snapshot| !numbers_are_numbers(snapshot)) {
                 return Err(format!("not a number at τ = {}", off.tau));
             }
-            let stopped = result.stop_reason == fretwear::data::StopReason::Interrupted;
+            let stopped = result.stop_reason() == fretwear::data::StopReason::Interrupted;
             Ok(if stopped {
                 (
                     End::Stopped,
                     format!(
                         "τ = {:e}, {} steps, {} evaluations",
-                        result.last.tau,
-                        result.checkpoint.progress.steps,
-                        result.checkpoint.progress.rate_evaluations
+                        result.last().tau,
+                        result.checkpoint().progress.steps,
+                        result.checkpoint().progress.rate_evaluations
                     ),
                 )
             } else {

@@ -121,7 +121,7 @@ fn no_more_threads_are_started_than_there_are_cores() {
     fs::write(at.join("scene.toml"), SCENE.replace("cycles = 1e6", "tau = 0.1")).unwrap();
     let study = "scene = \"scene.toml\"\n[[axes]]\nkey = \"friction.coulomb.coefficient\"\nvalues = [0.7]\n";
     fs::write(at.join("study.toml"), study).unwrap();
-    let most = fretwear::run::most_threads();
+    let most = fretwear::study::most_threads();
     let many = ["sweep", "study.toml", "-o", "many", "--quiet", "--threads", "65535"];
     let output = ended(program(at, &many));
     let message = text(&output.stderr);

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Folders of src, a file of the same name included, from the bottom up.
-const LAYERS: [&str; 14] = [
+const LAYERS: [&str; 15] = [
     "error", "units", "numerics", "laws", "contact", "solver", "data", "scene", "run", "report", "study",
-    "figures", "lib", "main",
+    "figures", "lib", "cli", "main",
 ];
 
 /// Circles that are still to be untied.

@@ -317,7 +317,7 @@ fn a_run_until_a_rate_with_blocks_resumes_to_the_same_end() {
     let folder = folder_with(&mode.scene("snapshots = 5"));
     let scene = Scene::read(&folder.path().join("scene.toml")).expect("a scene");
     let (result, [expected, found], _) = whole_and_in_parts(&scene, folder.path(), 11);
-    assert_eq!(result.stop_reason, StopReason::Rate);
+    assert_eq!(result.stop_reason(), StopReason::Rate);
     assert!(found == expected);
 }
 

@@ -16,7 +16,7 @@ use fretwear::laws::history::History;
 use fretwear::laws::loading::{Amplitude, Duration, Load, Loading, TangentialControl};
 use fretwear::laws::wear::{Archard, WearLaw};
 use fretwear::numerics::grid::Clustering;
-use fretwear::run::Run;
+use fretwear::run::{Run, Stop};
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule, State};
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
@@ -470,8 +470,9 @@ fn resumes_to_the_same_bits_however_the_edge_moves() {
         let text = format!("{text}[numerics]\nsprings = 30\n[output]\nsnapshots = 5\n");
         let scene = Scene::from_toml(&text, "scene.toml").expect(name);
         let (_, [expected, found], interruptions) = whole_and_in_parts(&scene, folder.path(), 4);
-        let again = Run::new(&scene, &folder.path().join("again.h5"), false).expect("a run");
-        assert!(again.simulation().model().moving().is_some(), "{name}");
+        let again =
+            Run::new(&scene, &folder.path().join("again.h5"), false, &Stop::default()).expect("a run");
+        assert!(again.stepping().model().moving().is_some(), "{name}");
         assert!(interruptions >= 2, "{name}: {interruptions}");
         assert!(found == expected, "{name}");
     }

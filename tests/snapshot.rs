@@ -449,7 +449,11 @@ fn what_cannot_be_written_is_refused_before_the_run() {
     drop(RunWriter::create(&path, header(3), false).expect("a new file"));
     assert!(names(folder.path()).is_empty(), "nothing is created before the first save");
     fs::write(&path, "mine").expect("a file");
-    assert!(refusal(&path, false).contains("--force"), "{}", refusal(&path, false));
+    assert!(
+        refusal(&path, false).contains("exists already; choose another output"),
+        "{}",
+        refusal(&path, false)
+    );
     drop(RunWriter::create(&path, header(3), true).expect("overwriting"));
     assert_eq!(
         fs::read_to_string(&path).expect("the file"),

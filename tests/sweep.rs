@@ -105,8 +105,8 @@ fn threads_and_shards_change_no_bit() {
     assert!(bits(&one) == bits(&two) && bits(&one) == bits(&five));
     // and the numbers are those of a run by itself
     let scene = place.study().scene(9).unwrap();
-    let run = fretwear::run::Run::new(&scene, &place.path("run.h5"), false).unwrap().execute(None).unwrap();
-    assert_eq!(numbers(&one, "wear_volume")[9].to_bits(), run.last.wear_volume.to_bits());
+    let run = scene.simulate().unwrap();
+    assert_eq!(numbers(&one, "wear_volume")[9].to_bits(), run.last().wear_volume.to_bits());
     assert_eq!(numbers(&one, "input_friction_coulomb_coefficient")[9], 0.5);
     assert_eq!(
         std::fs::read_dir(place.path("five/parts")).unwrap().count(),
@@ -188,7 +188,7 @@ fn snapshots_are_kept_where_asked_for() {
     assert_eq!(file.runs.iter().map(|(scene, _)| *scene).collect::<Vec<_>>(), [1, 4]);
     let scene = place.study().scene(4).unwrap();
     let alone = place.path("alone.h5");
-    fretwear::run::Run::new(&scene, &alone, false).unwrap().execute(None).unwrap();
+    scene.simulate().unwrap().save(&alone).unwrap();
     let alone = fretwear::data::RunFile::open(&alone).unwrap();
     assert_eq!((&file.runs[1].1.header, &file.runs[1].1.snapshots), (&alone.header, &alone.snapshots));
 }

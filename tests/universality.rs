@@ -59,7 +59,11 @@ fn refused(text: &str) -> String {
 
 fn execute(study: &UniversalityStudy, folder: &Path, threads: usize) -> Outcome {
     let options = Options { threads: Some(threads), overwrite: false };
-    Universality::new(study, folder, &options).unwrap().execute(None).unwrap().expect("no signal came")
+    Universality::new(study, folder, &options, &fretwear::Stop::default())
+        .unwrap()
+        .execute(None)
+        .unwrap()
+        .expect("no signal came")
 }
 
 fn row<'a>(outcome: &'a Outcome, name: &str) -> &'a CaseResult {

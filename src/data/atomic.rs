@@ -31,7 +31,7 @@ impl AtomicFile {
             Ok(found) if found.is_dir() => return refuse("is a directory; name a file in it"),
             Ok(found) if !found.is_file() => return refuse(&format!("is not a regular file; {CHOOSE}")),
             Ok(_) if !overwrite => {
-                return refuse(&format!("exists already; give --force to overwrite it, or {CHOOSE}"));
+                return Err(Error::Exists { path: path.to_owned() });
             }
             Ok(_) => fs::canonicalize(path),
             Err(error) if error.kind() == ErrorKind::NotFound => end_of_links(path),

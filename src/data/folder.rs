@@ -45,7 +45,7 @@ pub fn check_own(path: &Path, mark: Mark) -> Result<()> {
         false => Ok(()),
         true => Err(Error::File {
             path: path.to_owned(),
-            why: "exists and was not written by fretwear, which --force does not replace unless it is named; move it away, or choose another output"
+            why: "exists and was not written by fretwear, so that it is replaced only where it is named; move it away, or choose another output"
                 .into(),
         }),
     }
@@ -105,31 +105,4 @@ pub(crate) fn check_can_be_made(folder: &Path) -> Result<()> {
         return make_folder(there);
     }
     Scratch::new(there, "a check").map(drop).map_err(|error| failure(there, &error))
-}
-
-/// A number with all its digits; nothing where it is not a number.
-pub(crate) fn cell(value: f64) -> String {
-    if value.is_nan() { String::new() } else { format!("{value:e}") }
-}
-
-/// A cell of words; quotes where it needs them.
-pub(crate) fn quoted(word: &str) -> String {
-    match word.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", word.replace('"', "\"\"")),
-        false => word.to_owned(),
-    }
-}
-
-/// A table with its header.
-///
-/// # Arguments
-/// * `names` -- of the columns
-/// * `rows` -- as many cells each
-pub(crate) fn table<'a>(
-    names: impl Iterator<Item = &'a str>,
-    rows: impl Iterator<Item = Vec<String>>,
-) -> String {
-    let mut table = names.collect::<Vec<_>>().join(",") + "\n";
-    rows.for_each(|cells| table += &(cells.join(",") + "\n"));
-    table
 }

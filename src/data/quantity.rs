@@ -3,9 +3,9 @@
 
 use serde::{Serialize, Serializer};
 
+use super::cells::{cell, quoted, table};
 pub use super::dataset::{Quantity, quantity};
 use super::dataset::{Values, Variable, Words};
-use super::folder::{cell, quoted, table};
 
 /// What is read off a record.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,6 +7,7 @@ use hdf5::Group;
 use super::dataset::{Attribute, Dataset, Number, Variable, WRITE_AGAIN, text};
 use super::layout::*;
 use super::reader::{OpenFile, Wanted};
+use super::save::Save;
 use super::seal::ResultPath;
 use super::{Checkpoint, Format, LimitCurves, RunHeader, Snapshot, StopReason};
 use crate::contact::indenter::TabulatedProfile;
@@ -83,16 +84,7 @@ impl RunFile {
     }
 }
 
-/// Everything that one save stores.
-pub(super) struct Run<'a> {
-    pub header: &'a RunHeader,
-    pub snapshots: &'a [Snapshot],
-    pub checkpoint: &'a Checkpoint,
-    pub stop_reason: StopReason,
-    pub complete: bool,
-}
-
-impl Run<'_> {
+impl Save<'_> {
     /// The dataset of a file of its own, or of a group of one with many runs.
     pub(super) fn dataset(&self) -> Dataset {
         let mut run = Dataset::default();

@@ -30,8 +30,6 @@ const HEAD: usize = LENGTH - 32;
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 
 const NOT_A_RESULT: &str = "give a file that `fretwear run` or another of its commands wrote";
-const CURE: &str = "write it again with the command that wrote it, or give --unchecked to info, export, plot, report or run --resume, which \
-                    then read it as it is";
 
 /// A result file to be read, and whether its checksum is still to be compared.
 ///
@@ -62,7 +60,7 @@ impl<'a> ResultPath<'a> {
         let mut file = open(path)?;
         let length = file.metadata().map_err(failed)?.len();
         let mut seal = [0; LENGTH];
-        let refuse = |why: &str| Err(Error::File { path: path.to_owned(), why: format!("{why}; {CURE}") });
+        let refuse = |why: &str| Err(Error::Unsealed { path: path.to_owned(), why: why.to_owned() });
         if length > LENGTH as u64 {
             file.seek(SeekFrom::End(-(LENGTH as i64))).map_err(failed)?;
             file.read_exact(&mut seal).map_err(failed)?;

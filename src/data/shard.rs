@@ -8,7 +8,7 @@ use super::atomic::AtomicFile;
 use super::dataset::{Attribute, Dataset, Quantity, Values, Variable, quantity, text};
 use super::labelled::{create_group, file_on_disk, put_dataset};
 use super::reader::{OpenFile, Wanted, variable};
-use super::run_file::Run;
+use super::save::Save;
 use super::seal::{ResultPath, seal};
 use super::{Format, RunFile};
 use crate::error::{Error, Result};
@@ -143,7 +143,7 @@ impl SweepFile {
                 let RunFile { header, snapshots, checkpoint, stop_reason, complete, .. } = run;
                 let checkpoint = &checkpoint.clone().unwrap_or_default();
                 let run =
-                    Run { header, snapshots, checkpoint, stop_reason: *stop_reason, complete: *complete };
+                    Save { header, snapshots, checkpoint, stop_reason: *stop_reason, complete: *complete };
                 put_dataset(&create_group(&group, &scene.to_string())?, &run.dataset())?;
             }
         }

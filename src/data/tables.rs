@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::Format;
+use super::cells::{cell, quoted, table};
 use super::dataset::{Dataset, Values, Variable};
-use super::folder::{cell, quoted, table};
 use super::layout::FLAG_MEANINGS;
 use super::reader::{OpenFile, Wanted};
 use super::seal::ResultPath;

@@ -1,16 +1,17 @@
-//! Writing files: of a dataset at once, of a run with each of its saves.
+//! The snapshots of a run while it goes on, and the file that they are saved to.
 
-use std::path::{Path, PathBuf};
+#[cfg(feature = "hdf5")]
+use std::path::Path;
 
-use super::atomic::AtomicFile;
-use super::dataset::Dataset;
-use super::labelled::{laid_out, put_dataset};
-use super::run_file::{Run, RunFile};
-use super::seal::sealed;
+#[cfg(feature = "hdf5")]
+use super::RunFile;
+use super::save::Save;
+#[cfg(feature = "hdf5")]
+use super::target::Target;
 use super::{Checkpoint, RunHeader, Snapshot, StopReason};
 use crate::error::Result;
 
-/// Collects the snapshots of a run and saves them, each time as one whole file.
+/// Collects the snapshots of a run and saves them, each time as one whole file, where there is one.
 ///
 /// ```
 /// use fretwear::data::{Checkpoint, RunFile, RunHeader, RunWriter, Snapshot, StopReason};
@@ -28,31 +29,61 @@ use crate::error::Result;
 /// ```
 #[derive(Debug)]
 pub struct RunWriter {
-    file: Target,
+    file: Option<Target>,
     header: RunHeader,
     snapshots: Vec<Snapshot>,
 }
 
-/// The file that is written.
+/// There is no file without HDF5.
+#[cfg(not(feature = "hdf5"))]
 #[derive(Debug)]
-enum Target {
-    /// One that was seen to be writable.
-    Ready(AtomicFile),
-    /// One that is looked at when it is first written.
-    Later(PathBuf),
+enum Target {}
+
+#[cfg(not(feature = "hdf5"))]
+impl Target {
+    fn save(&mut self, _: &Save) -> Result<()> {
+        match *self {}
+    }
 }
 
-impl Dataset {
-    /// Writes a file, as a whole or not at all.
+#[cfg(feature = "hdf5")]
+impl RunWriter {
+    /// A writer of a new file. Checks that the file can be written; creates nothing before the first save.
+    ///
+    /// # Arguments
+    /// * `path` -- the file, in a directory that exists
+    /// * `header` -- what does not change during the run
+    /// * `overwrite` -- whether a file that exists may be replaced (at the first save, not before)
     ///
     /// # Errors
-    /// [`Error::File`](crate::Error::File) if the file exists and `overwrite` is not given, or cannot be written.
+    /// [`Error::Exists`](crate::Error::Exists) if the file exists and may not be replaced, [`Error::File`](crate::Error::File) if its directory
+    /// is missing or cannot be written.
     ///
     /// # Panics
-    /// If a variable runs along a dimension that has no coordinate before it.
-    pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
-        let mut file = AtomicFile::new(path, overwrite)?;
-        file.write(&sealed(laid_out(path, |file| put_dataset(file, self))?))
+    /// As [`RunWriter::in_memory`].
+    pub fn create(path: &Path, header: RunHeader, overwrite: bool) -> Result<Self> {
+        Self::with_snapshots(path, header, Vec::new(), overwrite)
+    }
+
+    /// A writer that goes on after `snapshots`; see [`RunFile::into_writer`].
+    pub(crate) fn with_snapshots(
+        path: &Path,
+        header: RunHeader,
+        snapshots: Vec<Snapshot>,
+        overwrite: bool,
+    ) -> Result<Self> {
+        let file = Some(Target::new(path, overwrite)?);
+        Ok(Self { file, snapshots, ..Self::in_memory(header) })
+    }
+
+    /// A writer that does not look at its file before the first save, which replaces what is there.
+    pub fn deferred(path: &Path, header: RunHeader) -> Self {
+        Self { file: Some(Target::Later(path.to_owned())), ..Self::in_memory(header) }
+    }
+
+    /// The file that is written, behind all links; none for what stays in memory.
+    pub fn path(&self) -> Option<&Path> {
+        self.file.as_ref().map(Target::path)
     }
 }
 
@@ -66,42 +97,19 @@ impl RunHeader {
 }
 
 impl RunWriter {
-    /// A writer of a new file. Checks that the file can be written; creates nothing before the first save.
-    ///
-    /// # Arguments
-    /// * `path` -- the file, in a directory that exists
-    /// * `header` -- what does not change during the run
-    /// * `overwrite` -- whether a file that exists may be replaced (at the first save, not before)
-    ///
-    /// # Errors
-    /// [`Error::File`](crate::Error::File) if the file exists and may not be replaced, or its directory is missing or cannot be written.
+    /// Keeps the snapshots and has no file.
     ///
     /// # Panics
     /// If there are no nodes, or a curve of the limit does not have one value per node.
-    pub fn create(path: &Path, header: RunHeader, overwrite: bool) -> Result<Self> {
-        Self::with_snapshots(path, header, Vec::new(), overwrite)
-    }
-
-    /// A writer that goes on after `snapshots`; see [`RunFile::into_writer`](super::RunFile::into_writer).
-    pub(super) fn with_snapshots(
-        path: &Path,
-        header: RunHeader,
-        snapshots: Vec<Snapshot>,
-        overwrite: bool,
-    ) -> Result<Self> {
+    pub fn in_memory(header: RunHeader) -> Self {
         header.check();
-        Ok(Self { file: Target::Ready(AtomicFile::new(path, overwrite)?), header, snapshots })
-    }
-
-    /// A writer that does not look at its file before the first save, which replaces what is there.
-    pub fn deferred(path: &Path, header: RunHeader) -> Self {
-        Self { file: Target::Later(path.to_owned()), header, snapshots: Vec::new() }
+        Self { file: None, header, snapshots: Vec::new() }
     }
 
     /// Forgets the snapshots so far, for a run that is made anew; what was saved stays until the next save.
     ///
     /// # Panics
-    /// As [`RunWriter::create`].
+    /// As [`RunWriter::in_memory`].
     pub fn restart(&mut self, header: RunHeader) {
         header.check();
         self.header = header;
@@ -140,15 +148,7 @@ impl RunWriter {
         &self.snapshots
     }
 
-    /// The file that is written.
-    pub fn path(&self) -> &Path {
-        match &self.file {
-            Target::Ready(file) => file.path(),
-            Target::Later(path) => path,
-        }
-    }
-
-    /// Replaces the file by one with all snapshots so far, and returns when it is safe on the disk.
+    /// Replaces the file by one with all snapshots so far, and returns when it is safe on the disk; without a file nothing is done.
     ///
     /// # Arguments
     /// * `checkpoint` -- what a restart needs
@@ -158,18 +158,13 @@ impl RunWriter {
     /// # Errors
     /// [`Error::File`](crate::Error::File) names the file and the cure; the previous save is then still there.
     pub fn save(&mut self, checkpoint: &Checkpoint, stop_reason: StopReason, complete: bool) -> Result<()> {
-        let run = Run { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
-        let bytes = sealed(laid_out(self.path(), |file| put_dataset(file, &run.dataset()))?);
-        if let Target::Later(path) = &self.file {
-            self.file = Target::Ready(AtomicFile::new(path, true)?);
-        }
-        match &mut self.file {
-            Target::Ready(file) => file.write(&bytes),
-            Target::Later(_) => unreachable!("made ready above"),
-        }
+        let save =
+            Save { header: &self.header, snapshots: &self.snapshots, checkpoint, stop_reason, complete };
+        self.file.as_mut().map_or(Ok(()), |file| file.save(&save))
     }
 }
 
+#[cfg(feature = "hdf5")]
 impl RunFile {
     /// A writer that goes on after the snapshots of this file and replaces `path` at its first save.
     ///

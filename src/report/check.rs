@@ -11,7 +11,7 @@ use crate::contact::stick_slip::Regime;
 use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::loading::Duration;
-use crate::run::{Expected, Run};
+use crate::run::{Expected, Simulation};
 use crate::scene::Scene;
 
 /// Steepest flank at the edge of contact that is not worth a word.
@@ -104,9 +104,9 @@ impl CheckReport {
     /// Derives the quantities of a scene that can be run.
     ///
     /// # Errors
-    /// Those of [`Run::check`]: all that a run refuses before its first step.
+    /// Those of [`Simulation::check`]: all that a run refuses before its first step.
     pub fn new(scene: &Scene) -> Result<Self> {
-        let Expected { seconds, warning } = Run::check(scene)?;
+        let Expected { seconds, warning } = Simulation::check(scene)?;
         let mut report = Self::derived(scene)?;
         report.warnings.extend(warning);
         Ok(Self { seconds_expected: seconds, ..report })

@@ -133,10 +133,10 @@ impl ProfileTable {
     fn at(indenter: &Indenter, limit: Option<&LimitingShape>, radii: &[f64]) -> Result<Self> {
         for &radius in radii {
             if !(radius >= 0.0 && radius.is_finite()) {
-                return Err(bad_option("--at", format!("{radius} m is no radius; give numbers from 0 up")));
+                return Err(bad_option("at", format!("{radius} m is no radius; give numbers from 0 up")));
             }
             if !indenter.profile(radius).is_finite() {
-                return Err(bad_option("--at", format!("the indenter does not reach out to {radius} m")));
+                return Err(bad_option("at", format!("the indenter does not reach out to {radius} m")));
             }
         }
         let depths = limit.map(|shape| radii.iter().map(|&radius| shape.wear_depth(radius)).collect());
@@ -201,7 +201,7 @@ fn steps(count: usize) -> impl Iterator<Item = f64> {
 /// Reads radii such as `1e-6,0.5 mm,20um`, separated by commas; a number without unit is in m.
 ///
 /// # Errors
-/// [`Error::Inconsistent`](crate::Error::Inconsistent) names the entry and the cure.
+/// [`Error::Option`](crate::Error::Option) names the entry and the cure.
 ///
 /// # Examples
 /// ```
@@ -210,7 +210,7 @@ fn steps(count: usize) -> impl Iterator<Item = f64> {
 /// ```
 pub fn parse_radii(list: &str) -> Result<Vec<f64>> {
     let read = |(place, entry): (usize, &str)| {
-        let refuse = |why: String| Err(bad_option("--at", format!("entry {}: {why}", place + 1)));
+        let refuse = |why: String| Err(bad_option("at", format!("entry {}: {why}", place + 1)));
         let entry = entry.trim();
         if entry.is_empty() {
             return refuse("is empty; give radii such as 0,1e-5,\"20 um\"".into());

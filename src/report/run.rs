@@ -1,12 +1,14 @@
 //! `fretwear run`: what a run came to.
 
+use std::path::Path;
+
 use serde::Serialize;
 
 use super::text::{Scale, TextTable, indenter, number};
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::indenter::Indenter;
 use crate::data::quantity::Entries;
-use crate::run::RunResult;
+use crate::run::Results;
 use crate::run::readings::RUN;
 
 /// The outcome of a run in SI; the keys of the JSON are the result file and [`RUN`].
@@ -17,28 +19,42 @@ pub struct RunReport<'a> {
     #[serde(flatten)]
     readings: Entries,
     #[serde(skip)]
-    result: &'a RunResult,
+    result: &'a Results,
 }
 
 impl<'a> RunReport<'a> {
     /// Describes what a run came to.
-    pub fn new(result: &'a RunResult) -> Self {
-        Self { output: result.output.display().to_string(), readings: Entries::new(&RUN, result), result }
+    ///
+    /// # Arguments
+    /// * `output` -- the result file
+    pub fn new(result: &'a Results, output: &Path) -> Self {
+        Self { output: output.display().to_string(), readings: Entries::new(&RUN, result), result }
     }
 
     /// A table for people.
     pub fn text(&self) -> String {
-        let RunResult { last, checkpoint, limit, distance, .. } = self.result;
+        let mut rows = self.rows(&format!("by a signal; go on with fretwear run --resume {}", self.output));
+        rows.row("written to", &self.output);
+        rows.text()
+    }
+
+    /// All but the file.
+    ///
+    /// # Arguments
+    /// * `interrupted` -- what is said of a run that was stopped
+    fn rows(&self, interrupted: &str) -> TextTable {
+        let (last, checkpoint, limit) = (self.result.last(), self.result.checkpoint(), self.result.limit());
+        let distance = self.result.distance();
         let mut rows = TextTable::default();
-        if let table @ Indenter::Table(_) = &self.result.indenter {
+        if let table @ Indenter::Table(_) = self.result.indenter() {
             rows.row("indenter", indenter(table));
         }
-        let stopped = match self.result.stop_reason.name() {
+        let stopped = match self.result.stop_reason().name() {
             "end" => "at its end".to_owned(),
             "rate" => "when the rate of worn volume had fallen as asked".to_owned(),
             "unending" => "because the rate of worn volume asked for is never reached".to_owned(),
             "worn-out" => "with no pressure left outside the stick zone".to_owned(),
-            _ => format!("by a signal; go on with fretwear run --resume {}", self.output),
+            _ => interrupted.to_owned(),
         };
         rows.row("stopped", stopped);
         rows.row("cycles", number(last.cycles));
@@ -80,7 +96,13 @@ impl<'a> RunReport<'a> {
                 Scale::TIME.show(checkpoint.wall_seconds)
             ),
         );
-        rows.row("written to", &self.output);
-        rows.text()
+        rows
+    }
+}
+
+impl Results {
+    /// What the run came to, a table for people.
+    pub fn summary(&self) -> String {
+        RunReport::new(self, Path::new("")).rows("before its end").text()
     }
 }

@@ -1,7 +1,8 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
 use super::accuracy::budget::{MOST_RAISED, smallness, springs_for};
-use super::{SPRINGS_TO_SLIDE, memory_figure};
+use super::memory::memory_figure;
+use super::parts::SPRINGS_TO_SLIDE;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};

@@ -1,6 +1,6 @@
 //! What a run and a closed form come to, each result declared once: JSON, columns of sweeps and lines for people are made from it.
 
-use super::RunResult;
+use super::Results;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::data::quantity::{Reading, number, word};
@@ -9,13 +9,13 @@ use crate::error::Result;
 use crate::scene::Scene;
 
 /// The results of a run, in the order of the keys of the JSON.
-pub const RUN: [Reading<RunResult>; 18] = [
-    word("stop_reason", "why the run stopped", |it| it.stop_reason.name().into()),
+pub const RUN: [Reading<Results>; 18] = [
+    word("stop_reason", "why the run stopped", |it| it.stop_reason().name().into()),
     number(
         "error_estimate",
         "1",
         "estimated error of worn volume and profile, relative to those of the limit",
-        |it| it.checkpoint.error_estimate.into(),
+        |it| it.checkpoint().error_estimate.into(),
     ),
     number(
         "accuracy_met",
@@ -23,33 +23,33 @@ pub const RUN: [Reading<RunResult>; 18] = [
         "1 if the estimated error is as small as was asked for, 0 if not; missing where springs were given by hand",
         |it| it.accuracy_met().into(),
     ),
-    number("cycles", "1", "number of fretting cycles", |it| it.last.cycles.into()),
-    number("tau", "1", "dimensionless time", |it| it.last.tau.into()),
-    number("steps", "1", "steps accepted", |it| it.checkpoint.progress.steps.into()),
-    number("rejected_steps", "1", "steps rejected", |it| it.checkpoint.progress.rejected_steps.into()),
+    number("cycles", "1", "number of fretting cycles", |it| it.last().cycles.into()),
+    number("tau", "1", "dimensionless time", |it| it.last().tau.into()),
+    number("steps", "1", "steps accepted", |it| it.checkpoint().progress.steps.into()),
+    number("rejected_steps", "1", "steps rejected", |it| it.checkpoint().progress.rejected_steps.into()),
     number("rate_evaluations", "1", "evaluations of the wear rate", |it| {
-        it.checkpoint.progress.rate_evaluations.into()
+        it.checkpoint().progress.rate_evaluations.into()
     }),
-    number("wall_seconds", "s", "wall time used", |it| it.checkpoint.wall_seconds.into()),
-    number("indentation", "m", "indentation depth", |it| it.last.indentation.into()),
-    number("normal_force", "N", "normal force", |it| it.last.normal_force.into()),
-    number("contact_radius", "m", "contact radius", |it| it.last.contact_radius.into()),
-    number("stick_radius", "m", "radius of the stick zone", |it| it.last.stick_radius.into()),
-    number("wear_volume", "m3", "worn volume", |it| it.last.wear_volume.into()),
+    number("wall_seconds", "s", "wall time used", |it| it.checkpoint().wall_seconds.into()),
+    number("indentation", "m", "indentation depth", |it| it.last().indentation.into()),
+    number("normal_force", "N", "normal force", |it| it.last().normal_force.into()),
+    number("contact_radius", "m", "contact radius", |it| it.last().contact_radius.into()),
+    number("stick_radius", "m", "radius of the stick zone", |it| it.last().stick_radius.into()),
+    number("wear_volume", "m3", "worn volume", |it| it.last().wear_volume.into()),
     number("wear_volume_limit", "m3", "worn volume in the limit of many cycles", |it| {
-        it.limit.as_ref().map(LimitingShape::wear_volume).into()
+        it.limit().map(LimitingShape::wear_volume).into()
     }),
     number(
         "limit_distance",
         "1",
         "largest distance of the profile to the limit, over the indentation",
-        |it| it.distance.map(|it| it.distance).into(),
+        |it| it.distance().map(|it| it.distance).into(),
     ),
     number("limit_distance_relative", "1", "the same over the largest wear depth of the limit", |it| {
-        it.distance.and_then(|LimitDistance { distance_relative, .. }| distance_relative).into()
+        it.distance().and_then(|LimitDistance { distance_relative, .. }| distance_relative).into()
     }),
     number("dissipated_energy", "J", "energy dissipated by friction since the start", |it| {
-        it.last.dissipated_energy.into()
+        it.last().dissipated_energy.into()
     }),
 ];
 

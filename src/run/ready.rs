@@ -1,6 +1,7 @@
 //! What a run comes to before its first step. What it refuses is refused here, for `run` and for `check`.
 
-use super::{Parts, cost};
+use super::cost;
+use super::parts::Parts;
 use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
 use crate::scene::Scene;

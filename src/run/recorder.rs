@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use super::Shared;
 use super::accuracy::budget;
 use super::accuracy::estimate::Companions;
-use super::{Shared, worn_profile};
+use super::limit::worn_profile;
 use crate::data::{Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
@@ -69,7 +70,7 @@ fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
     found
 }
 
-/// Takes snapshots and checkpoints, and listens to signals.
+/// Takes snapshots and checkpoints, and stops the run when it is asked to.
 pub(super) struct Recorder {
     pub(super) writer: RunWriter,
     interval: Duration,
@@ -90,9 +91,9 @@ impl Recorder {
     const WORTH_KEEPING: f64 = 0.2;
 
     pub(super) fn new(scene: &Scene, writer: RunWriter, wall_seconds_before: f64, shared: &Shared) -> Self {
-        let interval = shared.checkpoint_interval.unwrap_or(scene.numerics().checkpoint_interval);
-        let interval = Duration::from_secs_f64(interval);
-        let (now, stop) = (Instant::now(), Arc::clone(&shared.stop));
+        let of_scene = || Duration::from_secs_f64(scene.numerics().checkpoint_interval);
+        let interval = shared.checkpoint_interval.unwrap_or_else(of_scene);
+        let (now, stop) = (Instant::now(), Arc::clone(shared.stop.flag()));
         Self {
             writer,
             interval,

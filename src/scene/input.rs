@@ -3,9 +3,8 @@
 //! What is no regular file is told before it is opened: a device has no end, and a pipe without a writer would be waited for. A pipe, which is
 //! what a shell makes of `<(...)` and of `/dev/stdin`, is read where the caller allows it; it may be silent for [`PATIENCE`].
 
-use std::fs::{File, Metadata, OpenOptions};
+use std::fs::{File, FileType, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read};
-use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -58,7 +57,7 @@ pub(crate) fn bytes(path: &Path, most: u64, pipes: Pipes) -> Result<Vec<u8>, Unr
     let found = std::fs::metadata(path)?;
     let is_pipe = readable(&found, most, pipes)?;
     // A pipe without a writer must not hold the program up.
-    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(path)?;
+    let file = open_at_once(path)?;
     // What is opened may have taken the place of what was looked at.
     if is_pipe != readable(&file.metadata()?, most, pipes)? {
         return Err(Unread::Device);
@@ -74,6 +73,28 @@ pub(crate) fn bytes(path: &Path, most: u64, pipes: Pipes) -> Result<Vec<u8>, Unr
     if bytes.len() as u64 > most { Err(Unread::TooLarge(most)) } else { Ok(bytes) }
 }
 
+/// Opens a file; a pipe without a writer does not block.
+#[cfg(unix)]
+fn open_at_once(path: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(path)
+}
+
+#[cfg(not(unix))]
+fn open_at_once(path: &Path) -> io::Result<File> {
+    OpenOptions::new().read(true).open(path)
+}
+
+#[cfg(unix)]
+fn is_pipe(kind: FileType) -> bool {
+    std::os::unix::fs::FileTypeExt::is_fifo(&kind)
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: FileType) -> bool {
+    false
+}
+
 /// The same as text.
 pub(crate) fn text(bytes: Vec<u8>) -> Result<String, Unread> {
     String::from_utf8(bytes).map_err(|error| {
@@ -85,7 +106,7 @@ pub(crate) fn text(bytes: Vec<u8>) -> Result<String, Unread> {
 /// Whether a file is a pipe, if it may be read at all.
 fn readable(found: &Metadata, most: u64, pipes: Pipes) -> Result<bool, Unread> {
     let kind = found.file_type();
-    match (kind.is_file(), kind.is_fifo() && pipes == Pipes::Read) {
+    match (kind.is_file(), is_pipe(kind) && pipes == Pipes::Read) {
         _ if kind.is_dir() => Err(Unread::Directory),
         (true, _) if found.len() > most => Err(Unread::TooLarge(most)),
         (true, _) => Ok(false),

@@ -12,7 +12,9 @@ use super::keys;
 use super::sampling::{Distribution, UnitCube};
 use super::settings::set;
 use super::{LARGEST, Rows, Scene, base_table, columns, read_text};
+#[cfg(feature = "hdf5")]
 use crate::data::layout::FORMAT_VERSION;
+#[cfg(feature = "hdf5")]
 use crate::data::{Fingerprint, SweepFile};
 use crate::error::{Error, Result};
 use crate::units::Unit;
@@ -196,6 +198,7 @@ impl Study {
 
     /// SHA-256 of everything that a result depends on, in hexadecimal digits: version of the program and of its formats, study, base scene, and the files of
     /// measured profiles and recorded paths that the scenes name.
+    #[cfg(feature = "hdf5")]
     pub fn hash(&self) -> String {
         let mut parts = Fingerprint::default()
             .add(env!("CARGO_PKG_VERSION").as_bytes())

@@ -77,7 +77,7 @@ pub struct Submission {
 /// Measures a study, writes its job scripts into a directory, which is made if it is missing, and hands them to the engine.
 ///
 /// # Errors
-/// Those of the study and its scenes; [`Error::Inconsistent`] names the option that cannot be, or the engine that is not here;
+/// Those of the study and its scenes; [`Error::Option`] names what is asked that cannot be, or the engine that is not here;
 /// [`Error::File`] a script that exists or cannot be written. Nothing is written then.
 pub fn submit(study: &Path, folder: &Path, options: &Options) -> Result<Submission> {
     options.check()?;
@@ -133,7 +133,7 @@ fn shards_so_far(folder: &Path, study: &Study, asked: Option<u64>) -> Result<Opt
         (Some(there), Some(asked)) if there != asked => Err(Error::File {
             path: folder.to_owned(),
             why: format!(
-                "holds results of {there} shards, and --shards {asked} is asked for; leave it out, or use another directory"
+                "holds results of {there} shards, and {asked} are asked for; ask for no number of shards, or use another directory"
             ),
         }),
         (there, asked) => Ok(there.or(asked)),
@@ -144,8 +144,8 @@ impl Options {
     /// Refuses options that make no sense or belong to another engine.
     fn check(&self) -> Result<()> {
         let times = [
-            ("--seconds-per-scene", self.seconds_per_scene),
-            ("--checkpoint-interval", self.checkpoint_interval),
+            ("seconds-per-scene", self.seconds_per_scene),
+            ("checkpoint-interval", self.checkpoint_interval),
         ];
         if let Some((name, Some(seconds))) =
             times.iter().find(|(_, it)| it.is_some_and(|it| !(it > 0.0 && it.is_finite())))
@@ -154,10 +154,10 @@ impl Options {
         }
         if self.engine == Engine::HyperQueue {
             let slurm_only = [
-                ("--partition", self.partition.is_some()),
-                ("--account", self.account.is_some()),
-                ("--memory", self.memory.is_some()),
-                ("--time-limit", self.wishes.time_limit.is_some()),
+                ("partition", self.partition.is_some()),
+                ("account", self.account.is_some()),
+                ("memory", self.memory.is_some()),
+                ("time-limit", self.wishes.time_limit.is_some()),
             ];
             if let Some((name, _)) = slurm_only.iter().find(|(_, given)| *given) {
                 let why =
@@ -165,7 +165,7 @@ impl Options {
                 return Err(refuse(name, why.into()));
             }
         }
-        for (name, value) in [("--partition", &self.partition), ("--account", &self.account)] {
+        for (name, value) in [("partition", &self.partition), ("account", &self.account)] {
             value.as_deref().map_or(Ok(()), |value| shell::check_word(name, value))?;
         }
         self.memory.as_deref().map_or(Ok(()), check_memory)?;
@@ -177,11 +177,11 @@ impl Options {
 fn check_memory(memory: &str) -> Result<()> {
     let digits = memory.strip_suffix(['K', 'M', 'G', 'T']).unwrap_or(memory);
     match digits.is_empty() || !digits.bytes().all(|it| it.is_ascii_digit()) {
-        true => Err(refuse("--memory", format!("{memory:?} is no amount of memory; for example 4G or 500M"))),
+        true => Err(refuse("memory", format!("{memory:?} is no amount of memory; for example 4G or 500M"))),
         false => Ok(()),
     }
 }
 
-fn refuse(what: &'static str, why: String) -> Error {
-    Error::Inconsistent { what, why }
+fn refuse(name: &'static str, why: String) -> Error {
+    Error::Option { name, why }
 }

@@ -27,21 +27,18 @@ pub use report::{MergeReport, SweepReport};
 
 use std::collections::HashSet;
 use std::ops::Range;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use crate::data::{RunFile, StopReason, SweepHeader, Value};
+use crate::data::{RunFile, SweepHeader, Value};
 use crate::error::{Error, Result};
-use crate::run::progress::SceneProgress;
 use crate::run::readings::{self, ClosedForm};
-use crate::run::{Resumed, Run, Shared, thread_pool};
+use crate::run::{Resumed, Run, Shared, Stop};
 use crate::scene::{Study, Task};
+use crate::study::batch::{Batch, End, Progress, check_valid};
 use folder::Folder;
 use rows::{SceneResult, Schema};
 
@@ -58,7 +55,7 @@ pub struct SweepOptions {
     pub shard: u64,
     /// Number of shards that the study is cut into.
     pub shards: u64,
-    /// Threads, at most [`most_threads`](crate::run::most_threads); all cores if none.
+    /// Threads, at most [`most_threads`](crate::study::most_threads); all cores if none.
     pub threads: Option<usize>,
     /// Wall time between checkpoints, s.
     pub checkpoint_interval: f64,
@@ -74,7 +71,7 @@ impl Default for SweepOptions {
 /// What a sweep came to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepOutcome {
-    /// The file of the shard; none if a signal came first.
+    /// The file of the shard; none if it was stopped first.
     pub file: Option<PathBuf>,
     /// Scenes of the shard.
     pub scenes: u64,
@@ -111,9 +108,9 @@ pub fn sweep(
     study: &Study,
     folder: &Path,
     options: &SweepOptions,
-    progress: Option<&SceneProgress>,
+    progress: Option<&dyn Progress>,
 ) -> Result<SweepOutcome> {
-    Sweep::new(study, folder, options)?.execute(progress)
+    Sweep::new(study, folder, options, &Stop::default())?.execute(progress)
 }
 
 /// A shard that is ready to be done.
@@ -121,8 +118,8 @@ pub struct Sweep<'a> {
     study: &'a Study,
     schema: Schema,
     folder: Folder,
-    shared: Shared,
-    pool: ThreadPool,
+    batch: Batch,
+    interval: Duration,
     range: Range<u64>,
     before: Done,
     /// Scenes without a row.
@@ -131,26 +128,26 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Looks at what is there of a shard, and makes sure that what is missing can be done. From here on signals are answered.
+    /// Looks at what is there of a shard, and makes sure that what is missing can be done.
     ///
     /// # Errors
-    /// [`Error::Scene`] lists scenes of the study that are not valid; [`Error::Inconsistent`] for a shard that is none;
+    /// [`Error::Scene`] lists scenes of the study that are not valid; [`Error::Option`] for a shard that is none;
     /// [`Error::File`] if the directory cannot be used, or holds results of another study, version or number of shards.
-    pub fn new(study: &'a Study, folder: &Path, options: &SweepOptions) -> Result<Self> {
+    pub fn new(study: &'a Study, folder: &Path, options: &SweepOptions, stop: &Stop) -> Result<Self> {
         let started = Instant::now();
-        let shared =
-            Shared { checkpoint_interval: Some(options.checkpoint_interval), ..Shared::with_signals()? };
+        let interval = Duration::from_secs_f64(options.checkpoint_interval);
         let (shard, shards) = (options.shard, options.shards);
         if !(1..=study.count()).contains(&shards) || shard >= shards {
-            return Err(Error::Inconsistent {
-                what: "--shard",
+            return Err(Error::Option {
+                name: "shard",
                 why: format!(
                     "{shard}/{shards} is none of a study of {} scenes; shards count from 0, and each has a scene",
                     study.count()
                 ),
             });
         }
-        let pool = thread_pool(options.threads)?;
+        let shared = Shared { stop: stop.clone(), checkpoint_interval: Some(interval), ..Shared::default() };
+        let batch = Batch::new(options.threads, shared)?;
         let header = SweepHeader {
             title: study.title().unwrap_or_default().into(),
             task: study.task().name().into(),
@@ -166,40 +163,68 @@ impl<'a> Sweep<'a> {
         let before = folder.done()?;
         let missing = before.missing(&range);
         let all = missing.len() as u64;
-        pool.install(|| validate(study, missing.par_iter().copied(), all, &shared.stop))?;
+        batch.install(|| validate(study, missing.par_iter().copied(), all, stop))?;
         folder.create()?;
-        Ok(Self { study, schema: Schema::new(study), folder, shared, pool, range, before, missing, started })
+        let schema = Schema::new(study);
+        Ok(Self { study, schema, folder, batch, interval, range, before, missing, started })
     }
 
     /// Runs what is missing; see the [module](self) for what is written where. Scenes that fail are rows, not errors.
     ///
     /// # Errors
     /// [`Error::File`] if files cannot be read or written.
-    pub fn execute(self, progress: Option<&SceneProgress>) -> Result<SweepOutcome> {
-        let Self { study, schema, folder, shared, pool, missing, .. } = &self;
+    pub fn execute(self, progress: Option<&dyn Progress>) -> Result<SweepOutcome> {
+        let Self { study, schema, folder, batch, missing, .. } = &self;
         if let (Some(file), true) = (folder.finished(), missing.is_empty()) {
             return Ok(self.outcome(Some(file), 0, 0));
         }
-        if let Some(progress) = progress {
-            progress.begin(missing.len() as u64);
-        }
-        let worker = Worker { study, folder, shared, progress };
-        let interval = shared.checkpoint_interval.unwrap_or_default();
-        let collector = Collector::new(study, folder, schema, interval);
-        let finished = pool.install(|| {
-            missing.par_iter().try_for_each(|&scene| match worker.row(scene) {
-                Ok(Some(row)) => collector.add(row).map_err(Some),
-                Ok(None) => Err(None),
-                Err(error) => Err(Some(error)),
-            })
-        });
-        let (done, failed) = collector.finish()?;
-        let file = match finished {
-            Err(Some(error)) => return Err(error),
-            Err(None) => None,
-            Ok(()) => Some(folder.compact()?),
+        let collector = Collector::new(study, folder, schema, self.interval);
+        let run = |scene: &u64| match study.task() {
+            Task::Limit => self.limit(*scene).map(Some),
+            Task::Run => self.run(*scene),
         };
+        let finished = batch.each(missing, progress, run, |scene, end| collector.add(self.row(*scene, end)));
+        let (done, failed) = collector.finish()?;
+        let file = finished?.map(|_| folder.compact()).transpose()?;
         Ok(self.outcome(file, done, failed))
+    }
+
+    /// What is stored of a scene.
+    fn row(&self, scene: u64, end: End<Computed>) -> SceneResult {
+        let (results, run, error) = match end {
+            Ok((results, run)) => (Some(results), run, None),
+            Err(error) => (None, None, Some(error)),
+        };
+        SceneResult { scene, inputs: self.study.inputs(scene), results, run, error }
+    }
+
+    fn limit(&self, scene: u64) -> Result<Computed> {
+        let form = ClosedForm::new(&self.study.scene(scene)?)?;
+        Ok((readings::LIMIT.iter().map(|it| (it.of)(&form)).collect(), None))
+    }
+
+    /// None if it was stopped.
+    fn run(&self, scene: u64) -> Result<Option<Computed>> {
+        let (number, scene, shared) = (scene, self.study.scene(scene)?, &self.batch.shared);
+        let own = self.folder.checkpoint(number);
+        let run = self.folder.checkpoints(number).iter().find_map(|from| {
+            // One that cannot be used, or is of another scene under the same number, is of no use: the scene is begun anew.
+            match Run::resume_one_of_many(&scene, from, &own, shared) {
+                Ok(Resumed::Run(run)) => Some(*run),
+                _ => None,
+            }
+        });
+        let run = match run {
+            Some(run) => run,
+            None => Run::one_of_many(&scene, &own, shared)?,
+        };
+        let results = run.execute(None)?;
+        if !results.is_complete() {
+            return Ok(None);
+        }
+        let columns = readings::RUN.iter().map(|it| (it.of)(&results)).collect();
+        let kept = self.study.snapshots().contain(number).then(|| results.into_file());
+        Ok(Some((columns, kept)))
     }
 
     fn outcome(&self, file: Option<PathBuf>, done: u64, failed: u64) -> SweepOutcome {
@@ -219,102 +244,21 @@ impl<'a> Sweep<'a> {
 /// # Errors
 /// [`Error::Scene`] counts them and shows the first.
 pub fn validate_all(study: &Study) -> Result<()> {
-    validate(study, (0..study.count()).into_par_iter(), study.count(), &AtomicBool::new(false))
+    validate(study, (0..study.count()).into_par_iter(), study.count(), &Stop::default())
 }
 
-/// Refuses a study of which some of these scenes are not valid; a signal ends the search, and with it the sweep.
-fn validate(
-    study: &Study,
-    scenes: impl ParallelIterator<Item = u64>,
-    total: u64,
-    stop: &AtomicBool,
-) -> Result<()> {
-    const SHOWN: usize = 3;
-    let fault = |scene: u64| match stop.load(Ordering::Relaxed) {
+/// Refuses a study of which some of these scenes are not valid; who is stopped looks no further.
+fn validate(study: &Study, scenes: impl ParallelIterator<Item = u64>, total: u64, stop: &Stop) -> Result<()> {
+    let fault = |scene: u64| match stop.is_stopped() {
         true => None,
         false => study.scene(scene).err().map(|it| it.to_string()),
     };
     let wrong: Vec<String> = scenes.filter_map(fault).collect();
-    match wrong.len() {
-        0 => Ok(()),
-        count => Err(Error::Scene(format!(
-            "{count} of {total} scenes are not valid, nothing was run:\n{}",
-            wrong[..count.min(SHOWN)].join("\n")
-        ))),
-    }
+    check_valid(&wrong, total)
 }
 
-/// Texts and numbers of a row.
-type Results = Vec<Value>;
-
-/// Does scenes.
-struct Worker<'a> {
-    study: &'a Study,
-    folder: &'a Folder,
-    shared: &'a Shared,
-    progress: Option<&'a SceneProgress>,
-}
-
-impl Worker<'_> {
-    /// The row of a scene; none if a signal came first.
-    fn row(&self, scene: u64) -> Result<Option<SceneResult>> {
-        if self.shared.stop.load(Ordering::Relaxed) {
-            return Ok(None);
-        }
-        // A fault of the program in one scene must not cost the others.
-        let done = catch_unwind(AssertUnwindSafe(|| match self.study.task() {
-            Task::Limit => self.limit(scene).map(Some),
-            Task::Run => self.run(scene),
-        }));
-        let row = |results: Option<Results>, run: Option<RunFile>, error: Option<String>| SceneResult {
-            scene,
-            inputs: self.study.inputs(scene),
-            results,
-            run,
-            error,
-        };
-        let row = match done {
-            Ok(Ok(None)) => return Ok(None),
-            Ok(Ok(Some((results, run)))) => row(Some(results), run, None),
-            // Concerns all scenes: the disk is full, a directory has vanished.
-            Ok(Err(error @ Error::File { .. })) => return Err(error),
-            Ok(Err(error)) => row(None, None, Some(error.to_string())),
-            Err(_) => row(None, None, Some("the program panicked; please report this scene".into())),
-        };
-        if let Some(progress) = self.progress {
-            progress.done(row.error.is_some());
-        }
-        Ok(Some(row))
-    }
-
-    fn limit(&self, scene: u64) -> Result<(Results, Option<RunFile>)> {
-        let form = ClosedForm::new(&self.study.scene(scene)?)?;
-        Ok((readings::LIMIT.iter().map(|it| (it.of)(&form)).collect(), None))
-    }
-
-    /// None if a signal came first.
-    fn run(&self, scene: u64) -> Result<Option<(Results, Option<RunFile>)>> {
-        let (number, scene) = (scene, self.study.scene(scene)?);
-        let own = self.folder.checkpoint(number);
-        let run = self.folder.checkpoints(number).iter().find_map(|from| {
-            // One that cannot be used, or is of another scene under the same number, is of no use: the scene is begun anew.
-            match Run::resume_one_of_many(&scene, from, &own, self.shared) {
-                Ok(Resumed::Run(run)) => Some(*run),
-                _ => None,
-            }
-        });
-        let run = match run {
-            Some(run) => run,
-            None => Run::one_of_many(&scene, &own, self.shared)?,
-        };
-        let (result, file) = run.execute_keeping(None)?;
-        if result.stop_reason == StopReason::Interrupted {
-            return Ok(None);
-        }
-        let kept = self.study.snapshots().contain(number).then_some(file);
-        Ok(Some((readings::RUN.iter().map(|it| (it.of)(&result)).collect(), kept)))
-    }
-}
+/// Results of a row, and its run where that is kept.
+type Computed = (Vec<Value>, Option<RunFile>);
 
 /// Takes rows from all threads and writes parts.
 struct Collector<'a> {
@@ -335,9 +279,9 @@ struct Waiting {
 }
 
 impl<'a> Collector<'a> {
-    fn new(study: &'a Study, folder: &'a Folder, schema: &'a Schema, interval: f64) -> Self {
+    fn new(study: &'a Study, folder: &'a Folder, schema: &'a Schema, interval: Duration) -> Self {
         let waiting = Waiting { rows: vec![], runs: 0, saved: Instant::now(), done: 0, failed: 0 };
-        let (interval, waiting) = (Duration::from_secs_f64(interval), Mutex::new(waiting));
+        let waiting = Mutex::new(waiting);
         Self { study, folder, schema, interval, waiting }
     }
 

@@ -29,9 +29,9 @@ use std::time::Instant;
 
 use crate::data::{Mark, check_folder};
 use crate::error::{Error, Result};
-use crate::run::progress::SceneProgress;
-use crate::run::{Run, Shared};
+use crate::run::{Simulation, Stop};
 use crate::scene::{Output, Scene, Stepper};
+use crate::study::batch::Progress;
 use measure::Runs;
 
 /// Where copies of the runs are put.
@@ -179,17 +179,17 @@ pub struct Tradeoff<'a> {
     folder: PathBuf,
     options: Options,
     candidates: Vec<(Candidate, Scene)>,
-    shared: Shared,
+    stop: Stop,
     started: Instant,
 }
 
 impl<'a> Tradeoff<'a> {
-    /// Reads the scenes of all candidates and makes sure that results can be written. From here on signals are answered.
+    /// Reads the scenes of all candidates and makes sure that results can be written.
     ///
     /// # Errors
     /// [`Error::Inconsistent`] names what is wrong with an option, or why the scene cannot be run at all; [`Error::File`] if a file exists
     /// that may not be replaced, or the directory cannot be written.
-    pub fn new(scene: &'a Scene, folder: &Path, options: &Options) -> Result<Self> {
+    pub fn new(scene: &'a Scene, folder: &Path, options: &Options, stop: &Stop) -> Result<Self> {
         let started = Instant::now();
         let options = Options { ladders: options.ladders.clone().sorted()?, ..options.clone() };
         let snapshots = match scene.output() {
@@ -208,8 +208,6 @@ impl<'a> Tradeoff<'a> {
             .into_iter()
             .map(with_scene)
             .collect::<Result<_>>()?;
-        const NEVER: f64 = 1e9;
-        let shared = Shared { checkpoint_interval: Some(NEVER), ..Shared::with_signals()? };
         // What no candidate could run is refused before anything is written.
         let knob = Candidate {
             choice: Choice::Knob(PREFLIGHT),
@@ -217,14 +215,14 @@ impl<'a> Tradeoff<'a> {
             cycle: candidates::cycles(scene)[0],
         };
         let plain = scene.varied(&knob.numerics(scene), "")?;
-        drop(Run::one_of_many(&plain, &folder.join("none.h5"), &Shared::default())?);
+        Simulation::check(&plain)?;
         files::check_folder(folder, options.overwrite)?;
         if options.keep_runs {
             let names: Vec<String> = run_names(candidates.len()).map(|it| format!("{it}.h5")).collect();
             let names: Vec<_> = names.iter().map(|name| (name.as_str(), Mark::Results)).collect();
             check_folder(&folder.join(RUNS), &names, options.overwrite)?;
         }
-        Ok(Self { scene, folder: folder.to_owned(), options, candidates, shared, started })
+        Ok(Self { scene, folder: folder.to_owned(), options, candidates, stop: stop.clone(), started })
     }
 
     /// Wall time up to which a candidate is run, s.
@@ -237,12 +235,12 @@ impl<'a> Tradeoff<'a> {
         self.candidates.len()
     }
 
-    /// Measures all candidates and writes `tradeoff.h5` and `tradeoff.csv`; none if a signal came first. A candidate that fails is a row.
+    /// Measures all candidates and writes `tradeoff.h5` and `tradeoff.csv`; none if it was stopped first. A candidate that fails is a row.
     ///
     /// # Errors
     /// [`Error::File`] if files cannot be written, [`Error::NotConverged`] if nothing could be run that would judge the candidates.
-    pub fn execute(self, progress: Option<&SceneProgress>) -> Result<Option<Outcome>> {
-        let runs = Runs::new(&self.folder, &self.shared, self.options.repeats)?;
+    pub fn execute(self, progress: Option<&dyn Progress>) -> Result<Option<Outcome>> {
+        let runs = Runs::new(&self.folder, &self.stop, self.options.repeats)?;
         let outcome = self.execute_in(&runs, progress)?;
         if outcome.is_none() {
             runs.keep();
@@ -250,7 +248,7 @@ impl<'a> Tradeoff<'a> {
         Ok(outcome)
     }
 
-    fn execute_in(&self, runs: &Runs, progress: Option<&SceneProgress>) -> Result<Option<Outcome>> {
+    fn execute_in(&self, runs: &Runs, progress: Option<&dyn Progress>) -> Result<Option<Outcome>> {
         if let Some(progress) = progress {
             progress.begin(self.candidates.len() as u64);
         }
@@ -286,11 +284,11 @@ impl<'a> Tradeoff<'a> {
         Ok(Some(outcome))
     }
 
-    /// What became of all candidates; none if a signal came.
+    /// What became of all candidates; none if it was stopped.
     fn measure(
         &self,
         runs: &Runs,
-        progress: Option<&SceneProgress>,
+        progress: Option<&dyn Progress>,
     ) -> Result<Option<Vec<(Candidate, Measurement)>>> {
         let mut measured: Vec<(Candidate, Measurement)> = vec![];
         for (number, (candidate, scene)) in self.candidates.iter().enumerate() {

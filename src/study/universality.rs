@@ -20,13 +20,10 @@ pub use report::UniversalityReport;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use rayon::ThreadPool;
-use rayon::prelude::*;
-
-use crate::error::{Error, Result};
-use crate::run::progress::SceneProgress;
-use crate::run::{Shared, thread_pool};
+use crate::error::Result;
+use crate::run::{Shared, Stop};
 use crate::scene::{Case, Prediction, Scene, UniversalityStudy};
+use crate::study::batch::{Batch, Progress, check_valid};
 use runs::{Job, Runs};
 
 /// Points of the normalised profiles between stick radius and limiting contact radius, ends included.
@@ -96,27 +93,23 @@ pub struct Universality<'a> {
     folder: PathBuf,
     overwrite: bool,
     jobs: Vec<Job>,
-    shared: Shared,
-    pool: ThreadPool,
+    batch: Batch,
     started: Instant,
 }
 
 impl<'a> Universality<'a> {
-    /// Reads all scenes of a study and makes sure that its results can be written. From here on signals are answered.
+    /// Reads all scenes of a study and makes sure that its results can be written.
     ///
     /// # Errors
     /// [`Error::Scene`] shows the first scenes that are not valid, and counts them; [`Error::File`] if a file exists that may not be
     /// replaced, or the directory cannot be written.
-    pub fn new(study: &'a UniversalityStudy, folder: &Path, options: &Options) -> Result<Self> {
+    pub fn new(study: &'a UniversalityStudy, folder: &Path, options: &Options, stop: &Stop) -> Result<Self> {
         let started = Instant::now();
         let jobs = jobs(study)?;
-        // A run is kept where it is stopped and where it ends, not in between.
-        const NEVER: f64 = 1e9;
-        let shared = Shared { checkpoint_interval: Some(NEVER), ..Shared::with_signals()? };
-        let pool = thread_pool(options.threads)?;
+        let batch = Batch::new(options.threads, Shared::without_checkpoints(stop))?;
         files::check_folder(folder, options.overwrite)?;
         let (folder, overwrite) = (folder.to_owned(), options.overwrite);
-        Ok(Self { study, folder, overwrite, jobs, shared, pool, started })
+        Ok(Self { study, folder, overwrite, jobs, batch, started })
     }
 
     /// Number of runs, those with more springs included.
@@ -124,34 +117,17 @@ impl<'a> Universality<'a> {
         self.jobs.len()
     }
 
-    /// Runs all cases and writes `universality.h5` and `universality.csv`; none if a signal came first. A case that fails is a row, not an
+    /// Runs all cases and writes `universality.h5` and `universality.csv`; none if it was stopped first. A case that fails is a row, not an
     /// error.
     ///
     /// # Errors
     /// [`Error::File`] if files cannot be written.
-    pub fn execute(self, progress: Option<&SceneProgress>) -> Result<Option<Outcome>> {
-        let Self { study, folder, jobs, shared, pool, .. } = &self;
-        if let Some(progress) = progress {
-            progress.begin(jobs.len() as u64);
-        }
-        let runs = Runs::new(folder, shared)?;
-        let one = |job: &Job| {
-            let end = runs.end(job).map_err(Some)?.ok_or(None)?;
-            if let Some(progress) = progress {
-                progress.done(end.is_err());
-            }
-            Ok(end)
-        };
-        // One job at a time, whoever is free: nobody knows beforehand which take long.
-        let ends = pool
-            .install(|| jobs.par_iter().with_max_len(1).map(one).collect::<std::result::Result<Vec<_>, _>>());
-        let ends = match ends {
-            Err(Some(error)) => return Err(error),
-            Err(None) => {
-                runs.keep();
-                return Ok(None);
-            }
-            Ok(ends) => ends,
+    pub fn execute(self, progress: Option<&dyn Progress>) -> Result<Option<Outcome>> {
+        let Self { study, folder, jobs, batch, .. } = &self;
+        let runs = Runs::new(folder, &batch.shared)?;
+        let Some(ends) = batch.each(jobs, progress, |job| runs.end(job), |_, end| Ok(end))? else {
+            runs.keep();
+            return Ok(None);
         };
         let rows = rows(study, jobs, ends);
         let files = files::write(study, &rows, folder, self.overwrite)?;
@@ -162,7 +138,6 @@ impl<'a> Universality<'a> {
 
 /// The runs of all cases.
 fn jobs(study: &UniversalityStudy) -> Result<Vec<Job>> {
-    const SHOWN: usize = 3;
     let texts = study.cases().iter().enumerate().flat_map(|(number, case)| {
         let texts = [Some(&case.scene), case.finer.as_ref()];
         let both = texts.into_iter().zip([false, true]);
@@ -174,14 +149,8 @@ fn jobs(study: &UniversalityStudy) -> Result<Vec<Job>> {
     };
     let (jobs, wrong): (Vec<_>, Vec<_>) = texts.map(read).partition(Result::is_ok);
     let wrong: Vec<String> = wrong.into_iter().filter_map(Result::err).map(|it| it.to_string()).collect();
-    match wrong.len() {
-        0 => Ok(jobs.into_iter().flatten().collect()),
-        count => Err(Error::Scene(format!(
-            "{count} of {} scenes are not valid, nothing was run:\n{}",
-            jobs.len() + count,
-            wrong[..count.min(SHOWN)].join("\n")
-        ))),
-    }
+    check_valid(&wrong, (jobs.len() + wrong.len()) as u64)?;
+    Ok(jobs.into_iter().flatten().collect())
 }
 
 fn rows(

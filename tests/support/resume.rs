@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use fretwear::Stop;
 use fretwear::data::{RunFile, StopReason};
-use fretwear::run::{Resumed, Run, RunResult};
+use fretwear::run::{Results, Resumed, Run};
 use fretwear::scene::Scene;
 use fretwear::solver::simulation::{Flow, Observer, Simulation};
 
@@ -29,14 +30,15 @@ fn without_wall_time(path: &Path) -> RunFile {
 
 /// Runs a scene whole, and once more stopped after every few steps; what the first came to, the files of both but for the wall time, and
 /// the number of interruptions.
-pub fn whole_and_in_parts(scene: &Scene, folder: &Path, steps: u64) -> (RunResult, [RunFile; 2], usize) {
+pub fn whole_and_in_parts(scene: &Scene, folder: &Path, steps: u64) -> (Results, [RunFile; 2], usize) {
     let [whole, parts] = ["whole.h5", "parts.h5"].map(|name| folder.join(name));
-    let result = Run::new(scene, &whole, false).expect("a run").execute(None).expect("an end");
-    let mut run = Run::new(scene, &parts, false).expect("a run");
+    let result =
+        Run::new(scene, &whole, false, &Stop::default()).expect("a run").execute(None).expect("an end");
+    let mut run = Run::new(scene, &parts, false, &Stop::default()).expect("a run");
     let mut interruptions = 0;
-    while run.execute(Some(&mut StopAfter(steps))).expect("an end").stop_reason == StopReason::Interrupted {
+    while run.execute(Some(&mut StopAfter(steps))).expect("an end").stop_reason() == StopReason::Interrupted {
         interruptions += 1;
-        run = match Run::resume(&parts).expect("a run that goes on") {
+        run = match Run::resume(&parts, &Stop::default()).expect("a run that goes on") {
             Resumed::Run(run) => *run,
             Resumed::Complete(_) => panic!("interrupted and complete"),
         };

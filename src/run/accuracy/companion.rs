@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::super::Parts;
+use super::super::parts::Parts;
 use super::substeps::Unsampled;
 use crate::data::Snapshot;
 use crate::error::Result;

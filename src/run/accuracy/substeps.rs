@@ -1,6 +1,6 @@
 //! What the substeps of a period leave out.
 
-use super::super::resolution;
+use super::super::parts::resolution;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::scene::{Numerics, Scene};

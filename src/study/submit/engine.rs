@@ -63,12 +63,9 @@ impl Engine {
     pub(super) fn check_presence(self) -> Result<()> {
         let program = self.program();
         match Command::new(program).arg("--version").output() {
-            Err(error) if error.kind() == ErrorKind::NotFound => Err(refuse(
-                "--engine",
-                format!(
-                    "there is no {program} here, so nothing can be handed in; --dry-run writes the scripts all the same"
-                ),
-            )),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                Err(refuse("engine", format!("there is no {program} here, so nothing can be handed in")))
+            }
             _ => Ok(()),
         }
     }

@@ -1,21 +1,18 @@
 //! What the scenes of a study cost: a few of them, run here on one core.
 
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
 use crate::run::readings::ClosedForm;
-use crate::run::{Run, Shared, memory_figure};
+use crate::run::{Shared, Simulation, memory_figure};
 use crate::scene::{Study, Task};
+use crate::study::batch::{Batch, alone};
 
 /// Most scenes measured.
 const MOST_SCENES: u64 = 5;
 
 /// No further scene is begun after this time.
 const ENOUGH: Duration = Duration::from_secs(30);
-
-/// Wall time between checkpoints, s: none is written.
-const NEVER: f64 = 1e9;
 
 /// Part of the study between one measured scene and the next: with the golden ratio no axis of the study is kept in step with.
 const STRIDE: f64 = 0.618_033_988_749_895;
@@ -50,10 +47,8 @@ impl Measurement {
     /// # Errors
     /// [`Error::Inconsistent`] with the failure of the first scene if all fail.
     pub fn new(study: &Study) -> Result<Self> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        let pool =
-            pool.map_err(|error| Error::Inconsistent { what: "measurement", why: error.to_string() })?;
-        let mut scenes = pool.install(|| measure_some(study));
+        let batch = Batch::new(Some(1), Shared::default())?;
+        let mut scenes = batch.install(|| measure_some(study, &batch.shared));
         if scenes.iter().all(|it| it.failure.is_some()) {
             let MeasuredScene { scene, failure, .. } = scenes.swap_remove(0);
             let why = format!("all scenes tried fail; scene {scene}: {}", failure.unwrap_or_default());
@@ -75,12 +70,11 @@ impl Measurement {
 }
 
 /// Scenes until they are enough; transforms are shared among them, as in a sweep.
-fn measure_some(study: &Study) -> Vec<MeasuredScene> {
+fn measure_some(study: &Study, shared: &Shared) -> Vec<MeasuredScene> {
     let begun = Instant::now();
-    let shared = Shared { checkpoint_interval: Some(NEVER), ..Shared::default() };
     let mut scenes = vec![];
     for scene in spread(study.count(), MOST_SCENES) {
-        scenes.push(measure(study, scene, &shared));
+        scenes.push(measure(study, scene, shared));
         if begun.elapsed() >= ENOUGH {
             break;
         }
@@ -103,16 +97,17 @@ fn spread(count: u64, most: u64) -> Vec<u64> {
 /// Runs one scene as a sweep does.
 fn measure(study: &Study, scene: u64, shared: &Shared) -> MeasuredScene {
     let begun = Instant::now();
-    let outcome = match study.task() {
-        Task::Limit => study.scene(scene).and_then(|it| ClosedForm::new(&it)).map(drop),
-        Task::Run => study
-            .scene(scene)
-            .and_then(|it| {
-                Run::one_of_many(&it, Path::new("never-written.h5"), shared)?.execute_keeping(None)
-            })
-            .map(drop),
+    let run = || {
+        let described = study.scene(scene)?;
+        match study.task() {
+            Task::Limit => ClosedForm::new(&described).map(drop),
+            Task::Run => Simulation::sharing(&described, shared)?.run().map(drop),
+        }
     };
-    let failure = outcome.err().map(|it| it.to_string());
+    let failure = match alone(&shared.stop, || run().map(Some)) {
+        Ok(end) => end.and_then(std::result::Result::err),
+        Err(error) => Some(error.to_string()),
+    };
     MeasuredScene { scene, seconds: begun.elapsed().as_secs_f64(), failure }
 }
 

@@ -57,7 +57,7 @@ impl Proposal {
     pub fn new(scenes: u64, cost: &Measurement, wishes: &Wishes, largest_array: u64) -> Result<Self> {
         let Wishes { shards, cpus_per_task, time_limit } = *wishes;
         if cpus_per_task == 0 {
-            return Err(refuse("--cpus-per-task", "0 cores compute nothing; give at least 1".into()));
+            return Err(refuse("cpus-per-task", "0 cores compute nothing; give at least 1".into()));
         }
         let core_seconds = scenes as f64 * cost.mean_seconds;
         let most = scenes.min(largest_array).max(1);
@@ -66,7 +66,7 @@ impl Proposal {
                 let why = format!(
                     "{shards} shards of {scenes} scenes, in an array of at most {largest_array}; give 1 to {most}"
                 );
-                return Err(refuse("--shards", why));
+                return Err(refuse("shards", why));
             }
             Some(shards) => shards,
             None => ((core_seconds / cpus_per_task as f64 / LONGEST_SHARD).ceil() as u64).clamp(1, most),
@@ -81,7 +81,7 @@ impl Proposal {
                 let why = format!(
                     "{minutes} min with a warning {signal_lead} s before the end leaves no time for work; give at least {shortest}"
                 );
-                return Err(refuse("--time-limit", why));
+                return Err(refuse("time-limit", why));
             }
             Some(minutes) => minutes,
             None => proposed_limit(seconds_per_shard, signal_lead).max(shortest),
@@ -153,7 +153,7 @@ mod tests {
         };
         assert!(refuse(Wishes { shards: Some(13), ..WISHES }).contains("give 1 to 12"));
         assert!(refuse(Wishes { shards: Some(0), ..WISHES }).contains("give 1 to 12"));
-        assert!(refuse(Wishes { cpus_per_task: 0, ..WISHES }).contains("--cpus-per-task"));
+        assert!(refuse(Wishes { cpus_per_task: 0, ..WISHES }).contains("cpus-per-task"));
         assert!(refuse(Wishes { time_limit: Some(1), ..WISHES }).contains("give at least 2"));
         let kept = Wishes { shards: Some(5), cpus_per_task: 1, time_limit: Some(3) };
         let proposal = Proposal::new(12, &Measurement::told(0.1), &kept, 1001).expect("a proposal");

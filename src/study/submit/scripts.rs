@@ -103,9 +103,7 @@ pub(super) fn check(paths: &Paths, engine: Engine, overwrite: bool) -> Result<()
     for (name, _) in scripts(engine) {
         let path = folder.join(name);
         if path.exists() && !overwrite {
-            let why =
-                "exists already; `bash submit.sh` beside it hands in what is there, --force writes it anew";
-            return Err(Error::File { path, why: why.into() });
+            return Err(Error::Exists { path });
         }
         AtomicFile::new(&path, true)?;
         check_own(&path, MARK)?;

@@ -34,7 +34,7 @@ pub(super) fn check_option(option: &str) -> Result<()> {
         it if it.chars().any(char::is_control) => "has a line break or another control character in it",
         _ => return Ok(()),
     };
-    Err(refuse("--engine-option", format!("{option:?} {why}")))
+    Err(refuse("engine-option", format!("{option:?} {why}")))
 }
 
 #[cfg(test)]
@@ -73,9 +73,9 @@ mod tests {
 
     #[test]
     fn words_and_options_that_would_break_the_script_are_refused() {
-        assert!(check_word("--partition", "gpu,long").is_ok());
+        assert!(check_word("partition", "gpu,long").is_ok());
         for word in ["", "a b", "x\n#SBATCH --uid=0", "'", "-p"] {
-            assert!(check_word("--partition", word).is_err(), "{word:?}");
+            assert!(check_word("partition", word).is_err(), "{word:?}");
         }
         assert!(check_option("--qos=long").is_ok());
         for option in ["qos", "--a\n#SBATCH -p x", ""] {

@@ -40,26 +40,26 @@ impl Ladders {
     /// Sorts every ladder from coarse to fine, and checks that a scene may ask for each rung.
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] names the option and the value.
+    /// [`Error::Option`] names the ladder and the value.
     pub fn sorted(mut self) -> Result<Self> {
-        let wrong = |what, why: String| Err(Error::Inconsistent { what, why });
+        let wrong = |name, why: String| Err(Error::Option { name, why });
         for (what, count) in [
-            ("--springs", self.springs.len()),
-            ("--tolerances", self.tolerances.len()),
-            ("--accuracies", self.accuracies.len()),
+            ("springs", self.springs.len()),
+            ("tolerances", self.tolerances.len()),
+            ("accuracies", self.accuracies.len()),
         ] {
             if count > Self::MOST {
                 return wrong(what, format!("{count} values, more than {}", Self::MOST));
             }
         }
         if let Some(few) = self.springs.iter().find(|count| **count < 3) {
-            return wrong("--springs", format!("{few} is outside [3, inf)"));
+            return wrong("springs", format!("{few} is outside [3, inf)"));
         }
         if let Some(value) = self.tolerances.iter().find(|it| !(**it > 0.0 && **it <= 0.1)) {
-            return wrong("--tolerances", format!("{value} is outside (0, 0.1]"));
+            return wrong("tolerances", format!("{value} is outside (0, 0.1]"));
         }
         if let Some(value) = self.accuracies.iter().find(|it| !(FINEST_ACCURACY..=0.1).contains(*it)) {
-            return wrong("--accuracies", format!("{value} is outside [1e-10, 0.1]"));
+            return wrong("accuracies", format!("{value} is outside [1e-10, 0.1]"));
         }
         if self.springs.is_empty() || self.tolerances.is_empty() || self.steppers.is_empty() {
             return wrong(

@@ -1,19 +1,17 @@
 //! What candidates cost: each is run alone, as often as is needed for a wall time that means something.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::{AtomicFile, Fingerprint, RunFile, Scratch, StopReason, failure};
-use crate::error::{Error, Result};
-use crate::run::{Run, Shared, hash_of, is_of, operator_bytes};
+use crate::data::{AtomicFile, Fingerprint, RunFile, Scratch, failure};
+use crate::error::Result;
+use crate::run::{Simulation, Stop, hash_of, is_of, operator_bytes};
 use crate::scene::Scene;
 use crate::scene::input::{self, Pipes};
-use crate::solver::simulation::{Flow, Observer, Simulation};
+use crate::solver::simulation::{self as stepping, Flow, Observer};
+use crate::study::batch::alone;
 
 /// What the directory of runs is for.
 const PURPOSE: &str = "runs of a trade-off";
@@ -99,14 +97,14 @@ struct Record {
 /// Does runs, or finds them done by a call that was stopped; what is kept of them goes with this.
 pub(super) struct Runs<'a> {
     scratch: Scratch,
-    shared: &'a Shared,
+    stop: &'a Stop,
     repeats: usize,
 }
 
 impl<'a> Runs<'a> {
-    pub(super) fn new(folder: &Path, shared: &'a Shared, repeats: usize) -> Result<Self> {
+    pub(super) fn new(folder: &Path, stop: &'a Stop, repeats: usize) -> Result<Self> {
         let scratch = Scratch::take_up(folder, PURPOSE).map_err(|error| failure(folder, &error))?;
-        Ok(Self { scratch, shared, repeats })
+        Ok(Self { scratch, stop, repeats })
     }
 
     /// Keeps the runs for the next call.
@@ -143,7 +141,7 @@ impl<'a> Runs<'a> {
         self.scratch.path().join(format!("{name}.h5"))
     }
 
-    /// Measures a scene, or finds it measured; none if a signal came.
+    /// Measures a scene, or finds it measured; none if it was stopped.
     ///
     /// # Errors
     /// [`Error::File`] concerns all runs: the disk is full, a directory has vanished.
@@ -165,14 +163,8 @@ impl<'a> Runs<'a> {
         if let Some(before) = before.filter(fits) {
             return Ok(Some(before.measurement));
         }
-        // A fault of the program in one run must not cost the others.
-        let measured = match catch_unwind(AssertUnwindSafe(|| self.run(name, scene, most_seconds))) {
-            Ok(Ok(Some(measured))) => measured,
-            Ok(Ok(None)) => return Ok(None),
-            Ok(Err(error @ Error::File { .. })) => return Err(error),
-            Ok(Err(error)) => Measurement::Failed(error.to_string()),
-            Err(_) => Measurement::Failed("the program panicked; please report this scene".into()),
-        };
+        let Some(end) = alone(self.stop, || self.run(name, scene, most_seconds))? else { return Ok(None) };
+        let measured = end.unwrap_or_else(Measurement::Failed);
         self.note(name, hash, &measured)?;
         Ok(Some(measured))
     }
@@ -184,7 +176,7 @@ impl<'a> Runs<'a> {
         AtomicFile::new(&self.scratch.path().join(format!("{name}.json")), true)?.write(&text)
     }
 
-    /// Measures once more what took little time, at another moment: other programs may have been busy at the first. False if a signal came.
+    /// Measures once more what took little time, at another moment: other programs may have been busy at the first. False if it was stopped.
     ///
     /// # Errors
     /// As [`Runs::measure`], and those of the run, which there were none of before.
@@ -223,33 +215,26 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// One run, which is kept; none if a signal came.
+    /// One run, which is kept; none if it was stopped.
     fn once(&self, name: &str, scene: &Scene, most_seconds: f64) -> Result<Option<Measurement>> {
-        let (started, stopped) = (Instant::now(), self.scratch.path().join("stopped.h5"));
-        // Each forms its own operators, as a user's run does, and saves nothing before its end.
-        let shared = Shared {
-            stop: Arc::clone(&self.shared.stop),
-            checkpoint_interval: self.shared.checkpoint_interval,
-            ..Shared::default()
-        };
-        let run = Run::one_of_many(scene, &stopped, &shared)?;
-        let (model, tolerance) = (run.simulation().model(), run.simulation().tolerance());
+        let started = Instant::now();
+        // Each forms its own operators, as a user's run does.
+        let simulation = Simulation::new(scene)?.stopped_by(self.stop);
+        let (model, tolerance) = (simulation.stepping().model(), simulation.stepping().tolerance());
         let (springs, backend) = (model.springs(), model.operators().backend());
-        let (result, file) = run.execute_keeping(Some(&mut Deadline { started, most_seconds }))?;
+        let results = simulation.run_with(Some(&mut Deadline { started, most_seconds }))?;
         let wall_seconds = started.elapsed().as_secs_f64();
-        if self.shared.stop.load(Ordering::Relaxed) {
+        if self.stop.is_stopped() {
             return Ok(None);
         }
-        let progress = result.checkpoint.progress;
-        if result.stop_reason == StopReason::Interrupted {
-            // It may have been too short to be there.
-            let _ = std::fs::remove_file(stopped);
-            let (tau, steps) = (result.last.tau, progress.steps);
+        let progress = results.checkpoint().progress;
+        if !results.is_complete() {
+            let (tau, steps) = (results.last().tau, progress.steps);
             let why = format!("stopped after {most_seconds} s at τ = {tau:.3e} with {steps} steps");
             return Ok(Some(Measurement::Stopped(why)));
         }
         let saving = Instant::now();
-        file.into_deferred_writer(&self.file(name)).save(&result.checkpoint, result.stop_reason, true)?;
+        results.save_over(self.file(name))?;
         Ok(Some(Measurement::Done(Cost {
             wall_seconds,
             wall_seconds_file: wall_seconds + saving.elapsed().as_secs_f64(),
@@ -283,7 +268,7 @@ struct Deadline {
 }
 
 impl Observer for Deadline {
-    fn step(&mut self, _: &Simulation) -> Result<Flow> {
+    fn step(&mut self, _: &stepping::Simulation) -> Result<Flow> {
         let late = self.started.elapsed().as_secs_f64() > self.most_seconds;
         Ok(if late { Flow::Stop } else { Flow::Continue })
     }

@@ -1,12 +1,10 @@
 //! The runs of a study, and what is kept of them until all are done.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::atomic::Ordering;
 
 use super::Judgement;
-use crate::data::{RunFile, Scratch, StopReason, failure};
-use crate::error::{Error, Result};
+use crate::data::{RunFile, Scratch, failure};
+use crate::error::Result;
 use crate::run::{Resumed, Run, Shared, hash_of, is_of};
 use crate::scene::Scene;
 
@@ -39,28 +37,13 @@ impl<'a> Runs<'a> {
         self.scratch.keep();
     }
 
-    /// The end of a run, or why it has none; none if a signal came first.
-    ///
-    /// # Errors
-    /// [`Error::File`] concerns all runs: the disk is full, a directory has vanished.
-    pub(super) fn end(&self, job: &Job) -> Result<Option<std::result::Result<Judgement, String>>> {
-        if self.shared.stop.load(Ordering::Relaxed) {
-            return Ok(None);
-        }
-        // A fault of the program in one run must not cost the others.
-        let done = catch_unwind(AssertUnwindSafe(|| {
-            let run = self.run(&job.scene)?;
-            run.map(|run| Judgement::new(&job.scene, &run)).transpose()
-        }));
-        match done {
-            Ok(Ok(end)) => Ok(end.map(Ok)),
-            Ok(Err(error @ Error::File { .. })) => Err(error),
-            Ok(Err(error)) => Ok(Some(Err(error.to_string()))),
-            Err(_) => Ok(Some(Err("the program panicked; please report this scene".into()))),
-        }
+    /// The end of a run; none if it was stopped.
+    pub(super) fn end(&self, job: &Job) -> Result<Option<Judgement>> {
+        let run = self.run(&job.scene)?;
+        run.map(|run| Judgement::new(&job.scene, &run)).transpose()
     }
 
-    /// A run from its start, or on from where it was stopped; none if a signal comes.
+    /// A run from its start, or on from where it was stopped; none if it is stopped.
     fn run(&self, scene: &Scene) -> Result<Option<RunFile>> {
         // Under this name lies no other scene, however the study was edited in between.
         let path = self.scratch.path().join(format!("{}.h5", hash_of(scene)));
@@ -73,11 +56,11 @@ impl<'a> Runs<'a> {
             // There is none, or one that cannot be used.
             _ => Run::one_of_many(scene, &path, self.shared)?,
         };
-        let (result, file) = run.execute_keeping(None)?;
-        if result.stop_reason == StopReason::Interrupted {
+        let results = run.execute(None)?;
+        if !results.is_complete() {
             return Ok(None);
         }
-        file.clone().into_deferred_writer(&path).save(&result.checkpoint, result.stop_reason, true)?;
-        Ok(Some(file))
+        results.save_over(&path)?;
+        Ok(Some(results.into_file()))
     }
 }

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use fretwear::Error;
 use fretwear::report;
 use fretwear::study::submit::{self, Engine, SubmitReport, Wishes};
-use fretwear::{Error, Result};
 
-use super::{complain, done};
+use super::complain;
+use super::end::{End, done};
 
 /// The study, the engine and what the jobs may take.
 #[derive(Args)]
@@ -64,7 +65,7 @@ pub struct Submit {
     force: bool,
 }
 
-pub fn submit(arguments: &Submit) -> Result<(String, ExitCode)> {
+pub fn submit(arguments: &Submit) -> End {
     let program = std::env::current_exe().map_err(|error| Error::File {
         path: "fretwear".into(),
         why: format!("where this program lies cannot be told: {error}"),
@@ -87,7 +88,8 @@ pub fn submit(arguments: &Submit) -> Result<(String, ExitCode)> {
         memory: arguments.memory.clone(),
         engine_options: arguments.engine_options.clone(),
     };
-    let report = SubmitReport::new(&submit::submit(&arguments.study, &arguments.output, &options)?);
+    let report =
+        SubmitReport::new(&submit::submit(&arguments.study, &arguments.output, &options).map_err(cured)?);
     let text = if arguments.json { report::json(&report) } else { report.text() };
     let Some(refusal) = &report.refusal else { return Ok(done(text)) };
     complain(
@@ -95,6 +97,21 @@ pub fn submit(arguments: &Submit) -> Result<(String, ExitCode)> {
         &format!("the scripts are written, but {} did not take them: {refusal}", report.engine),
     );
     Ok((text, ExitCode::FAILURE))
+}
+
+/// An error with the option that helps.
+fn cured(error: Error) -> Error {
+    match error {
+        Error::Option { name: "engine", why } => {
+            Error::Option { name: "engine", why: why + "; --dry-run writes the scripts all the same" }
+        }
+        Error::Exists { path } => Error::File {
+            path,
+            why: "exists already; `bash submit.sh` beside it hands in what is there, --force writes it anew"
+                .into(),
+        },
+        other => other,
+    }
 }
 
 /// The engine of a word.

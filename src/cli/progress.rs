@@ -3,10 +3,10 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use fretwear::Result;
+use fretwear::solver::simulation::{End, Flow, Observer, Simulation};
+use fretwear::study::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
-
-use crate::error::Result;
-use crate::solver::simulation::{End, Flow, Observer, Simulation};
 
 /// Parts into which the bar is divided.
 const PARTS: u64 = 1000;
@@ -28,15 +28,13 @@ impl Default for SceneProgress {
     }
 }
 
-impl SceneProgress {
-    /// So many scenes are to be done.
-    pub fn begin(&self, scenes: u64) {
+impl Progress for SceneProgress {
+    fn begin(&self, scenes: u64) {
         self.bar.set_length(scenes);
         self.bar.reset_eta();
     }
 
-    /// One is done.
-    pub fn done(&self, failed: bool) {
+    fn done(&self, failed: bool) {
         self.bar.inc(1);
         if failed {
             let count = self.failed.fetch_add(1, Ordering::Relaxed) + 1;
@@ -52,11 +50,11 @@ impl Drop for SceneProgress {
 }
 
 /// Shows cycles, τ, worn volume and the distance to the limit on stderr while a simulation runs; draws nothing unless that is a terminal.
-pub struct Progress {
+pub struct RunProgress {
     bar: ProgressBar,
 }
 
-impl Default for Progress {
+impl Default for RunProgress {
     fn default() -> Self {
         let bar = ProgressBar::new(PARTS);
         bar.set_style(
@@ -67,13 +65,13 @@ impl Default for Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for RunProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
 }
 
-impl Observer for Progress {
+impl Observer for RunProgress {
     fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
         if self.bar.is_hidden() {
             return Ok(Flow::Continue);

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use fretwear::Result;
 use fretwear::report;
-use fretwear::run::progress::SceneProgress;
 use fretwear::scene::UniversalityStudy;
+use fretwear::study::Progress;
 use fretwear::study::universality::{self, UniversalityReport};
 
-use super::{INTERRUPTED, complain, done, threads};
+use super::end::{End, Failure, done, interrupted};
+use super::progress::SceneProgress;
+use super::{complain, signals, threads};
 
 /// The study and where its results go.
 #[derive(Args)]
@@ -41,7 +42,7 @@ pub struct Universality {
     force: bool,
 }
 
-pub fn universality(arguments: &Universality) -> Result<(String, ExitCode)> {
+pub fn universality(arguments: &Universality) -> End {
     let study = UniversalityStudy::read(&arguments.study)?;
     if let Some(name) = &arguments.scene {
         let case = study.case(name)?;
@@ -52,25 +53,17 @@ pub fn universality(arguments: &Universality) -> Result<(String, ExitCode)> {
         return Ok(done(lines.collect()));
     };
     let options = universality::Options { threads: threads(arguments.threads), overwrite: arguments.force };
-    let ready = universality::Universality::new(&study, folder, &options)?;
+    let ready = universality::Universality::new(&study, folder, &options, &signals::stop()?)?;
     let shown = !arguments.quiet && !arguments.json;
     if shown {
         complain("note", &format!("{} cases in {} runs", study.cases().len(), ready.runs()));
     }
     let progress = shown.then(SceneProgress::default);
-    let outcome = ready.execute(progress.as_ref());
+    let outcome = ready.execute(progress.as_ref().map(|it| it as &dyn Progress));
     drop(progress);
-    let outcome = match outcome {
-        Ok(Some(outcome)) => outcome,
-        Ok(None) => {
-            complain("note", "stopped; the same command goes on from here");
-            return Ok((String::new(), ExitCode::from(INTERRUPTED)));
-        }
-        // The input was in order: what stops a study that has begun is a failure of the study.
-        Err(error) => {
-            complain("error", &error.to_string());
-            return Ok((String::new(), ExitCode::FAILURE));
-        }
+    let Some(outcome) = outcome.map_err(Failure::Failed)? else {
+        complain("note", "stopped; the same command goes on from here");
+        return Ok((String::new(), interrupted()));
     };
     let report = UniversalityReport::new(&study, &outcome);
     let text = match (arguments.json, arguments.quiet) {

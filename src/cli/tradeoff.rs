@@ -1,16 +1,16 @@
 //! `fretwear tradeoff`.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use fretwear::report;
-use fretwear::run::progress::SceneProgress;
 use fretwear::scene::Stepper;
+use fretwear::study::Progress;
 use fretwear::study::tradeoff::{self, Ladders, TradeoffReport};
-use fretwear::{Error, Result};
 
-use super::{INTERRUPTED, Settings, at, complain, done, read};
+use super::end::{End, Failure, done, interrupted};
+use super::progress::SceneProgress;
+use super::{Settings, at, complain, read, signals};
 
 /// Candidates of the trade-off and where its results go.
 #[derive(Args)]
@@ -59,7 +59,7 @@ fn stepper(word: &str) -> std::result::Result<Stepper, String> {
     known.ok_or_else(|| format!("give some of {}", Stepper::ALL.map(Stepper::name).join(", ")))
 }
 
-pub fn tradeoff(arguments: &Tradeoff) -> Result<(String, ExitCode)> {
+pub fn tradeoff(arguments: &Tradeoff) -> End {
     let scene = read(&arguments.scene, &Settings::default())?;
     let usual = Ladders::default();
     let ladders = Ladders {
@@ -75,35 +75,21 @@ pub fn tradeoff(arguments: &Tradeoff) -> Result<(String, ExitCode)> {
         keep_runs: arguments.keep_runs,
         overwrite: arguments.force,
     };
-    let ready = tradeoff::Tradeoff::new(&scene, &arguments.output, &options).map_err(at(
-        &scene,
-        &arguments.scene,
-        &Settings::default(),
-    ))?;
+    let ready = tradeoff::Tradeoff::new(&scene, &arguments.output, &options, &signals::stop()?)
+        .map_err(at(&scene, &arguments.scene, &Settings::default()))?;
     let shown = !arguments.quiet && !arguments.json;
     if shown {
         complain("note", &format!("{} candidates, one after the other", ready.candidates()));
     }
     let progress = shown.then(SceneProgress::default);
-    let outcome = ready.execute(progress.as_ref());
+    let outcome = ready.execute(progress.as_ref().map(|it| it as &dyn Progress));
     drop(progress);
-    let failed = |error: Error| {
-        complain("error", &error.to_string());
-        Ok((String::new(), ExitCode::FAILURE))
-    };
-    let outcome = match outcome {
-        Ok(Some(outcome)) => outcome,
-        Ok(None) => {
-            complain("note", "stopped; the same command goes on from here");
-            return Ok((String::new(), ExitCode::from(INTERRUPTED)));
-        }
-        // The input was in order: what stops a measurement that has begun is a failure of it.
-        Err(error) => return failed(error),
+    let Some(outcome) = outcome.map_err(Failure::Failed)? else {
+        complain("note", "stopped; the same command goes on from here");
+        return Ok((String::new(), interrupted()));
     };
     let mut report = TradeoffReport::new(&outcome);
-    if let Err(error) = report.write(&arguments.output, arguments.force) {
-        return failed(error);
-    }
+    report.write(&arguments.output, arguments.force).map_err(Failure::Failed)?;
     Ok(done(match (arguments.json, arguments.quiet) {
         (true, _) => report::json(&report),
         (false, true) => String::new(),

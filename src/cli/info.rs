@@ -1,0 +1,32 @@
+//! `fretwear info`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use fretwear::Result;
+use fretwear::data::DatasetSummary;
+use fretwear::report::{self, InfoReport};
+
+use super::result_file;
+
+#[derive(Args)]
+pub struct Info {
+    /// A result file that `fretwear run`, `sweep`, `merge`, `map`, `universality` or `tradeoff` wrote
+    #[arg(value_name = "FILE.h5")]
+    file: PathBuf,
+    /// Print one JSON object in SI units
+    #[arg(long)]
+    json: bool,
+    /// Read the file even if it does not fit its checksum or has none; a damaged one may hang or end this program
+    #[arg(long, visible_alias = "force")]
+    unchecked: bool,
+}
+
+pub fn info(arguments: &Info) -> Result<String> {
+    let file = result_file(&arguments.file, arguments.unchecked)?;
+    if let Some(summary) = DatasetSummary::read(file)? {
+        return Ok(if arguments.json { report::json(&summary) } else { report::arrays_text(&summary) });
+    }
+    let report = InfoReport::read(file)?;
+    Ok(if arguments.json { report::json(&report) } else { report.text() })
+}

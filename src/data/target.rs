@@ -1,0 +1,57 @@
+//! Files that are written: of a dataset at once, of a run with each of its saves.
+
+use std::path::{Path, PathBuf};
+
+use super::atomic::AtomicFile;
+use super::dataset::Dataset;
+use super::labelled::{laid_out, put_dataset};
+use super::save::Save;
+use super::seal::sealed;
+use crate::error::Result;
+
+/// The file that is written.
+#[derive(Debug)]
+pub(super) enum Target {
+    /// One that was seen to be writable.
+    Ready(AtomicFile),
+    /// One that is looked at when it is first written.
+    Later(PathBuf),
+}
+
+impl Target {
+    pub(super) fn new(path: &Path, overwrite: bool) -> Result<Self> {
+        AtomicFile::new(path, overwrite).map(Self::Ready)
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        match self {
+            Self::Ready(file) => file.path(),
+            Self::Later(path) => path,
+        }
+    }
+
+    pub(super) fn save(&mut self, save: &Save) -> Result<()> {
+        let bytes = sealed(laid_out(self.path(), |file| put_dataset(file, &save.dataset()))?);
+        if let Self::Later(path) = self {
+            *self = Self::Ready(AtomicFile::new(path, true)?);
+        }
+        match self {
+            Self::Ready(file) => file.write(&bytes),
+            Self::Later(_) => unreachable!("made ready above"),
+        }
+    }
+}
+
+impl Dataset {
+    /// Writes a file, as a whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::File`](crate::Error::File) if the file exists and `overwrite` is not given, or cannot be written.
+    ///
+    /// # Panics
+    /// If a variable runs along a dimension that has no coordinate before it.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
+        let mut file = AtomicFile::new(path, overwrite)?;
+        file.write(&sealed(laid_out(path, |file| put_dataset(file, self))?))
+    }
+}

@@ -1,0 +1,39 @@
+//! The limiting shape on the nodes of a run, and how far a snapshot is from it.
+
+use crate::contact::closed_form::LimitingShape;
+use crate::data::{LimitCurves, LimitDistance, RunHeader, Snapshot};
+use crate::scene::Scene;
+use crate::solver::model::Model;
+
+/// What of a run does not change.
+pub(super) fn header(scene: &Scene, model: &Model, limit: Option<&LimitingShape>) -> RunHeader {
+    RunHeader {
+        title: scene.title().map(str::to_owned),
+        scene: scene.text().to_owned(),
+        radius: model.radii(),
+        limit: limit.map(|limit| limit_curves(model, limit)),
+        table: scene.table().cloned(),
+        path: scene.path().cloned(),
+    }
+}
+
+/// Distance of a snapshot from the limit.
+pub(super) fn distance(
+    model: &Model,
+    limit: Option<&LimitingShape>,
+    last: &Snapshot,
+) -> Option<LimitDistance> {
+    limit.map(|limit| LimitDistance::new(&limit_curves(model, limit), last))
+}
+
+fn limit_curves(model: &Model, limit: &LimitingShape) -> LimitCurves {
+    let wear_depth: Vec<f64> =
+        model.offsets().into_iter().map(|offset| limit.wear_depth_at_offset(offset)).collect();
+    LimitCurves { profile: worn_profile(model, &wear_depth), wear_depth }
+}
+
+/// Profile, m, with a depth worn away at the radii of the output.
+pub(super) fn worn_profile(model: &Model, wear_depth: &[f64]) -> Vec<f64> {
+    let indenter = model.contact().indenter();
+    model.radii().iter().zip(wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect()
+}

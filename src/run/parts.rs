@@ -1,0 +1,115 @@
+//! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
+
+use super::accuracy::budget;
+use super::mesh;
+use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
+use crate::contact::stick_slip::Regime;
+use crate::error::{Error, Result};
+use crate::laws::history::History;
+use crate::laws::loading::Mode;
+use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
+use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
+use crate::solver::simulation::Plan;
+use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, Sdirk, Stepper};
+
+/// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
+pub(super) const SPRINGS_TO_SLIDE: usize = 60;
+
+/// Everything that follows from a scene alone.
+pub(super) struct Parts {
+    pub model: Model,
+    pub stepper: Box<dyn Stepper + Send>,
+    pub tolerance: f64,
+    pub plan: Plan,
+    pub limit: Option<LimitingShape>,
+}
+
+impl Parts {
+    /// # Arguments
+    /// * `numerics` -- those of the scene, or coarser ones
+    /// * `wanted` -- springs where none are given by hand, instead of those for the accuracy
+    pub(super) fn new(
+        scene: &Scene,
+        numerics: &Numerics,
+        wanted: Option<usize>,
+        store: &OperatorStore,
+    ) -> Result<Self> {
+        let parts = Self::on_any(scene, numerics, wanted, store)?;
+        check_sliding(&parts.model)?;
+        Ok(parts)
+    }
+
+    /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that slides as a whole.
+    pub(super) fn on_any(
+        scene: &Scene,
+        numerics: &Numerics,
+        wanted: Option<usize>,
+        store: &OperatorStore,
+    ) -> Result<Self> {
+        let contact = scene.contact()?;
+        check_regime(scene, &contact)?;
+        let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
+        let model = mesh::model(&contact, &schedule, numerics, wanted, store)?;
+        let by_energy = *model.schedule().friction_along_energy() != History::Constant;
+        let unlimited = model.slides() || scene.conditions().holds_normal_force || by_energy;
+        let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
+        check_stepper(numerics.stepper, &model)?;
+        let tolerance = numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy));
+        let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
+            StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
+            StepperChoice::CycleJump => Box::<CycleJump>::default(),
+            StepperChoice::Implicit if model.wears_smoothly() => Box::new(Bdf::new(tolerance)),
+            StepperChoice::Implicit => Box::new(Sdirk::new(tolerance)),
+        };
+        let whole = numerics.stepper == StepperChoice::EveryCycle;
+        let plan =
+            super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
+        Ok(Self { model, stepper, tolerance, plan, limit })
+    }
+}
+
+/// Refuses contacts in which nothing slips and so nothing wears, where the first cycle tells.
+fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
+    if contact.regime() != Regime::Stick || !scene.conditions().is_plain() {
+        return Ok(());
+    }
+    let amplitude = contact.amplitude();
+    let why = format!("{amplitude:e} m leaves the whole contact stuck, so that nothing wears; ask for more");
+    Err(Error::Inconsistent { what: scene.loading().amplitude.key(), why })
+}
+
+/// Refuses too few springs for a mesh that reaches nearly to the axis.
+fn check_sliding(model: &Model) -> Result<()> {
+    let springs = model.springs();
+    if !model.slides() || springs >= SPRINGS_TO_SLIDE {
+        return Ok(());
+    }
+    let why = format!(
+        "{springs} springs are too few where the whole contact slides; ask for at least {SPRINGS_TO_SLIDE}, or for a smaller amplitude"
+    );
+    Err(Error::Inconsistent { what: "numerics.springs", why })
+}
+
+/// Refuses explicit steps where the edge of stick moves.
+fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
+    if model.moving().is_none() || stepper == StepperChoice::Implicit {
+        return Ok(());
+    }
+    Err(Error::Inconsistent {
+        what: "numerics.stepper",
+        why: format!(
+            "{:?} does not follow an edge of stick that moves (a force that is held, a rig, friction that changes, blocks that shrink); \
+             leave it out or write \"implicit\"",
+            stepper.name()
+        ),
+    })
+}
+
+/// How periods are passed through.
+pub(super) fn resolution(scene: &Scene, numerics: &Numerics) -> Resolution {
+    let sampled = scene.conditions().mode != Mode::Tangential && numerics.springs.is_none();
+    let chosen = sampled.then(|| budget::substeps_for(numerics.accuracy));
+    let resolved = numerics.cycle == Some(Cycle::Resolved);
+    Resolution { resolved, substeps: numerics.substeps.or(chosen) }
+}

@@ -1,0 +1,246 @@
+//! A scene simulated in memory: no file, no signal, nothing printed.
+
+use super::accuracy::budget;
+use super::cost::{self, Expected};
+use super::limit::{distance, header};
+use super::parts::Parts;
+use super::ready::Ready;
+use super::recorder::{Recorder, snapshot};
+use super::{Results, Shared, Stop};
+use crate::contact::closed_form::LimitingShape;
+use crate::data::{Checkpoint, RunHeader, RunWriter, Snapshot, StopReason};
+use crate::error::{Error, Result};
+use crate::scene::{Scene, Stepper};
+use crate::solver::simulation::{self as stepping, Flow, Observer, Outcome};
+
+/// A scene that is ready to be simulated, with whoever looks on.
+///
+/// ```
+/// # let scene: fretwear::Scene = include_str!("../../data/scenes/paraboloid.toml").parse()?;
+/// let (stop, mut seen) = (fretwear::Stop::default(), vec![]);
+/// let results = fretwear::Simulation::new(&scene)?
+///     .stopped_by(&stop)
+///     .on_snapshot(|snapshot| {
+///         seen.push(snapshot.wear_volume);
+///         if seen.len() == 10 {
+///             stop.stop();
+///         }
+///     })
+///     .run()?;
+/// assert!(!results.is_complete() && results.worn_volume() == seen);
+/// # Ok::<(), fretwear::Error>(())
+/// ```
+pub struct Simulation<'a> {
+    pub(super) stepping: stepping::Simulation,
+    pub(super) limit: Option<LimitingShape>,
+    pub(super) warning: Option<String>,
+    pub(super) scene: Scene,
+    pub(super) shared: Shared,
+    pub(super) writer: RunWriter,
+    /// Whether the file of the writer, if there is one, is to hold the result; else only checkpoints are written.
+    pub(super) saves_result: bool,
+    pub(super) wall_seconds_before: f64,
+    pub(super) watchers: Vec<Watcher<'a>>,
+}
+
+/// Called at each snapshot.
+type Watcher<'a> = Box<dyn FnMut(&Snapshot) + 'a>;
+
+impl Scene {
+    /// Simulates the scene from its first cycle to its end, in memory.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`] and [`Simulation::run`].
+    pub fn simulate(&self) -> Result<Results> {
+        Simulation::new(self)?.run()
+    }
+}
+
+impl<'a> Simulation<'a> {
+    /// Prepares a scene: mesh, transforms, the unworn contact.
+    ///
+    /// # Errors
+    /// Those of the physics where in the scene nothing slips, or it needs more memory than there is. Each names a key of the scene.
+    pub fn new(scene: &Scene) -> Result<Self> {
+        Ok(Self::sharing(scene, &Shared::default())?.warned())
+    }
+
+    /// With a word about what it will take, where that is long.
+    pub(super) fn warned(mut self) -> Self {
+        self.warning = cost::expected(self.scene.numerics().stepper, &mut self.stepping).warning;
+        self
+    }
+
+    /// Prepares one scene of many, whose cost nobody asks for.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn sharing(scene: &Scene, shared: &Shared) -> Result<Self> {
+        Self::begin(scene, shared, |header| Ok(RunWriter::in_memory(header)))
+    }
+
+    pub(super) fn begin(
+        scene: &Scene,
+        shared: &Shared,
+        writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
+    ) -> Result<Self> {
+        let Ready { simulation: stepping, limit } = Ready::new(scene, &shared.operators)?;
+        if scene.numerics().stepper == Stepper::Implicit {
+            stepping.model().release_factors();
+        }
+        Ok(Self {
+            writer: writer(header(scene, stepping.model(), limit.as_ref()))?,
+            stepping,
+            limit,
+            warning: None,
+            scene: scene.clone(),
+            shared: shared.clone(),
+            saves_result: true,
+            wall_seconds_before: 0.0,
+            watchers: vec![],
+        })
+    }
+
+    /// Refuses what [`Simulation::new`] refuses, with the same words; else what the run will take.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn check(scene: &Scene) -> Result<Expected> {
+        let mut ready = Ready::new(scene, &Shared::default().operators)?;
+        Ok(cost::expected(scene.numerics().stepper, &mut ready.simulation))
+    }
+
+    /// Stops at the next step once the token says so; the results are then those up to there.
+    #[must_use]
+    pub fn stopped_by(mut self, stop: &Stop) -> Self {
+        self.shared.stop = stop.clone();
+        self
+    }
+
+    /// Calls back at each snapshot, the unworn contact first.
+    ///
+    /// A run whose error turns out larger than was asked for is made anew on more springs, and its snapshots come again from the unworn
+    /// contact on.
+    #[must_use]
+    pub fn on_snapshot(mut self, watcher: impl FnMut(&Snapshot) + 'a) -> Self {
+        self.watchers.push(Box::new(watcher));
+        self
+    }
+
+    /// A word about a run that will take long, where that is known beforehand.
+    pub fn warning(&self) -> Option<&str> {
+        self.warning.as_deref()
+    }
+
+    /// The loop over cycles, at its start or where it goes on.
+    #[doc(hidden)]
+    pub fn stepping(&self) -> &stepping::Simulation {
+        &self.stepping
+    }
+
+    /// Runs to the end, or until it is stopped.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] tells the moment from which the run cannot go on.
+    pub fn run(self) -> Result<Results> {
+        self.run_with(None)
+    }
+
+    /// Runs as [`Simulation::run`] does, and shows each step to an observer.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`]; those of the observer; where there is a file, [`Error::File`] if it cannot be written.
+    #[doc(hidden)]
+    pub fn run_with(self, observer: Option<&mut dyn Observer>) -> Result<Results> {
+        let Self {
+            stepping, limit, scene, shared, writer, saves_result, wall_seconds_before, watchers, ..
+        } = self;
+        let mut recorder = Recorder::new(&scene, writer, wall_seconds_before, &shared);
+        recorder.saves_result = saves_result;
+        let mut onlookers = Onlookers { watchers, observer };
+        let end = to_the_end(stepping, limit, &scene, &shared, &mut recorder, &mut onlookers);
+        let End { stepping, limit, outcome, checkpoint } = end;
+        let stop_reason = outcome.as_ref().map_or(StopReason::Interrupted, |outcome| (*outcome).into());
+        let complete = stop_reason != StopReason::Interrupted;
+        if recorder.saves(complete, outcome.is_err()) {
+            recorder.writer.save(&checkpoint, stop_reason, complete)?;
+        }
+        outcome?;
+        let last = snapshot(&stepping);
+        let distance = distance(stepping.model(), limit.as_ref(), &last);
+        let indenter = stepping.model().contact().indenter().clone();
+        let (header, snapshots) = recorder.writer.into_parts();
+        Ok(Results { header, snapshots, checkpoint, stop_reason, last, limit, distance, indenter })
+    }
+}
+
+/// Where a run ended, and on which springs.
+struct End {
+    stepping: stepping::Simulation,
+    limit: Option<LimitingShape>,
+    outcome: Result<Outcome>,
+    checkpoint: Checkpoint,
+}
+
+/// Runs to the end, and anew on more springs as long as the error is larger than was asked for.
+fn to_the_end(
+    mut stepping: stepping::Simulation,
+    mut limit: Option<LimitingShape>,
+    scene: &Scene,
+    shared: &Shared,
+    recorder: &mut Recorder,
+    onlookers: &mut Onlookers,
+) -> End {
+    let store = &shared.operators;
+    let mut refinements = 0;
+    // Springs on which the run came to an end, if less accurately than was asked for.
+    let mut ended = None;
+    loop {
+        recorder.run_companions(scene, store, &stepping, limit.is_some());
+        let outcome = stepping.run(&mut [&mut *recorder, &mut *onlookers]);
+        let checkpoint = recorder.checkpoint(&stepping);
+        let springs = match (&outcome, ended) {
+            // Finer ones do not.
+            (Err(Error::NotConverged { .. }), Some(springs)) => {
+                refinements = budget::REFINEMENTS;
+                Some(springs)
+            }
+            _ if refinements < budget::REFINEMENTS => {
+                recorder.more_springs(scene, &stepping, &outcome, &checkpoint)
+            }
+            _ => None,
+        };
+        if let Some(springs) = springs
+            && let Ok(parts) = Parts::new(scene, scene.numerics(), Some(springs), store)
+            && let Ok(finer) =
+                stepping::Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)
+        {
+            ended = outcome.is_ok().then(|| stepping.model().springs());
+            (stepping, limit) = (finer, parts.limit);
+            recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
+            refinements += 1;
+            continue;
+        }
+        return End { stepping, limit, outcome, checkpoint };
+    }
+}
+
+/// Whoever looks on besides the recorder.
+struct Onlookers<'a, 'b> {
+    watchers: Vec<Watcher<'a>>,
+    observer: Option<&'b mut dyn Observer>,
+}
+
+impl Observer for Onlookers<'_, '_> {
+    fn output(&mut self, simulation: &stepping::Simulation) -> Result<()> {
+        if !self.watchers.is_empty() {
+            let shown = snapshot(simulation);
+            self.watchers.iter_mut().for_each(|watcher| watcher(&shown));
+        }
+        self.observer.as_mut().map_or(Ok(()), |observer| observer.output(simulation))
+    }
+
+    fn step(&mut self, simulation: &stepping::Simulation) -> Result<Flow> {
+        self.observer.as_mut().map_or(Ok(Flow::Continue), |observer| observer.step(simulation))
+    }
+}
