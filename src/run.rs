@@ -4,6 +4,7 @@ use crate::data::StopReason;
 use crate::solver::simulation::Outcome;
 
 mod accuracy;
+mod budget;
 mod cost;
 #[cfg(feature = "hdf5")]
 mod file;

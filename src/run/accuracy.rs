@@ -1,6 +1,5 @@
-//! What `numerics.accuracy` chooses, and how the error of what comes of it is known.
+//! How the error of a run is estimated whose springs the program chose: by coarser runs of the same scene.
 
-pub(super) mod budget;
 mod companion;
 pub(super) mod estimate;
 mod substeps;

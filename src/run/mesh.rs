@@ -1,8 +1,7 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
-use super::accuracy::budget::{MOST_RAISED, smallness, springs_for};
+use super::budget::{MOST_RAISED, smallness, springs_for};
 use super::memory::memory_figure;
-use super::parts::SPRINGS_TO_SLIDE;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
@@ -10,6 +9,9 @@ use crate::numerics::abel::Backend;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Stepper};
 use crate::solver::model::{Model, OperatorStore, Schedule};
+
+/// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
+pub(super) const SPRINGS_TO_SLIDE: usize = 60;
 
 /// Grading below which nodes cluster as `N^-2` at the edge of stick. There the depth of the limit is nearly linear, so that finer ones resolve
 /// nothing, and where the pressure at the edge blows up they are unstable (docs/extremes.md).

@@ -1,7 +1,7 @@
 //! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
 
-use super::accuracy::budget;
-use super::mesh;
+use super::budget;
+use super::mesh::{self, SPRINGS_TO_SLIDE};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
@@ -12,9 +12,6 @@ use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
 use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::solver::simulation::Plan;
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, Sdirk, Stepper};
-
-/// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
-pub(super) const SPRINGS_TO_SLIDE: usize = 60;
 
 /// Everything that follows from a scene alone.
 pub(super) struct Parts {

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::Shared;
-use super::accuracy::budget;
 use super::accuracy::estimate::Companions;
+use super::budget;
 use super::limit::worn_profile;
 use crate::data::{Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};

@@ -1,6 +1,6 @@
 //! A scene simulated in memory: no file, no signal, nothing printed.
 
-use super::accuracy::budget;
+use super::budget;
 use super::cost::{self, Expected};
 use super::limit::{distance, header};
 use super::parts::Parts;

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
+use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
 use super::companion::{Coarser, Companion, Worn};
 use super::substeps::larger;
 use crate::data::{Snapshot, same_cycles};
