@@ -66,7 +66,7 @@ impl Schema {
             let units = schema::unit_of(key);
             let [has_numbers, has_words] = self.kinds[index];
             if has_numbers {
-                columns.push(column(quantity(&name, &units, &long_name), numbers));
+                columns.push(column(quantity(&name, units, &long_name), numbers));
             }
             // Where a key has both, the words have a column of their own.
             if has_words {
