@@ -11,7 +11,7 @@
 //!
 //! let folder = tempfile::tempdir()?;
 //! let file = folder.path().join("run.h5");
-//! Run::new(&Scene::read(Path::new("data/scenes/paraboloid.toml"))?, &file, false, &Default::default())?.execute(None)?;
+//! Run::new(&Scene::from_path(Path::new("data/scenes/paraboloid.toml"))?, &file, false, &Default::default())?.execute(None)?;
 //! let results = Results::read(&file)?;
 //! assert_eq!(results.kinds()[0], Kind::Profile);
 //! let figure = results.figure(Kind::History, None)?;

@@ -70,7 +70,7 @@
 //! | `numerics` | quadrature, roots, linear algebra, Abel transforms on a mesh |
 //!
 //! SI units everywhere, nothing is scaled behind the scenes; the library neither prints nor exits.
-
+//!
 //! # Features
 //!
 //! | feature | what it adds |

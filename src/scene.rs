@@ -228,11 +228,12 @@ impl Scene {
         sections::scene(&document::Section::root(source, document.get_ref()), text, rows)
     }
 
-    /// Reads a scene from a file; the files that it names are taken relative to its folder.
+    /// Reads a scene from a TOML file; the files that it names are taken relative to its folder.
     ///
     /// # Errors
     /// [`Error::File`] if it cannot be read as text, else as [`Scene::from_toml`].
-    pub fn read(path: &Path) -> Result<Self> {
+    pub fn from_path(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::with_rows(&read_text(path)?, &path.display().to_string(), &Rows::In(folder))
     }

@@ -134,7 +134,7 @@ fn the_scenes_give_the_closed_form_and_what_their_comments_say() {
         let json = object(folder.path(), &arguments);
         let number =
             |key: &str| json[key].as_f64().unwrap_or_else(|| panic!("{name}: {key} = {}", json[key]));
-        let scene = Scene::read(&path).unwrap();
+        let scene = Scene::from_path(&path).unwrap();
         let contact = scene.contact().unwrap();
         let (grading, depth) = (scene.half_space().grading(), contact.indentation());
         let shape = LimitingShape::new(scene.indenter(), grading, depth, contact.slip_compression()).unwrap();
@@ -206,7 +206,7 @@ fn csv_holds_the_profile_with_all_digits_and_is_never_overwritten_unasked() {
     let printed = done(folder.path(), &["limit", scene, "--csv", "table.csv"]);
     assert!(printed.contains("contact radius a∞, limit           98.9913 µm"), "{printed}");
     let table = fs::read_to_string(folder.path().join("table.csv")).unwrap();
-    let report = LimitReport::new(&Scene::read(&path).unwrap(), None).unwrap();
+    let report = LimitReport::new(&Scene::from_path(&path).unwrap(), None).unwrap();
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("radius_m,initial_profile_m,limit_profile_m,wear_depth_m"));
     let rows: Vec<Vec<f64>> =

@@ -296,7 +296,7 @@ fn a_contact_that_slides_under_a_held_force_never_stops_wearing_and_says_so() {
 fn every_law_and_mode_resumes_to_the_same_bits() {
     for mode in &MODES {
         let folder = folder_with(&mode.scene("snapshots = 5"));
-        let scene = Scene::read(&folder.path().join("scene.toml")).expect("a scene");
+        let scene = Scene::from_path(folder.path().join("scene.toml")).expect("a scene");
         let (_, [expected, found], interruptions) = whole_and_in_parts(&scene, folder.path(), 2);
         assert!(interruptions >= 2, "{}: {interruptions}", mode.name);
         let bits = |file: &RunFile| -> Vec<u64> {
@@ -315,7 +315,7 @@ fn a_run_until_a_rate_with_blocks_resumes_to_the_same_end() {
         ..PLAIN
     };
     let folder = folder_with(&mode.scene("snapshots = 5"));
-    let scene = Scene::read(&folder.path().join("scene.toml")).expect("a scene");
+    let scene = Scene::from_path(folder.path().join("scene.toml")).expect("a scene");
     let (result, [expected, found], _) = whole_and_in_parts(&scene, folder.path(), 11);
     assert_eq!(result.stop_reason(), StopReason::Rate);
     assert!(found == expected);

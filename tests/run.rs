@@ -115,7 +115,7 @@ fn the_scenes_that_come_along_give_the_keys_and_curves_promised() {
         assert_eq!(json["output"], output.as_str());
 
         let file = RunFile::open(&folder.path().join(output)).unwrap();
-        let scene = Scene::read(&path).unwrap();
+        let scene = Scene::from_path(&path).unwrap();
         let contact = scene.contact().unwrap();
         let shape = LimitingShape::from_contact(&contact).unwrap().unwrap();
         assert!(file.complete);

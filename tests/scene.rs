@@ -646,7 +646,7 @@ fn line_ends_of_windows_a_byte_order_mark_and_inline_tables_are_read() {
 #[test]
 fn a_file_that_is_no_scene_is_refused_with_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
-    let failure = |path: &Path| Scene::read(path).expect_err("no scene").to_string();
+    let failure = |path: &Path| Scene::from_path(path).expect_err("no scene").to_string();
     let missing = failure(&folder.path().join("missing.toml"));
     assert!(missing.contains("missing.toml: there is no such file"), "{missing}");
     assert!(failure(folder.path()).contains("is a directory"));
@@ -660,7 +660,7 @@ fn a_file_that_is_no_scene_is_refused_with_its_name() {
     assert!(failure(&path).contains("indenter is missing"));
     assert!(failure(Path::new("/dev/zero")).contains("is not a regular file"));
     std::fs::write(&path, VALID).expect("written");
-    assert_eq!(Scene::read(&path).expect("a scene").text(), VALID);
+    assert_eq!(Scene::from_path(&path).expect("a scene").text(), VALID);
 }
 
 #[test]
@@ -679,7 +679,7 @@ fn the_scenes_that_come_with_the_program_are_valid_and_without_warnings() {
     names.sort();
     assert!(names.len() >= 4);
     for path in names {
-        let scene = Scene::read(&path).unwrap_or_else(|error| panic!("{error}"));
+        let scene = Scene::from_path(&path).unwrap_or_else(|error| panic!("{error}"));
         // Of one that is not plain the limit is.
         let expected = usize::from(!scene.conditions().is_plain());
         assert_eq!(scene.warnings().len(), expected, "{}: {:?}", path.display(), scene.warnings());
@@ -690,7 +690,7 @@ fn the_scenes_that_come_with_the_program_are_valid_and_without_warnings() {
 
 #[test]
 fn the_main_scene_reaches_the_limit_within_its_million_cycles() {
-    let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes/paraboloid.toml"))
+    let scene = Scene::from_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes/paraboloid.toml"))
         .expect("a scene");
     let Indenter::Paraboloid { radius } = *scene.indenter() else { panic!("no paraboloid") };
     let (Load::InitialForce(force), Amplitude::Displacement(amplitude), Duration::Cycles(cycles)) =

@@ -218,7 +218,7 @@ fn read_path(rows: &str, keys: &str) -> fretwear::Result<Scene> {
     let folder = folder_with(rows);
     let text = scene(FRICTION, WEAR, &format!("{BARE}[loading.path]\nfile = \"path.csv\"\n{keys}"));
     fs::write(folder.path().join("scene.toml"), text).expect("the scene");
-    Scene::read(&folder.path().join("scene.toml"))
+    Scene::from_path(folder.path().join("scene.toml"))
 }
 
 #[test]
@@ -538,7 +538,7 @@ fn a_held_normal_force_goes_with_nothing_that_changes_the_indentation() {
         let folder = folder_with(rows);
         let file = folder.path().join("scene.toml");
         fs::write(&file, scene(FRICTION, WEAR, bare)).expect("the scene");
-        match Scene::read(&file) {
+        match Scene::from_path(&file) {
             Ok(scene) => assert!(taken && scene.conditions().holds_normal_force),
             Err(error) => assert!(!taken && error.to_string().contains(words[0]), "{error}"),
         }
@@ -548,11 +548,14 @@ fn a_held_normal_force_goes_with_nothing_that_changes_the_indentation() {
     let control = bare.replace("tau = 30", "tau = 30\nrig_stiffness = 1e6");
     fs::write(&file, scene(FRICTION, WEAR, &control)).expect("the scene");
     assert!(
-        Scene::read(&file).unwrap_err().to_string().contains("loading.path does not go together with a rig")
+        Scene::from_path(&file)
+            .unwrap_err()
+            .to_string()
+            .contains("loading.path does not go together with a rig")
     );
     let amplitude = bare.replace("tau = 30", "tau = 30\nstick_ratio = 0.5");
     fs::write(&file, scene(FRICTION, WEAR, &amplitude)).expect("the scene");
-    let found = Scene::read(&file).unwrap_err().to_string();
+    let found = Scene::from_path(&file).unwrap_err().to_string();
     assert!(found.contains("loading.stick_ratio has no meaning beside loading.path"), "{found}");
 }
 

@@ -187,7 +187,7 @@ fn a_scene_smooths_shows_the_residual_and_keeps_rows_and_key_in_its_result() {
     assert!(shown.contains("residual of its rows               rms "), "{shown}");
 
     done(at, &["run", "scene.toml", "--quiet"]);
-    let expected = Scene::read(&at.join("scene.toml")).unwrap();
+    let expected = Scene::from_path(at.join("scene.toml")).unwrap();
     std::fs::remove_file(at.join("rows.txt")).unwrap();
     let file = RunFile::open(&at.join("scene.h5")).unwrap();
     let table = file.header.table.clone().expect("the rows");

@@ -39,7 +39,7 @@ fn folder_with(scene: &str, rows: impl AsRef<[u8]>) -> tempfile::TempDir {
 }
 
 fn read(rows: impl AsRef<[u8]>) -> fretwear::Result<Scene> {
-    Scene::read(&folder_with(&table("tau = 1"), rows).path().join("scene.toml"))
+    Scene::from_path(folder_with(&table("tau = 1"), rows).path().join("scene.toml"))
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn every_way_of_writing_the_same_rows_gives_the_same_profile() {
         &scene("[indenter.table]\nfile = \"rows.csv\"", "tau = 1"),
         ROWS.map(|(r, f)| format!("{:e} {:e}\n", r * 1e-3, f * 1e-6)).concat(),
     );
-    let metres = Scene::read(&folder.path().join("scene.toml")).unwrap();
+    let metres = Scene::from_path(folder.path().join("scene.toml")).unwrap();
     for (metres, table) in metres.table().unwrap().heights().iter().zip(table.heights()) {
         assert!((metres - table).abs() <= 1e-15 * table);
     }
@@ -302,7 +302,7 @@ fn an_interrupted_run_goes_on_without_the_file_of_the_profile_and_gives_the_same
         let table = found.header.table.expect("the rows");
         assert_eq!(
             Indenter::Table(table),
-            *Scene::read(&whole.path().join("scene.toml")).unwrap().indenter()
+            *Scene::from_path(whole.path().join("scene.toml")).unwrap().indenter()
         );
         return;
     }

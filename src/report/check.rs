@@ -31,7 +31,7 @@ const LONG_CYCLE: f64 = 0.01;
 /// use fretwear::report::{CheckReport, json};
 /// use fretwear::scene::Scene;
 ///
-/// let scene = Scene::read(Path::new("data/scenes/paraboloid.toml"))?;
+/// let scene = Scene::from_path(Path::new("data/scenes/paraboloid.toml"))?;
 /// let report = CheckReport::new(&scene)?;
 /// assert!((report.contact_radius_initial - 8.7e-5).abs() < 1e-6);
 /// assert!(report.text().contains("regime                             partial-slip"));

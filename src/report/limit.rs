@@ -25,7 +25,7 @@ use crate::units::{Dimension, parse};
 /// use fretwear::report::LimitReport;
 /// use fretwear::scene::Scene;
 ///
-/// let scene = Scene::read(Path::new("data/scenes/paraboloid.toml"))?;
+/// let scene = Scene::from_path(Path::new("data/scenes/paraboloid.toml"))?;
 /// let report = LimitReport::new(&scene, Some(&[0.0, 80e-6]))?;
 /// assert_eq!(report.profile.initial, [0.0, 80e-6 * 80e-6 / 0.02]);
 /// assert!(report.form.limit.is_some_and(|shape| shape.wear_volume() > 0.0));

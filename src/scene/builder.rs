@@ -1,6 +1,5 @@
 //! Scenes made in memory: from a file, from text, key by key.
 
-use std::path::Path;
 use std::str::FromStr;
 
 use toml::{Table, Value};
@@ -72,14 +71,6 @@ impl Scene {
     /// Begins a scene without any key.
     pub fn builder() -> SceneBuilder {
         SceneBuilder::default()
-    }
-
-    /// Reads a scene from a TOML file; the files that it names are taken relative to its folder.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it cannot be read as text, else as [`Scene::from_toml`].
-    pub fn from_path(path: impl AsRef<Path>) -> Result<Self> {
-        Self::read(path.as_ref())
     }
 }
 

@@ -156,34 +156,29 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses keys other than `known`, and those of `planned` with a word of their own.
-    pub(super) fn only(&self, known: &[&str], planned: &[&str]) -> Result<()> {
-        let stranger = |key: &str| !known.contains(&key);
-        let first =
-            self.table.keys().filter(|key| stranger(key.get_ref())).min_by_key(|key| key.span().start);
-        let Some(key) = first else { return Ok(()) };
-        let (name, place) = (self.name(key.get_ref()), key.span());
-        if planned.contains(&key.get_ref().as_ref()) {
-            return Err(self.source.error(place, format_args!("this version does not offer {name}")));
-        }
-        let cure = suggestion(key.get_ref(), known);
-        Err(self.source.error(place, format_args!("{name} is not a key of {}; {cure}", self.source.kind)))
+    /// Refuses keys other than `known`.
+    pub(super) fn only(&self, known: &[&str]) -> Result<()> {
+        self.refuse_strangers(|key| known.contains(&key), |stranger| suggestion(stranger, known))
     }
 
     /// Refuses keys that a table does not have.
     pub(super) fn only_of(&self, table: &Table) -> Result<()> {
-        let mut keys: Vec<_> = self.table.keys().collect();
-        keys.sort_by_key(|key| key.span().start);
-        let Some(stranger) = keys.iter().find(|key| table.key(key.get_ref()).is_none()) else {
-            return Ok(());
-        };
-        let (word, place) = (stranger.get_ref(), stranger.span());
-        let cure = match table.keys.iter().find(|key| key.aliases.contains(&&**word)) {
-            Some(key) => format!("did you mean {}?", key.name),
-            None => suggestion(word, &table.keys.iter().map(|key| key.name).collect::<Vec<_>>()),
-        };
-        let message = format!("{} is not a key of {}; {cure}", self.name(word), self.source.kind);
-        Err(self.source.error(place, message))
+        self.refuse_strangers(
+            |key| table.key(key).is_some(),
+            |stranger| match table.keys.iter().find(|key| key.aliases.contains(&stranger)) {
+                Some(key) => format!("did you mean {}?", key.name),
+                None => suggestion(stranger, &table.keys.iter().map(|key| key.name).collect::<Vec<_>>()),
+            },
+        )
+    }
+
+    /// Refuses the first key that is not known.
+    fn refuse_strangers(&self, is_known: impl Fn(&str) -> bool, cure: impl Fn(&str) -> String) -> Result<()> {
+        let strangers = self.table.keys().filter(|key| !is_known(key.get_ref()));
+        let Some(first) = strangers.min_by_key(|key| key.span().start) else { return Ok(()) };
+        let (name, cure) = (self.name(first.get_ref()), cure(first.get_ref()));
+        let message = format!("{name} is not a key of {}; {cure}", self.source.kind);
+        Err(self.source.error(first.span(), message))
     }
 
     /// Names of keys of this table: `a, b or c`.

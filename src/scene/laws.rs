@@ -133,7 +133,7 @@ pub(super) fn history(section: &Section, ends_at_zero: bool, clock: &mut OneCloc
     const TIMES: [&str; 2] = ["at_cycles", "at_tau"];
     let Some(entry) = section.optional("history") else { return Ok(History::Constant) };
     let history = entry.section()?;
-    history.only(&[FORMS, TIME, TIMES].concat(), &[])?;
+    history.only(&[FORMS, TIME, TIMES].concat())?;
     match history.one_of(&FORMS)? {
         ("final_factor", last) => {
             history.refuse_beside(&TIMES, &last)?;

@@ -77,7 +77,7 @@ impl MapScene {
     /// Reads the file.
     ///
     /// # Errors
-    /// As [`Scene::read`](super::Scene::read).
+    /// As [`Scene::from_path`](super::Scene::from_path).
     pub fn read(path: &Path) -> Result<Self> {
         Self::from_toml(&read_text(path)?, &path.display().to_string())
     }

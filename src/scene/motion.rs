@@ -40,7 +40,7 @@ impl Motion {
 
 /// Reads everything but what the mode takes from the contact.
 pub(super) fn motion(section: &Section, rows: &Rows, clock: &mut OneClock) -> Result<Motion> {
-    section.only(&[&LOADS[..], &AMPLITUDES, &DURATIONS, &MODES, &OTHERS].concat(), &[])?;
+    section.only(&[&LOADS[..], &AMPLITUDES, &DURATIONS, &MODES, &OTHERS].concat())?;
     section.at_most_one_of(&MODES)?;
     let load = match section.one_of(&LOADS)? {
         ("indentation", entry) => Load::Indentation(entry.positive(Dimension::LENGTH)?),
@@ -100,7 +100,7 @@ fn amplitude(section: &Section) -> Result<Amplitude> {
 
 /// A recorded path, from its file or as it was stored.
 fn path(section: &Section, rows: &Rows) -> Result<Arc<RecordedPath>> {
-    section.only(&["file", "displacement_unit"], &[])?;
+    section.only(&["file", "displacement_unit"])?;
     let name = section.file_name("for example \"path.csv\", columns x and y")?;
     let unit = section.length_unit("displacement_unit")?;
     match rows {
@@ -148,7 +148,7 @@ fn blocks(section: &Section, clock: &mut OneClock) -> Result<Vec<Block>> {
 fn block(section: &Section, clock: &mut OneClock) -> Result<Block> {
     const TIMES: [&str; 2] = ["cycles", "tau"];
     const FACTORS: [&str; 2] = ["amplitude_factor", "indentation_factor"];
-    section.only(&[TIMES, FACTORS].concat(), &[])?;
+    section.only(&[TIMES, FACTORS].concat())?;
     let (key, duration) = section.one_of(&TIMES)?;
     clock.take(clock_of(key), &duration)?;
     let factor = |key: &str, range: &str, least: f64| match section.optional(key) {
@@ -198,7 +198,7 @@ pub(super) fn mode<'c>(
 
 fn normal_oscillation(section: &Section, indentation: f64, shallowest: f64) -> Result<Mode> {
     const AMPLITUDES: [&str; 2] = ["amplitude", "amplitude_ratio"];
-    section.only(&[&AMPLITUDES[..], &["frequency_ratio", "phase"]].concat(), &[])?;
+    section.only(&[&AMPLITUDES[..], &["frequency_ratio", "phase"]].concat())?;
     let (key, entry) = section.one_of(&AMPLITUDES)?;
     let amplitude = match key {
         "amplitude" => entry.positive(Dimension::LENGTH)?,
@@ -261,7 +261,7 @@ fn common_divisor(mut a: u64, mut b: u64) -> u64 {
 
 fn orbit(section: &Section, amplitude: f64) -> Result<Mode> {
     const AMPLITUDES: [&str; 2] = ["transverse_amplitude", "transverse_ratio"];
-    section.only(&[&AMPLITUDES[..], &["phase", "centre_x", "centre_y"]].concat(), &[])?;
+    section.only(&[&AMPLITUDES[..], &["phase", "centre_x", "centre_y"]].concat())?;
     let (key, entry) = section.one_of(&AMPLITUDES)?;
     let transverse_amplitude = match key {
         "transverse_amplitude" => entry.positive(Dimension::LENGTH)?,

@@ -135,22 +135,22 @@ fn table<'a>(root: &Section<'a>, table: &Table) -> Result<Section<'a>> {
 
 fn indenter(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Indenter> {
     const SHAPES: [&str; 5] = ["paraboloid", "sphere", "cone", "power-law", "table"];
-    section.only(&SHAPES, &[])?;
+    section.only(&SHAPES)?;
     let (shape, entry) = section.one_of(&SHAPES)?;
     let body = entry.section()?;
     match shape {
         "paraboloid" | "sphere" => {
-            body.only(&["radius"], &[])?;
+            body.only(&["radius"])?;
             let radius = body.required("radius", "for example \"10 mm\"")?.positive(Dimension::LENGTH)?;
             Ok(if shape == "sphere" { Indenter::Sphere { radius } } else { Indenter::Paraboloid { radius } })
         }
         "cone" => {
-            body.only(&["slope", "half_angle"], &[])?;
+            body.only(&["slope", "half_angle"])?;
             Ok(Indenter::Cone { slope: slope(body.one_of(&["slope", "half_angle"])?)? })
         }
         "table" => Ok(Indenter::Table(profile(&body, rows, warnings)?)),
         _ => {
-            body.only(&["coefficient", "exponent"], &[])?;
+            body.only(&["coefficient", "exponent"])?;
             let exponent = body.required("exponent", "2 is a paraboloid")?.positive(Dimension::NUMBER)?;
             let unit = Dimension::profile_coefficient(exponent);
             let coefficient =
@@ -163,7 +163,7 @@ fn indenter(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Resul
 /// A measured profile, from its file or as it was stored.
 fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Arc<TabulatedProfile>> {
     const UNITS: [&str; 2] = ["radius_unit", "profile_unit"];
-    section.only(&["file", UNITS[0], UNITS[1], "smoothing"], &[])?;
+    section.only(&["file", UNITS[0], UNITS[1], "smoothing"])?;
     let name = section.file_name("for example \"profile.csv\", two columns r and f")?;
     let units = [section.length_unit(UNITS[0])?, section.length_unit(UNITS[1])?];
     let smoothing = section.optional("smoothing");

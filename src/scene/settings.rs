@@ -17,10 +17,10 @@ impl Scene {
     /// * `settings` -- each `key=value`, such as `loading.amplitude=2 um`; the value as in TOML, texts without quotes as well
     ///
     /// # Errors
-    /// As [`Scene::read`]; also where a setting is not of a key, with the one that is nearest, or has not its dimension or range.
+    /// As [`Scene::from_path`]; also where a setting is not of a key, with the one that is nearest, or has not its dimension or range.
     pub fn read_with(path: &Path, settings: &[String]) -> Result<Self> {
         if settings.is_empty() {
-            return Self::read(path);
+            return Self::from_path(path);
         }
         let mut scene = base_table(&read_text(path)?, path)?;
         let mut taken: Vec<&str> = vec![];

@@ -41,7 +41,7 @@ impl RandomScene {
         }
         let path = folder.join("scene.toml");
         fs::write(&path, &self.text).expect("a file in a scratch folder");
-        Scene::read(&path)
+        Scene::from_path(&path)
     }
 }
 

@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn without_permanent_stick_there_is_no_limit() {
-        let scene = Scene::read(std::path::Path::new("data/scenes/paraboloid.toml")).unwrap();
+        let scene = Scene::from_path(std::path::Path::new("data/scenes/paraboloid.toml")).unwrap();
         let snapshots = vec![Snapshot { indentation: 1e-6, ..Snapshot::default() }];
         let run = RunFile::finished(RunHeader::default(), snapshots, Checkpoint::default(), StopReason::End);
         let error = Judgement::new(&scene, &run).unwrap_err().to_string();
