@@ -187,27 +187,30 @@ fn a_rig_moves_the_contact_so_that_the_first_stick_radius_is_the_one_asked_for()
 }
 
 #[test]
-fn both_forces_held_are_refused_in_every_regime_before_anything_is_written() {
+fn a_rig_under_a_held_normal_force_and_gross_slip_under_both_forces_are_refused_before_anything_is_written() {
     let plain = format!("{FRICTION}{WEAR}");
-    for (control, key) in
-        [("tangential_control = \"force\"", "tangential_control"), ("rig_stiffness = 1e8", "rig_stiffness")]
-    {
-        for amplitude in ["stick_ratio = 0.7", "amplitude_ratio = 1.4", "amplitude_ratio = 2"] {
-            for (tau, springs) in [(3, ""), (300, "springs = 60")] {
-                let loading =
-                    format!("normal_force = 266.6666666666667\n{amplitude}\ntau = {tau}\n{control}");
-                let folder = tempfile::tempdir().expect("a folder");
-                fs::write(folder.path().join("both.toml"), scene(&plain, &loading, springs))
-                    .expect("a scene");
-                for command in ["run", "check"] {
-                    let output = run(folder.path(), &[command, "both.toml"]);
-                    let said = text(&output.stderr);
-                    assert_eq!(output.status.code(), Some(2), "{command}, {loading}: {said}");
-                    for part in ["loading.normal_force", key, "loading.indentation"] {
-                        assert!(said.contains(part), "{command}, {loading}: {said}");
-                    }
-                    assert_eq!(names(folder.path()), ["both.toml"], "{command}, {loading}");
+    let rig = ["rig_stiffness = 1e8", "loading.normal_force", "rig_stiffness", "loading.indentation"];
+    let force =
+        ["tangential_control = \"force\"", "loading.amplitude_ratio", "tangential_control", "reduce it"];
+    let amplitudes = [
+        (rig, "stick_ratio = 0.7"),
+        (rig, "amplitude_ratio = 1.4"),
+        (rig, "amplitude_ratio = 2"),
+        (force, "amplitude_ratio = 2"),
+    ];
+    for ([control, parts @ ..], amplitude) in amplitudes {
+        for (tau, springs) in [(3, ""), (300, "springs = 60")] {
+            let loading = format!("normal_force = 266.6666666666667\n{amplitude}\ntau = {tau}\n{control}");
+            let folder = tempfile::tempdir().expect("a folder");
+            fs::write(folder.path().join("both.toml"), scene(&plain, &loading, springs)).expect("a scene");
+            for command in ["run", "check"] {
+                let output = run(folder.path(), &[command, "both.toml"]);
+                let said = text(&output.stderr);
+                assert_eq!(output.status.code(), Some(2), "{command}, {loading}: {said}");
+                for part in parts {
+                    assert!(said.contains(part), "{command}, {loading}: {said}");
                 }
+                assert_eq!(names(folder.path()), ["both.toml"], "{command}, {loading}");
             }
         }
     }

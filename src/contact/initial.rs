@@ -11,6 +11,11 @@ use crate::error::{Error, Result};
 use crate::laws::friction::Coulomb;
 use crate::laws::loading::{Amplitude, Load, Loading};
 use crate::laws::wear::{Archard, Scales, WearLaw};
+use crate::numerics::quadrature::Rule;
+
+/// `ln(a0/c)` below which the load on the slip annulus is integrated over that, and nodes of the quadrature.
+const NARROW: f64 = 0.7;
+const NODES: usize = 40;
 
 /// The contact before any wear; every quantity is finite.
 ///
@@ -147,6 +152,46 @@ impl InitialContact {
         let contact = self.at(indentation, indentation - self.equivalent_profile.value(core_radius))?;
         let stick_logarithm = Some((contact.contact_radius / core_radius).ln());
         Ok(Self { stick_logarithm, ..contact })
+    }
+
+    /// The contact when wear has taken all load off the slip annulus while both forces were held: deeper, with the same stick radius, which bears
+    /// the whole normal force. None under full sliding.
+    ///
+    /// ```text
+    /// F_N = 2 c_N ∫_0^c x^k (d∞ - g0) dx,    d∞ - g0(c) = q_c + (1+k) c^-(1+k) ∫_c^a0 x^k (d - g0) dx
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] if a sphere would sink in to its equator, or a table end.
+    pub fn under_held_forces(&self) -> Result<Option<Self>> {
+        let (Some(logarithm), Some(stick)) = (self.stick_logarithm, self.stick_radius()) else {
+            return Ok(None);
+        };
+        let profile = &self.equivalent_profile;
+        let (grading, exponent) = (self.half_space.grading(), 1.0 + self.half_space.grading());
+        let shed = if logarithm < NARROW && profile.end_of_table().is_none() {
+            // In ξ = (x² - c²)/(a0² - c²), where the difference of two loads would leave few digits.
+            let area = self.slip_area_offset();
+            let borne = |part: f64| {
+                let offset = area * part;
+                let density = (stick * stick + offset).powf(0.5 * (grading - 1.0));
+                density * (self.slip_compression - profile.rise(stick, offset))
+            };
+            0.5 * area * Rule::legendre(NODES)?.mean(borne)
+        } else {
+            let held = self.slip_compression * stick.powf(exponent) / exponent;
+            0.5 * (self.normal_force / self.half_space.normal_stiffness() - profile.load_integral(stick))
+                - held
+        };
+        let rise = shed * exponent / stick.powf(exponent);
+        let (indentation, compression) = (self.indentation + rise, self.slip_compression + rise);
+        let deeper = self.at(indentation, compression)?;
+        // The edge of stick is known, and its height a small difference where the contact nearly slides.
+        let stick_logarithm = match compression > 0.5 * indentation {
+            true => Some((deeper.contact_radius / stick).ln()),
+            false => deeper.stick_logarithm,
+        };
+        Ok(Some(Self { stick_logarithm, ..deeper }))
     }
 
     /// The unworn indenter.

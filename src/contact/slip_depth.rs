@@ -28,6 +28,9 @@ const MARGIN: f64 = RiseTransform::MARGIN;
 /// Where slip next to the edge of stick is taken, over the logarithm at the end.
 const AT_STICK: f64 = 1e-6;
 
+/// Relative difference of stick areas that is rounding.
+const SAME_STICK: f64 = 1e-14;
+
 /// Slip depth of the unworn contact over the annulus outside the stick zone, as a function of `z = r² - c²`.
 #[derive(Debug, Clone)]
 pub struct UnwornSlip {
@@ -215,6 +218,9 @@ impl UnwornSlip {
     pub fn at_stick(&self, stick_area: f64, slip_compression: f64, z: f64) -> UnwornValues {
         let logarithm = (z / stick_area).ln_1p();
         let slip = match self.profile.exponent() {
+            _ if (stick_area / self.stick_radius_squared - 1.0).abs() < SAME_STICK => {
+                self.slip.value(logarithm)
+            }
             Some(exponent) => {
                 (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip.value(logarithm)
             }

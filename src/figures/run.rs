@@ -164,7 +164,8 @@ pub(super) fn rounded(cycles: f64) -> String {
 fn limit(run: &RunFile, scene: &Scene) -> Result<Option<LimitingShape>> {
     let (Some(curve), Some(last)) = (&run.header.limit, run.snapshots.last()) else { return Ok(None) };
     let first = scene.contact()?;
-    let contact = if scene.conditions().is_plain() {
+    let conditions = scene.conditions();
+    let contact = if conditions.is_plain() || conditions.holds_both_forces() {
         first
     } else {
         let height = first.equivalent_profile().value(last.permanent_stick_radius);
@@ -175,5 +176,5 @@ fn limit(run: &RunFile, scene: &Scene) -> Result<Option<LimitingShape>> {
         let gap = depths.zip(&curve.wear_depth).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
         gap <= SAME_LIMIT * largest(&curve.wear_depth)
     };
-    Ok(LimitingShape::from_contact(&contact)?.filter(agrees))
+    Ok(LimitingShape::under(&contact, conditions)?.filter(agrees))
 }

@@ -74,6 +74,9 @@ impl PartialEq for Conditions {
 }
 
 impl Conditions {
+    /// The words for forces that are held among [`Conditions::departures`].
+    pub const HELD_FORCES: [&str; 2] = ["a held tangential force", "a held normal force"];
+
     /// Plain tangential oscillation under Coulomb's and Archard's laws.
     pub fn plain(friction: Coulomb, wear: Archard) -> Self {
         Self {
@@ -112,7 +115,7 @@ impl Conditions {
         };
         let control = match self.tangential_control {
             TangentialControl::Displacement => None,
-            TangentialControl::Force => Some("a held tangential force"),
+            TangentialControl::Force => Some(Self::HELD_FORCES[0]),
             TangentialControl::Rig { .. } => Some("a compliant rig"),
         };
         let given = |it: bool, words: &'static str| it.then_some(words);
@@ -125,9 +128,15 @@ impl Conditions {
             mode,
             given(!self.blocks.is_empty(), "blocks"),
             control,
-            given(self.holds_normal_force, "a held normal force"),
+            given(self.holds_normal_force, Self::HELD_FORCES[1]),
         ];
         departures.into_iter().flatten().collect()
+    }
+
+    /// Whether the normal force and the amplitude of the tangential one are held. Under Coulomb's law the stick radius is then that of the first
+    /// cycle for ever: no worn ground bears a part of `F_N - F_x/μ_f`.
+    pub fn holds_both_forces(&self) -> bool {
+        self.holds_normal_force && self.tangential_control == TangentialControl::Force
     }
 
     /// Whether nothing differs from plain tangential oscillation under Coulomb's and Archard's laws.

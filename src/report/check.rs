@@ -118,7 +118,7 @@ impl CheckReport {
     /// As [`InitialContact::new`] and [`Duration::span`].
     pub fn derived(scene: &Scene) -> Result<Self> {
         let contact = scene.contact()?;
-        let limit = LimitingShape::from_contact(&contact);
+        let limit = LimitingShape::under(&contact, scene.conditions());
         let unlimited = limit.as_ref().err().map(|error| format!("the first cycle has no limit: {error}"));
         let limit = limit.ok().flatten();
         let of_limit =
@@ -152,7 +152,10 @@ impl CheckReport {
             contact_radius_limit: of_limit(LimitingShape::contact_radius_limit),
             wear_volume_limit: of_limit(LimitingShape::wear_volume),
             wear_depth_max: of_limit(LimitingShape::wear_depth_max),
-            normal_force_limit: limit.as_ref().map(|shape| contact.normal_force() * shape.load_fraction()),
+            normal_force_limit: limit.as_ref().map(|shape| match scene.conditions().holds_normal_force {
+                true => contact.normal_force(),
+                false => contact.normal_force() * shape.load_fraction(),
+            }),
             tau_per_cycle: contact.tau_per_cycle(),
             cycles: span.map(|[cycles, _]| cycles),
             tau: span.map(|[_, tau]| tau),

@@ -49,8 +49,10 @@ impl Parts {
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
         let model = mesh::model(&contact, &schedule, numerics, wanted, store)?;
         let by_energy = *model.schedule().friction_along_energy() != History::Constant;
-        let unlimited = model.slides() || scene.conditions().holds_normal_force || by_energy;
-        let limit = if unlimited { None } else { LimitingShape::from_contact(model.contact())? };
+        let conditions = scene.conditions();
+        let path_dependent = conditions.holds_normal_force && !conditions.holds_both_forces();
+        let unlimited = model.slides() || path_dependent || by_energy;
+        let limit = if unlimited { None } else { LimitingShape::under(model.contact(), conditions)? };
         check_stepper(numerics.stepper, &model)?;
         let tolerance = numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {

@@ -69,7 +69,13 @@ impl ClosedForm {
     /// As [`InitialContact::new`] and [`LimitingShape::from_contact`].
     pub fn new(scene: &Scene) -> Result<Self> {
         let contact = scene.contact()?;
-        Ok(Self { limit: LimitingShape::from_contact(&contact)?, contact })
+        Ok(Self { limit: LimitingShape::under(&contact, scene.conditions())?, contact })
+    }
+
+    /// `a∞ - a0`, m: under both forces held the shape's own first contact is a deeper one.
+    fn growth(&self) -> Option<f64> {
+        let deeper = |shape: &LimitingShape| shape.contact_radius_initial() - self.contact.contact_radius();
+        self.limit.as_ref().map(|shape| shape.contact_growth_limit() + deeper(shape) + 0.0)
     }
 
     fn of_limit(&self, of: fn(&LimitingShape) -> f64) -> Value {
@@ -90,7 +96,7 @@ const fn line(
 }
 
 /// The results of a closed form, in the order of the keys of the JSON.
-pub const LIMIT: [Reading<ClosedForm>; 17] = [
+pub const LIMIT: [Reading<ClosedForm>; 18] = [
     line("grading k", "grading", "1", "grading k of E = E0 (z/z0)^k", |it| {
         it.contact.half_space().grading().into()
     }),
@@ -145,7 +151,14 @@ pub const LIMIT: [Reading<ClosedForm>; 17] = [
         "contact_growth_limit",
         "m",
         "growth of the contact radius up to the limit",
-        |it| it.of_limit(LimitingShape::contact_growth_limit),
+        |it| it.growth().into(),
+    ),
+    line(
+        "indentation d∞, limit",
+        "indentation_limit",
+        "m",
+        "indentation depth in the limit of many cycles",
+        |it| it.of_limit(LimitingShape::indentation),
     ),
     line("worn volume ΔV∞", "wear_volume_limit", "m3", "worn volume in the limit of many cycles", |it| {
         it.of_limit(LimitingShape::wear_volume)

@@ -119,7 +119,11 @@ fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &R
 
 /// The closed form knows nothing of what is not plain.
 fn warning_of_another_limit(conditions: &Conditions) -> Option<String> {
-    let departures = conditions.departures();
+    let mut departures = conditions.departures();
+    if conditions.holds_both_forces() {
+        // That has a closed form of its own.
+        departures.retain(|it| !Conditions::HELD_FORCES.contains(it));
+    }
     (!departures.is_empty()).then(|| {
         format!(
             "this scene has {}: limit takes its first cycle as plain tangential oscillation, run compares with the limit of the smallest \

@@ -6,6 +6,7 @@ use crate::contact::InitialContact;
 use crate::contact::indenter::{EquivalentProfile, Indenter};
 use crate::contact::stick_slip;
 use crate::error::{Error, Result};
+use crate::laws::conditions::Conditions;
 use std::f64::consts::PI;
 
 /// Limiting shape of an indenter worn by tangential oscillation at a fixed indentation.
@@ -125,6 +126,19 @@ impl LimitingShape {
             stick_logarithm,
         )
         .map(Some)
+    }
+
+    /// Limiting shape of a contact under some conditions: under both forces held the first contact comes to lie deeper, with the same stick
+    /// radius. None under full sliding.
+    ///
+    /// # Errors
+    /// As [`LimitingShape::from_contact`] and [`InitialContact::under_held_forces`].
+    pub fn under(contact: &InitialContact, conditions: &Conditions) -> Result<Option<Self>> {
+        if !conditions.holds_both_forces() {
+            return Self::from_contact(contact);
+        }
+        let last = contact.under_held_forces()?;
+        Ok(last.as_ref().map(Self::from_contact).transpose()?.flatten())
     }
 
     fn assemble(

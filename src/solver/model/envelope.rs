@@ -49,11 +49,11 @@ impl Schedule {
     pub fn envelope(&self, contact: &InitialContact) -> Result<Envelope> {
         let ratio = contact.half_space().stiffness_ratio();
         let depth = self.largest_indentation();
-        let compression = match self.conditions().tangential_control {
-            TangentialControl::Displacement => {
-                self.extremes().map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
-            }
-            _ => self.last_slip_compression(contact)?,
+        let first = self.conditions().tangential_control == TangentialControl::Displacement;
+        let compression = if first || self.conditions().holds_both_forces() {
+            self.extremes().map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
+        } else {
+            self.last_slip_compression(contact)?
         };
         let profile = contact.equivalent_profile();
         let radius = if depth == contact.indentation() {
@@ -64,6 +64,16 @@ impl Schedule {
         let largest = depth - profile.value(CORE * radius);
         let grading = contact.half_space().grading();
         let slides = compression > largest;
+        if slides && self.conditions().holds_both_forces() {
+            return Err(Error::Inconsistent {
+                what: "loading.amplitude",
+                why: format!(
+                    "at an amplitude of {:e} m the contact slides as a whole, and a tangential force that is held would accelerate it; reduce \
+                     it, or hold the amplitude: leave out loading.tangential_control",
+                    contact.amplitude()
+                ),
+            });
+        }
         if slides && core_share(grading) > LARGEST_CORE_SHARE {
             return Err(Error::Inconsistent {
                 what: "loading.amplitude",

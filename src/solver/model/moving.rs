@@ -53,6 +53,8 @@ enum Cause {
     Tangential,
     /// This normal force, N, is held while the whole contact slides: the edge stays at the core of the mesh, `q_c = d - g_0(c)` grows.
     Sliding(f64),
+    /// This normal force, N, and the tangential amplitude of force are held: the edge stays, `q_c = d - g_0(c)` grows, the amplitude with it.
+    BothForces(f64),
 }
 
 /// How the edge of stick moves.
@@ -111,7 +113,7 @@ impl MovingStick {
         }
         let cause = match (conditions.holds_normal_force, conditions.tangential_control) {
             (true, TangentialControl::Displacement) => Some(Cause::NormalForce(contact.normal_force())),
-            (true, _) => unreachable!("no schedule holds both forces"),
+            (true, _) => Some(Cause::BothForces(contact.normal_force())),
             (false, TangentialControl::Displacement) => {
                 let changes = *schedule.friction_change() != History::Constant;
                 match &conditions.blocks[..] {
@@ -156,6 +158,7 @@ impl MovingStick {
                 });
             }
             Cause::NormalForce(_) | Cause::Sliding(_) => true,
+            Cause::BothForces(_) => false,
             Cause::Friction if falls && rises => {
                 check_rest(schedule, contact)?;
                 return Ok(None);
@@ -176,14 +179,12 @@ impl MovingStick {
             let core = contact.stick_radius().unwrap_or_default();
             return contact.with_core(FARTHEST * contact.indentation(), core);
         }
-        let Cause::NormalForce(force) = self.cause else { return Ok(contact.clone()) };
-        let half_space = contact.half_space();
-        let exponent = 1.0 + half_space.grading();
-        let profile = contact.equivalent_profile();
-        let stick = contact.stick_radius().unwrap_or_default();
-        let left = force / half_space.normal_stiffness() - profile.load_integral(stick);
-        let compression = left * exponent / (2.0 * stick.powf(exponent));
-        contact.at(profile.value(stick) + compression, compression)
+        match self.cause {
+            Cause::NormalForce(_) | Cause::BothForces(_) => {
+                Ok(contact.under_held_forces()?.unwrap_or_else(|| contact.clone()))
+            }
+            _ => Ok(contact.clone()),
+        }
     }
 
     /// The mesh to use, where `asked` is the one for an edge of stick that rests.
@@ -207,7 +208,12 @@ impl MovingStick {
 
     /// Whether the edge stays where it is during a step.
     fn rests(&self) -> bool {
-        self.jumps || self.slides()
+        self.jumps || self.deepens()
+    }
+
+    /// Whether the edge stays while the compression there follows from the normal force, which is then what is solved for in place of the height.
+    fn deepens(&self) -> bool {
+        matches!(self.cause, Cause::Sliding(_) | Cause::BothForces(_))
     }
 
     pub(super) fn with_span(mut self, first: f64, last: f64) -> Self {
@@ -253,7 +259,7 @@ impl MovingStick {
         let profile = model.contact.equivalent_profile();
         let loading = model.schedule.loading(0.0, 0.0);
         let compression = match self.cause {
-            Cause::Sliding(_) => {
+            Cause::Sliding(_) | Cause::BothForces(_) => {
                 let radius = model.stick_zone.stick_area.sqrt();
                 return Ok(StickEdge {
                     area: model.stick_zone.stick_area,
@@ -379,7 +385,7 @@ impl Model {
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
             Cause::NormalForce(_) => loading.slip_compression(self.contact.half_space().stiffness_ratio()),
-            Cause::Sliding(_) => stick.depth,
+            Cause::Sliding(_) | Cause::BothForces(_) => stick.depth,
         };
         StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
     }
@@ -387,7 +393,9 @@ impl Model {
     /// Adds the part of a held force that the quadrature over the springs misses in the first cycle to the load of the stick zone.
     pub(super) fn close_force(&self, mut state: State) -> State {
         let cause = self.moving.as_ref().map(|moving| moving.cause);
-        let Some(Cause::NormalForce(force) | Cause::Sliding(force)) = cause else { return state };
+        let Some(Cause::NormalForce(force) | Cause::Sliding(force) | Cause::BothForces(force)) = cause else {
+            return state;
+        };
         let left = force - self.normal_force(&self.fields(&state));
         if let Some(stick) = &mut state.stick {
             stick.load += 0.5 * left / self.contact.half_space().normal_stiffness();
@@ -397,9 +405,11 @@ impl Model {
 
     /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
-        let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
-        match &state.stick {
-            Some(stick) if tangential => self.displaced(loading, self.contact.indentation() - stick.depth),
+        match (self.moving.as_ref().map(|moving| moving.cause), &state.stick) {
+            (Some(Cause::Tangential), Some(stick)) => {
+                self.displaced(loading, self.contact.indentation() - stick.depth)
+            }
+            (Some(Cause::BothForces(_)), Some(stick)) => self.displaced(loading, stick.depth),
             _ => self.after_energy(loading, state.dissipated_energy),
         }
     }
@@ -428,7 +438,7 @@ impl Model {
                 let loading = self.schedule.loading(state.cycles, state.cycles);
                 stick.depth + self.stick_zone_in(Some(stick), &loading).slip_compression
             }
-            (Some(MovingStick { cause: Cause::Sliding(_), .. }), Some(stick)) => {
+            (Some(moving), Some(stick)) if moving.deepens() => {
                 self.contact.indentation() - self.stick_zone.slip_compression + stick.depth
             }
             _ => self.contact.indentation(),

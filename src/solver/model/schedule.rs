@@ -340,25 +340,35 @@ impl Schedule {
     }
 }
 
-/// Refuses two forces that are held at once.
+/// Refuses a held normal force beside a rig, and beside a held tangential one where the edge of stick would move.
 fn check_forces(conditions: &Conditions) -> Result<()> {
-    let (other, remedy) = match conditions.tangential_control {
-        TangentialControl::Displacement => return Ok(()),
-        TangentialControl::Force => ("tangential_control = \"force\"".to_owned(), "tangential_control"),
-        TangentialControl::Rig { stiffness } => {
-            (format!("rig_stiffness = {stiffness:e} N/m"), "rig_stiffness")
-        }
-    };
     if !conditions.holds_normal_force {
         return Ok(());
     }
-    Err(Error::Inconsistent {
-        what: "loading.normal_force",
-        why: format!(
-            "is held, and so is what loading.{other} asks for, which this version does not follow together; give loading.initial_force or \
-             loading.indentation instead, or remove loading.{remedy}"
+    let beside = |other: &str, cure: &str| {
+        Err(Error::Inconsistent { what: "loading.normal_force", why: format!("is held, {other}; {cure}") })
+    };
+    match conditions.tangential_control {
+        TangentialControl::Displacement => Ok(()),
+        TangentialControl::Rig { stiffness } => beside(
+            &format!(
+                "and so is what loading.rig_stiffness = {stiffness:e} N/m asks for, which this version does not follow together"
+            ),
+            "give loading.initial_force or loading.indentation instead, or remove loading.rig_stiffness",
         ),
-    })
+        TangentialControl::Force => {
+            let changes = conditions.friction_history != History::Constant
+                || conditions.friction.along_energy() != History::Constant;
+            if conditions.friction.coefficient().is_some() && !changes && conditions.blocks.is_empty() {
+                return Ok(());
+            }
+            beside(
+                "and so is the tangential force, under which the edge of stick stays where it is only with a constant coefficient of friction \
+                 and without blocks: else it moves, which is not followed under both forces",
+                "take friction.coulomb without a history, and no blocks, or give loading.initial_force or loading.indentation instead",
+            )
+        }
+    }
 }
 
 /// Tangential amplitude that is given, m: of the contact, or of the far end of a rig.

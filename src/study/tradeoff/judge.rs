@@ -151,7 +151,8 @@ impl Judge {
     pub(super) fn new(scene: &Scene, references: [RunFile; 2]) -> Result<Self> {
         let [reference, other] = references;
         let contact = scene.contact()?;
-        let limit = LimitingShape::from_contact(&contact)?.filter(|it| is_limit_of(it, &reference));
+        let limit =
+            LimitingShape::under(&contact, scene.conditions())?.filter(|it| is_limit_of(it, &reference));
         let moves = reference.checkpoint.as_ref().is_some_and(|it| it.state.stick.is_some());
         let stays = !moves && limit.is_some();
         let shape = Shape::new(&contact, stays, &reference);

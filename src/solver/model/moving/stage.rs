@@ -170,7 +170,7 @@ impl StickStage<'_> {
     fn slip_compression(&self, at: &Unknowns) -> f64 {
         match self.moving.cause {
             Cause::Tangential => self.model.contact.indentation() - at.stick_depth,
-            Cause::Sliding(_) => at.stick_depth,
+            Cause::Sliding(_) | Cause::BothForces(_) => at.stick_depth,
             _ => self.driven_slip_compression(),
         }
     }
@@ -184,14 +184,16 @@ impl StickStage<'_> {
     fn loading(&self, at: &Unknowns) -> CycleLoading {
         let loading = self.target.springs.loading.clone();
         match self.moving.cause {
-            Cause::Tangential => self.model.displaced(loading, self.slip_compression(at)),
+            Cause::Tangential | Cause::BothForces(_) => {
+                self.model.displaced(loading, self.slip_compression(at))
+            }
             _ => loading,
         }
     }
 
     fn passed(&self, at: &Unknowns) -> Passed {
         let stick = &self.target.stick;
-        let (area, risen) = if self.moving.slides() {
+        let (area, risen) = if self.moving.deepens() {
             (0.0, 0.0)
         } else {
             (at.stick_area - stick.area, at.stick_depth - stick.depth)
@@ -207,7 +209,7 @@ impl StickStage<'_> {
         let exponent = 1.0 + self.model.contact.half_space().grading();
         let radius = at.stick_area.sqrt();
         let passed = self.passed(at);
-        let stick_load = if self.moving.slides() {
+        let stick_load = if self.moving.deepens() {
             target.stick.load
                 + (slip_compression - target.slip_compression) * radius.powf(exponent) / exponent
         } else {
@@ -289,7 +291,7 @@ impl StickStage<'_> {
         match self.moving.cause {
             _ if self.moving.jumps => passed.risen / q,
             Cause::Friction => (at.stick_depth - (model.contact.indentation() - q)) / q,
-            Cause::NormalForce(force) | Cause::Sliding(force) => {
+            Cause::NormalForce(force) | Cause::Sliding(force) | Cause::BothForces(force) => {
                 model.normal_force(&trial.fields) / force - 1.0
             }
             Cause::Tangential => {
@@ -312,7 +314,7 @@ impl StickStage<'_> {
     /// `ξ ∂/∂ξ`, leaning to where the ground comes from: outwards, or inwards next to an edge of stick that recedes.
     fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
         let mut along = self.model.along_annulus(values);
-        if !self.moving.outwards && !self.moving.slides() {
+        if !self.moving.outwards && !self.moving.deepens() {
             let nodes = self.model.operators.abel.nodes();
             for (i, slope) in along.iter_mut().enumerate().take(values.len() / 2) {
                 let before = if i == 0 { 0.0 } else { values[i - 1] };
@@ -369,7 +371,7 @@ impl StickStage<'_> {
             * trial.fields.density_factor[spring];
         match self.moving.cause {
             Cause::Friction => 0.0,
-            Cause::NormalForce(force) | Cause::Sliding(force) => weight / force,
+            Cause::NormalForce(force) | Cause::Sliding(force) | Cause::BothForces(force) => weight / force,
             Cause::Tangential => {
                 let strength = |q: f64| loading.friction.kinetic_strength(q);
                 if strength(q) >= half_space.stiffness_ratio() * loading.amplitude {

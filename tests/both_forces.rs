@@ -1,0 +1,209 @@
+//! Normal force and amplitude of the tangential force held at once: the stick radius stays, the limit is a closed form for every local law of wear.
+
+mod support;
+
+use std::str::FromStr;
+
+use fretwear::contact::InitialContact;
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::scene::Scene;
+use fretwear::{Results, Simulation};
+use support::reference::{Table, Worst, relative};
+
+const ARCHARD: &str = "[wear.archard]\ncoefficient = 1.667e-13";
+
+fn scene(grading: f64, exponent: f64, stick_ratio: f64, wear: &str, duration: &str) -> Scene {
+    Scene::from_str(&format!(
+        "[indenter.power-law]\ncoefficient = {}\nexponent = {exponent}\n\
+         [half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666667\n\
+         [friction.coulomb]\ncoefficient = 0.5\n{wear}\n\
+         [loading]\nnormal_force = 10\ntangential_control = \"force\"\nstick_ratio = {stick_ratio}\n{duration}\n",
+        0.5 * 1e3_f64.powf(exponent - 2.0),
+    ))
+    .unwrap()
+}
+
+fn limit(scene: &Scene) -> (InitialContact, LimitingShape) {
+    let contact = scene.contact().unwrap();
+    let limit = LimitingShape::under(&contact, scene.conditions()).unwrap().unwrap();
+    (contact, limit)
+}
+
+fn run(scene: &Scene) -> Results {
+    Simulation::new(scene).unwrap().run().unwrap()
+}
+
+#[test]
+fn the_closed_form_is_that_of_the_table() {
+    let table = Table::read("held_forces_limit.csv");
+    let mut worst = Worst::default();
+    for row in &table.rows {
+        let [k, n, c] = ["k", "n", "c/a0"].map(|name| table.number(row, name));
+        let (contact, limit) = limit(&scene(k, n, c, ARCHARD, "tau = 1"));
+        let (a, d) = (contact.contact_radius(), contact.indentation());
+        let expected = |name| table.number(row, name);
+        worst.note("indentation", relative(limit.indentation() / d, expected("d_inf/d0")), row);
+        worst.note("contact radius", relative(limit.contact_radius_limit() / a, expected("a_inf/a0")), row);
+        worst.note("volume", relative(limit.wear_volume() / (a * a * d), expected("V_inf/(a0^2 d0)")), row);
+        worst.note("depth", relative(limit.wear_depth_max() / d, expected("w_max/d0")), row);
+    }
+    ["indentation", "contact radius", "volume", "depth"].iter().for_each(|it| worst.below(it, 1e-12));
+}
+
+#[test]
+fn the_closed_form_keeps_its_digits_from_the_smallest_amplitude_to_nearly_gross_slip() {
+    let table = Table::read("held_forces.csv");
+    let mut worst = Worst::default();
+    for row in &table.rows {
+        let [k, n, gap] = ["k", "n", "gap"].map(|name| table.number(row, name));
+        let (contact, limit) = limit(&scene(k, n, 1.0 - gap, ARCHARD, "tau = 1"));
+        let (a, d) = (contact.contact_radius(), contact.indentation());
+        // What the rounding of c/a0 makes of the gap, and twice of that of d next to it.
+        let volume = relative(limit.wear_volume() / (a * a * d), table.number(row, "V_inf/(a0^2 d0)"));
+        worst.note("volume, times the gap", volume * gap, row);
+        let deeper = table.number(row, "d_inf/d0-1");
+        worst.note("indentation", relative(limit.indentation() / d, 1.0 + deeper), row);
+        let wider = table.number(row, "a_inf/a0-1");
+        worst.note("contact radius", relative(limit.contact_radius_limit() / a, 1.0 + wider), row);
+    }
+    worst.below("indentation", 1e-13);
+    worst.below("contact radius", 1e-13);
+    worst.below("volume, times the gap", 1e-12);
+}
+
+#[test]
+fn transients_are_those_of_another_code() {
+    let table = Table::read("held_forces_transient.csv");
+    for row in &table.rows {
+        let [k, n, c, tau] = ["k", "n", "c/a0", "tau"].map(|name| table.number(row, name));
+        let scene = scene(k, n, c, ARCHARD, &format!("tau = {tau}"));
+        let (contact, limit) = limit(&scene);
+        let (a, d) = (contact.contact_radius(), contact.indentation());
+        let results = run(&scene);
+        let last = results.last();
+        let of_volume = table.number(row, "V/(a0^2 d0)");
+        let end = limit.wear_volume() / (a * a * d);
+        let volume = (last.wear_volume / (a * a * d) - of_volume).abs() / end;
+        let allowed = 2e-5_f64.max(2.0 * table.number(row, "V_error_estimate") / end);
+        let depth = (last.indentation / d - table.number(row, "d/d0")).abs();
+        let radius = (last.contact_radius / a - table.number(row, "a/a0")).abs();
+        let estimate = results.checkpoint().error_estimate.unwrap();
+        println!(
+            "{row:?}: V {volume:.1e} of the end, d {depth:.1e}, a {radius:.1e}, estimate {estimate:.1e}"
+        );
+        assert!(volume <= allowed, "{row:?}: {volume:e}");
+        assert!(depth <= 5e-6 && radius <= 5e-5, "{row:?}: {depth:e}, {radius:e}");
+        // The promise covers the volume, and the estimate the error.
+        assert!(results.accuracy_met() == Some(true) && estimate >= 0.5 * volume, "{row:?}: {estimate:e}");
+        // Neither force nor edge of stick have moved.
+        assert!(relative(last.normal_force, contact.normal_force()) < 1e-10, "{row:?}");
+        assert!(relative(last.stick_radius, contact.stick_radius().unwrap()) < 1e-12, "{row:?}");
+        let energy = last.wear_volume / (1.667e-13 / 0.5 * last.dissipated_energy);
+        assert!((energy - 1.0).abs() < 5e-5, "{row:?}: {energy}");
+    }
+}
+
+/// Every local law without threshold ends at the same shape, whatever its clock.
+#[test]
+fn every_local_law_ends_at_the_closed_form() {
+    let laws = [
+        (ARCHARD, 2.0, 0.0, 0.7),
+        (ARCHARD, 1.0, 0.5, 0.95),
+        (ARCHARD, 4.0, -0.3, 0.5),
+        (ARCHARD, 2.0, 0.9, 0.5),
+        (ARCHARD, 2.0, -0.5, 0.2),
+        ("[wear.dissipated-energy]\ncoefficient = 3e-13", 2.0, 0.5, 0.7),
+        (
+            "[wear.power-law]\ncoefficient = 1e-17\npressure_exponent = 1.5\nslip_exponent = 1.0",
+            2.0,
+            0.0,
+            0.7,
+        ),
+        (
+            "[wear.power-law]\ncoefficient = 1e-11\npressure_exponent = 0.7\nslip_exponent = 1.0",
+            1.0,
+            -0.3,
+            0.7,
+        ),
+        (
+            "[wear.power-law]\ncoefficient = 1e-16\npressure_exponent = 1.0\nslip_exponent = 0.5",
+            2.0,
+            0.5,
+            0.5,
+        ),
+    ];
+    for (law, exponent, grading, stick_ratio) in laws {
+        let scene = scene(grading, exponent, stick_ratio, law, "until_rate = 1e-9");
+        let results = run(&scene);
+        let limit = limit(&scene).1;
+        let volume = results.last().wear_volume / limit.wear_volume() - 1.0;
+        let depth = results.last().indentation / limit.indentation() - 1.0;
+        println!("k = {grading}, n = {exponent}, c/a0 = {stick_ratio}: V {volume:.1e}, d {depth:.1e}; {law}");
+        assert!(volume.abs() < 1e-5 && depth.abs() < 1e-5, "{law}: {volume:e}, {depth:e}");
+        let told = results.limit().expect("a limit").wear_volume();
+        assert!(relative(told, limit.wear_volume()) < 1e-12, "{law}");
+    }
+}
+
+#[test]
+fn a_measured_profile_and_a_sphere_end_where_the_paraboloid_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String =
+        (0..400).map(|i| 1e-6 * f64::from(i)).map(|r| format!("{r:e},{:e}\n", 0.5 * r * r / 0.01)).collect();
+    std::fs::write(folder.path().join("rows.csv"), format!("r,z\n{rows}")).unwrap();
+    let text = |indenter: &str| {
+        format!(
+            "[indenter.{indenter}\n[half_space]\ngrading = 0.3\nnormal_stiffness = 2e11\nstiffness_ratio = 0.67\n\
+             [friction.coulomb]\ncoefficient = 0.5\n{ARCHARD}\n\
+             [loading]\nnormal_force = 0.5\ntangential_control = \"force\"\nstick_ratio = 0.7\nuntil_rate = 1e-8\n"
+        )
+    };
+    let volumes = [
+        "paraboloid]\nradius = 0.01",
+        "sphere]\nradius = 0.01",
+        "table]\nfile = \"rows.csv\"\nradius_unit = \"m\"\nprofile_unit = \"m\"",
+    ]
+    .map(|indenter| {
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, text(indenter)).unwrap();
+        let scene = Scene::from_path(&path).unwrap();
+        let (volume, closed) = (run(&scene).last().wear_volume, limit(&scene).1.wear_volume());
+        assert!(relative(volume, closed) < 1e-5, "{indenter}: {volume:e}, {closed:e}");
+        volume
+    });
+    println!("{volumes:?}");
+    // A sphere differs from the paraboloid by (a/R)², a table by its rounding.
+    assert!(relative(volumes[1], volumes[0]) < 1e-3 && relative(volumes[2], volumes[0]) < 1e-6);
+}
+
+/// What would move the edge of stick, or accelerate the contact, is refused with its key.
+#[test]
+fn what_would_move_the_edge_is_refused() {
+    let text = scene(0.0, 2.0, 0.7, ARCHARD, "tau = 1").text().to_owned();
+    let cases = [
+        ("stick_ratio = 0.7", "amplitude = 1e-3", "loading.amplitude", "accelerate"),
+        (
+            "tau = 1",
+            "tau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 0.5",
+            "loading.normal_force",
+            "blocks",
+        ),
+        (
+            "[friction.coulomb]\ncoefficient = 0.5",
+            "[friction.load-dependent]\ncoefficient = 0.5\nexponent = 0.9",
+            "loading.normal_force",
+            "friction.coulomb",
+        ),
+        (
+            "[friction.coulomb]",
+            "[friction.history]\nfactors = [1.0, 0.8]\nat_tau = [0.0, 1.0]\n[friction.coulomb]",
+            "loading.normal_force",
+            "history",
+        ),
+    ];
+    for (old, new, key, word) in cases {
+        let scene = Scene::from_str(&text.replace(old, new));
+        let error = scene.and_then(|scene| Simulation::new(&scene).map(drop)).unwrap_err().to_string();
+        assert!(error.contains(key) && error.contains(word), "{new}: {error}");
+    }
+}
