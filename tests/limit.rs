@@ -31,6 +31,7 @@ const KEYS: [&str; 18] = [
     "contact_radius_limit",
     "slip_width_limit",
     "contact_growth_limit",
+    "indentation_limit",
     "wear_volume_limit",
     "wear_volume_asymptotic",
     "wear_depth_max",
@@ -41,6 +42,7 @@ const KEYS: [&str; 18] = [
 const WORN: [&str; 5] = [
     "slip_width_limit",
     "contact_growth_limit",
+    "indentation_limit",
     "wear_volume_limit",
     "wear_volume_asymptotic",
     "wear_depth_max",
