@@ -1,6 +1,7 @@
 //! What the parts of a run cost as springs are added: `cargo bench`, and docs/numerics.md for figures.
 
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -11,8 +12,7 @@ use fretwear::contact::spring::{Shakedown, SpringCycle, steady_cycle, stick_comp
 use fretwear::contact::transforms::Transforms;
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::{Coulomb, FrictionLaw, LoadDependent, StaticKinetic};
-use fretwear::laws::loading::Mode;
-use fretwear::laws::path::SampledPath;
+use fretwear::laws::motion::{Mode, NormalOscillation, Orbit, SampledPath, Tangential};
 use fretwear::numerics::abel::AbelOperators;
 use fretwear::numerics::grid::{Clustering, Mesh};
 use fretwear::run::{Run, Stop};
@@ -123,16 +123,16 @@ fn closed_form(criterion: &mut Criterion) {
 
 /// One spring through one period; over the substeps it is the cost of a substep, with one period of shakedown or some.
 fn springs(criterion: &mut Criterion) {
-    let normal = Mode::NormalOscillation { amplitude: 0.2, frequency_ratio: [1, 1], phase: 0.9 };
-    let orbit = Mode::Orbit { transverse_amplitude: 1.5, phase: 0.0, centre: [0.0; 2] };
+    let normal = NormalOscillation { amplitude: 0.2, frequency_ratio: [1, 1], phase: 0.9 };
+    let orbit = Orbit { transverse_amplitude: 1.5, phase: 0.0, centre: [0.0; 2] };
     let coulomb = Coulomb { coefficient: 0.5 };
     let kinetic = StaticKinetic { static_coefficient: 0.6, kinetic_coefficient: 0.5 };
     let load = LoadDependent { coefficient: 0.5, exponent: -0.2, reference: 1.0 };
-    let cases: [(&str, &Mode, &dyn FrictionLaw); 5] = [
-        ("tangential", &Mode::Tangential, &coulomb),
+    let cases: [(&str, &dyn Mode, &dyn FrictionLaw); 5] = [
+        ("tangential", &Tangential, &coulomb),
         ("normal oscillation", &normal, &coulomb),
         ("normal oscillation, load-dependent", &normal, &load),
-        ("tangential, static and kinetic", &Mode::Tangential, &kinetic),
+        ("tangential, static and kinetic", &Tangential, &kinetic),
         ("orbit", &orbit, &coulomb),
     ];
     for (name, mode, law) in cases {
@@ -157,9 +157,10 @@ fn resolved_cycles(criterion: &mut Criterion) {
     let contact = contact();
     let plain = Conditions::plain(*contact.friction(), *contact.wear());
     let transverse_amplitude = 0.6 * contact.amplitude();
-    let orbit = Mode::Orbit { transverse_amplitude, phase: 0.0, centre: [0.0; 2] };
+    let orbit: Arc<dyn Mode> = Arc::new(Orbit { transverse_amplitude, phase: 0.0, centre: [0.0; 2] });
+    let line: Arc<dyn Mode> = Arc::new(Tangential);
     for springs in [30, 60, 120] {
-        let mut measure = |name: &str, mode: &Mode, substeps: Option<usize>| {
+        let mut measure = |name: &str, mode: &Arc<dyn Mode>, substeps: Option<usize>| {
             let conditions = Conditions { mode: mode.clone(), ..plain.clone() };
             let resolution = Resolution { resolved: substeps.is_some(), substeps };
             let schedule = Schedule::new(&contact, &conditions, resolution).expect("a schedule");
@@ -172,9 +173,9 @@ fn resolved_cycles(criterion: &mut Criterion) {
                 bench.iter(|| model.cycle(&loading, black_box(&state.compression), &fields));
             });
         };
-        measure("closed form", &Mode::Tangential, None);
+        measure("closed form", &line, None);
         for substeps in [2, 16, 96] {
-            measure(&format!("line, {substeps} substeps"), &Mode::Tangential, Some(substeps));
+            measure(&format!("line, {substeps} substeps"), &line, Some(substeps));
             measure(&format!("ellipse, {substeps} substeps"), &orbit, Some(substeps));
         }
     }

@@ -73,7 +73,7 @@ use serde::Serialize;
 
 use crate::contact::indenter::TabulatedProfile;
 use crate::contact::stick_slip::Regime;
-use crate::laws::loading::RecordedPath;
+use crate::laws::motion::RecordedPath;
 use crate::solver::model::State;
 use crate::solver::simulation::Progress;
 

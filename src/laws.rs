@@ -5,5 +5,6 @@ pub mod entry;
 pub mod friction;
 pub mod history;
 pub mod loading;
+pub mod motion;
 pub mod path;
 pub mod wear;

@@ -28,6 +28,7 @@
 //! # Ok::<(), fretwear::Error>(())
 //! ```
 
+use std::any::Any;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -37,7 +38,8 @@ use crate::contact::indenter::{Indenter, TabulatedProfile};
 use crate::error::{Error, Result};
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::Coulomb;
-use crate::laws::loading::{Loading, Mode, RecordedPath};
+use crate::laws::loading::Loading;
+use crate::laws::motion::RecordedPath;
 use crate::laws::wear::Archard;
 
 mod builder;
@@ -50,8 +52,6 @@ mod map;
 mod motion;
 mod page;
 mod patch;
-mod path_file;
-mod profile_file;
 mod reading;
 pub mod sampling;
 pub mod schema;
@@ -172,7 +172,7 @@ enum Rows<'a> {
     /// In files, relative to this folder.
     In(&'a Path),
     /// In memory, if at all.
-    Stored { table: Option<Arc<TabulatedProfile>>, path: Option<Arc<RecordedPath>> },
+    Stored(Vec<Arc<dyn Any + Send + Sync>>),
 }
 
 /// A valid description of a run.
@@ -216,7 +216,8 @@ impl Scene {
         table: Option<Arc<TabulatedProfile>>,
         path: Option<Arc<RecordedPath>>,
     ) -> Result<Self> {
-        Self::with_rows(text, name, &Rows::Stored { table, path })
+        let stored = [table.map(|it| it as _), path.map(|it| it as _)];
+        Self::with_rows(text, name, &Rows::Stored(stored.into_iter().flatten().collect()))
     }
 
     fn with_rows(text: &str, name: &str, rows: &Rows) -> Result<Self> {
@@ -249,11 +250,8 @@ impl Scene {
     }
 
     /// The rows of a measured profile, if the indenter is one.
-    pub fn table(&self) -> Option<&Arc<TabulatedProfile>> {
-        match &self.indenter {
-            Indenter::Table(table) => Some(table),
-            _ => None,
-        }
+    pub fn table(&self) -> Option<Arc<TabulatedProfile>> {
+        self.indenter.table()
     }
 
     /// Spring stiffnesses; those of two elastic bodies are already in series.
@@ -262,11 +260,8 @@ impl Scene {
     }
 
     /// The recorded path, if the indenter follows one.
-    pub fn path(&self) -> Option<&Arc<RecordedPath>> {
-        match &self.conditions.mode {
-            Mode::Recorded(path) => Some(path),
-            _ => None,
-        }
+    pub fn path(&self) -> Option<Arc<RecordedPath>> {
+        RecordedPath::of(&self.conditions.mode)
     }
 
     /// Laws, mode, blocks and control: plain tangential oscillation under Coulomb's and Archard's laws, or something else.

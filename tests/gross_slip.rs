@@ -3,13 +3,15 @@
 mod support;
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use fretwear::contact::InitialContact;
 use fretwear::contact::half_space::HalfSpace;
 use fretwear::contact::indenter::{Indenter, power_law_factor};
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::Coulomb;
-use fretwear::laws::loading::{Amplitude, Duration, Load, Loading, Mode};
+use fretwear::laws::loading::{Amplitude, Duration, Load, Loading};
+use fretwear::laws::motion::NormalOscillation;
 use fretwear::laws::wear::Archard;
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
@@ -126,12 +128,9 @@ fn gross_slip_under_normal_oscillation_wears_from_the_first_cycle() {
         (0.5, 2.0, [2, 1]),
     ] {
         let contact = contact(exponent, 0.0, over);
-        let mode = Mode::NormalOscillation {
-            amplitude: 0.2 * contact.indentation(),
-            frequency_ratio,
-            phase: 0.5 * PI,
-        };
-        let conditions = Conditions { mode, ..plain(&contact) };
+        let mode =
+            NormalOscillation { amplitude: 0.2 * contact.indentation(), frequency_ratio, phase: 0.5 * PI };
+        let conditions = Conditions { mode: Arc::new(mode), ..plain(&contact) };
         let model = model(&contact, &conditions, 60).unwrap();
         assert!(model.slides());
         let plan = Plan { outputs: vec![0.1], end: End::Cycles(0.1) };

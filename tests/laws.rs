@@ -2,9 +2,12 @@
 
 mod support;
 
+use std::sync::Arc;
+
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::history::History;
-use fretwear::laws::loading::{Block, Mode};
+use fretwear::laws::loading::Block;
+use fretwear::laws::motion::NormalOscillation;
 use fretwear::solver::simulation::{End, Outcome};
 use support::{Case, laws};
 
@@ -84,8 +87,12 @@ fn what_leaves_the_assumptions_ends_elsewhere() {
         Conditions { wear_history: fading, ..plain.clone() },
         End::Rate(1e-10),
     ));
-    let mode = Mode::NormalOscillation { amplitude: 0.2 * d, frequency_ratio: [2, 1], phase: 0.0 };
-    all.push(("peak at the reversal".into(), Conditions { mode, ..plain.clone() }, End::Rate(1e-10)));
+    let mode = NormalOscillation { amplitude: 0.2 * d, frequency_ratio: [2, 1], phase: 0.0 };
+    all.push((
+        "peak at the reversal".into(),
+        Conditions { mode: Arc::new(mode), ..plain.clone() },
+        End::Rate(1e-10),
+    ));
     let blocks = vec![laws::block(1.0, 1.0, 1.0), laws::block(1.0, 0.05, 1.2)];
     all.push((
         "deepest block sticks".into(),

@@ -9,14 +9,6 @@ const LAYERS: [&str; 15] = [
     "figures", "lib", "cli", "main",
 ];
 
-/// Circles that are still to be untied.
-const KNOWN: [&str; 4] = [
-    "contact::indenter::equivalent -> contact::indenter::table_equivalent",
-    "contact::indenter::table -> contact::indenter::table_equivalent",
-    "contact::indenter::table_equivalent -> contact::indenter::equivalent",
-    "contact::indenter::table_equivalent -> contact::indenter::table",
-];
-
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
@@ -162,9 +154,7 @@ fn every_file_uses_its_own_layer_and_those_below() {
     let mut wrong = vec![];
     for (module, used) in uses() {
         for other in used {
-            let above = place(&other) > place(&module);
-            let known = KNOWN.contains(&format!("{} -> {}", module[0], other[0]).as_str());
-            if above && !known {
+            if place(&other) > place(&module) {
                 wrong.push(format!("{} uses {}, which stands above it", module.join("::"), other.join("::")));
             }
         }
@@ -211,10 +201,6 @@ fn circles() -> Vec<String> {
 
 #[test]
 fn modules_form_no_circle() {
-    let mut circles = circles();
-    for known in KNOWN {
-        assert!(circles.iter().any(|circle| circle == known), "{known} is untied; take it from the list");
-    }
-    circles.retain(|circle| !KNOWN.contains(&circle.as_str()));
+    let circles = circles();
     assert!(circles.is_empty(), "{}", circles.join("\n"));
 }

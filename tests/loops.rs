@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::{FrictionLaw, LoadDependent, StaticKinetic};
-use fretwear::laws::loading::{Mode, RecordedPath, TangentialControl};
+use fretwear::laws::loading::TangentialControl;
+use fretwear::laws::motion::{Mode, NormalOscillation, Orbit, RecordedPath};
 use fretwear::numerics::grid::Clustering;
 use fretwear::numerics::quadrature::Rule;
 use fretwear::solver::model::{
@@ -129,7 +130,7 @@ fn modes() -> Vec<(&'static str, Conditions)> {
     let (d, amplitude) = (contact.indentation(), contact.amplitude());
     let plain = Conditions::plain(*contact.friction(), *contact.wear());
     let with_friction = |friction: Arc<dyn FrictionLaw>| Conditions { friction, ..plain.clone() };
-    let with_mode = |mode| Conditions { mode, ..plain.clone() };
+    let with_mode = |mode: Arc<dyn Mode>| Conditions { mode, ..plain.clone() };
     let control = |tangential_control| Conditions { tangential_control, ..plain.clone() };
     let rows = vec![0.0, amplitude, 0.3 * amplitude, -0.4 * amplitude];
     let across = vec![0.0, 0.1 * amplitude, 0.7 * amplitude, 0.2 * amplitude];
@@ -149,21 +150,29 @@ fn modes() -> Vec<(&'static str, Conditions)> {
         ("rig", control(TangentialControl::Rig { stiffness: 5.0 })),
         (
             "normal oscillation",
-            with_mode(Mode::NormalOscillation { amplitude: 0.2 * d, frequency_ratio: [3, 2], phase: 0.6 }),
+            with_mode(Arc::new(NormalOscillation {
+                amplitude: 0.2 * d,
+                frequency_ratio: [3, 2],
+                phase: 0.6,
+            })),
         ),
         (
             "orbit",
-            with_mode(Mode::Orbit { transverse_amplitude: 0.5 * amplitude, phase: 0.3, centre: [0.0; 2] }),
+            with_mode(Arc::new(Orbit {
+                transverse_amplitude: 0.5 * amplitude,
+                phase: 0.3,
+                centre: [0.0; 2],
+            })),
         ),
         (
             "orbit off its centre",
-            with_mode(Mode::Orbit {
+            with_mode(Arc::new(Orbit {
                 transverse_amplitude: 0.5 * amplitude,
                 phase: 0.0,
                 centre: [0.3 * amplitude, 0.1 * amplitude],
-            }),
+            })),
         ),
-        ("recorded path", with_mode(Mode::Recorded(Arc::new(path)))),
+        ("recorded path", with_mode(Arc::new(path))),
     ]
 }
 

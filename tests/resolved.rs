@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use fretwear::contact::spring::{Response, Shakedown, SpringCycle, steady_cycle};
 use fretwear::laws::conditions::Conditions;
-use fretwear::laws::path::SampledPath;
+use fretwear::laws::motion::SampledPath;
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Plan, Simulation};
@@ -278,7 +278,7 @@ fn the_table_of_an_orbit_is_that_of_its_springs() {
     let contact = case.contact();
     let amplitude = contact.amplitude();
     for (name, mode) in laws::modes(&contact).into_iter().skip(3) {
-        let path = SampledPath::new(&mode, amplitude, contact.indentation(), 96).path;
+        let path = SampledPath::new(&*mode, amplitude, contact.indentation(), 96).path;
         let start = std::time::Instant::now();
         let table = Response::new(&path).unwrap();
         let built = start.elapsed();

@@ -69,13 +69,13 @@ fn errors(shape: impl Fn(f64) -> f64, rows: usize) -> [f64; 4] {
     const MEASUREMENTS: u64 = 16;
     let dense = even(8001, LAST);
     let heights = dense.iter().map(|r| shape(*r)).collect();
-    let exact = Indenter::Table(Arc::new(TabulatedProfile::new("exact", dense, heights).unwrap()));
+    let exact = Indenter::from(Arc::new(TabulatedProfile::new("exact", dense, heights).unwrap()));
     let exact = limit(&exact);
     let mut squares = [0.0; 4];
     for seed in 0..MEASUREMENTS {
         let table = smoothed(noisy(&shape, even(rows, LAST), DEVIATION, seed), DEVIATION);
         let smoothing: Smoothing = *table.smoothing().unwrap();
-        let found = limit(&Indenter::Table(Arc::new(table)));
+        let found = limit(&Indenter::from(Arc::new(table)));
         let relative = [
             found.contact_radius_initial() / exact.contact_radius_initial() - 1.0,
             found.wear_volume() / exact.wear_volume() - 1.0,

@@ -16,7 +16,7 @@ use fretwear::data::{
     Checkpoint, Dataset, Format, LimitCurves, ResultPath, ResultTables, RunFile, RunHeader, RunWriter,
     Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
 };
-use fretwear::laws::loading::RecordedPath;
+use fretwear::laws::motion::RecordedPath;
 use fretwear::solver::model::{Linearised, Past, PastPoint, State, StickEdge};
 use fretwear::solver::simulation::Progress;
 use hdf5::types::VarLenUnicode;

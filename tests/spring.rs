@@ -1,13 +1,12 @@
 //! One spring through the period of a path, against closed forms, its own energy and brute force.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::sync::Arc;
 
 use fretwear::contact::spring::{Shakedown, SpringCycle, steady_cycle, stick_compression};
 use fretwear::contact::stick_slip::slip_amplitude_of_spring;
 use fretwear::laws::friction::{Coulomb, FrictionLaw, LoadDependent, StaticKinetic};
-use fretwear::laws::loading::{Mode, RecordedPath};
-use fretwear::laws::path::{Path, PathPoint, SampledPath};
+use fretwear::laws::motion::{Mode, NormalOscillation, Orbit, RecordedPath, SampledPath, Tangential};
+use fretwear::laws::path::{Path, PathPoint};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -32,12 +31,12 @@ fn cycle(path: &Path, law: &dyn FrictionLaw, compression: f64) -> SpringCycle {
     out
 }
 
-fn sampled(mode: &Mode, amplitude: f64, substeps: usize) -> Path {
+fn sampled(mode: &dyn Mode, amplitude: f64, substeps: usize) -> Path {
     SampledPath::new(mode, amplitude, 10.0, substeps).path
 }
 
-fn normal(amplitude: f64, frequency_ratio: [u32; 2], phase: f64) -> Mode {
-    Mode::NormalOscillation { amplitude, frequency_ratio, phase }
+fn normal(amplitude: f64, frequency_ratio: [u32; 2], phase: f64) -> NormalOscillation {
+    NormalOscillation { amplitude, frequency_ratio, phase }
 }
 
 struct Seeded(ChaCha8Rng);
@@ -70,7 +69,7 @@ fn resolved_cycles_are_the_closed_form_of_plain_oscillation_for_any_number_of_su
     let mut worst = 0.0_f64;
     for law in laws() {
         for substeps in [2, 3, 7, 64, 501] {
-            let path = sampled(&Mode::Tangential, amplitude, substeps);
+            let path = sampled(&Tangential, amplitude, substeps);
             assert_eq!(path.points.len(), substeps);
             for compression in [0.0, 1e-12, 0.3, 1.1, 2.3, 2.7, 3.3, 4.6] {
                 let found = cycle(&path, law, compression);
@@ -188,7 +187,7 @@ fn springs_stick_from_the_compression_of_the_smallest_circle_on() {
         [(0.5, [0.0; 2]), (2.5, [0.0; 2]), (0.7, [0.4, -0.3]), (1.2, [3.0, 1.0])]
     {
         for phase in [0.0, 0.7] {
-            let mode = Mode::Orbit { transverse_amplitude, phase, centre };
+            let mode = Orbit { transverse_amplitude, phase, centre };
             cases.push((format!("{mode:?}"), sampled(&mode, 1.5, 40)));
         }
     }
@@ -197,7 +196,7 @@ fn springs_stick_from_the_compression_of_the_smallest_circle_on() {
         let lift = [0.0, 0.5][run % 2];
         cases.push((format!("polygon {run}"), random.polygon(3 + run % 8, (run / 2 % 2) as f64, lift)));
     }
-    cases.push(("plain".to_owned(), sampled(&Mode::Tangential, 1.5, 2)));
+    cases.push(("plain".to_owned(), sampled(&Tangential, 1.5, 2)));
     for (name, path) in cases {
         // In one direction a spring has shaken down after a period; in two it approaches rest the slower the nearer it is to the edge.
         let plane = path.points.iter().any(|point| point.tangential[1] != 0.0);
@@ -308,14 +307,14 @@ fn springs_near_a_peak_at_a_reversal_never_slip_if_the_normal_oscillation_is_str
 fn orbits_stick_from_their_larger_amplitude_on_wherever_they_are() {
     for (x, y) in [(1.5, 0.2), (1.0, 1.0), (0.7, 1.9)] {
         for (phase, centre) in [(0.0, [0.0; 2]), (0.0, [0.3, -2.0])] {
-            let path = sampled(&Mode::Orbit { transverse_amplitude: y, phase, centre }, x, 37);
+            let path = sampled(&Orbit { transverse_amplitude: y, phase, centre }, x, 37);
             let edge = stick_compression(&path, &coulomb(0.45), M);
             let exact = M * f64::max(x, y) / 0.45;
             assert!((edge / exact - 1.0).abs() < 1e-14, "{x}, {y}: {edge}, {exact}");
         }
     }
     // A phase turns the axes: U_x = U_y = 1 shifted by φ has the larger half axis √(1 + |sin φ|).
-    let mode = Mode::Orbit { transverse_amplitude: 1.0, phase: 0.7, centre: [0.0; 2] };
+    let mode = Orbit { transverse_amplitude: 1.0, phase: 0.7, centre: [0.0; 2] };
     let edge = stick_compression(&sampled(&mode, 1.0, 12), &coulomb(0.45), M);
     let exact = M * (1.0 + 0.7_f64.sin()).sqrt() / 0.45;
     assert!((edge / exact - 1.0).abs() < 1e-14, "{edge}, {exact}");
@@ -349,7 +348,7 @@ fn a_spring_dragged_round_a_circle_is_second_order_in_the_substeps() {
     let law = coulomb(0.45);
     let limit = 0.45 * compression / M;
     let exact = TAU * (amplitude * amplitude - limit * limit).sqrt();
-    let mode = Mode::Orbit { transverse_amplitude: amplitude, phase: 0.0, centre: [0.2, -0.1] };
+    let mode = Orbit { transverse_amplitude: amplitude, phase: 0.0, centre: [0.2, -0.1] };
     let errors: Vec<[f64; 2]> = [16, 32, 64, 128]
         .iter()
         .map(|&substeps| {
@@ -472,7 +471,7 @@ fn recorded_paths_keep_their_rows_and_are_cut_evenly() {
     };
     let rows = 3;
     for substeps in [1, 3, 4, 12] {
-        let sampled = SampledPath::new(&Mode::Recorded(Arc::new(recorded.clone())), 9.0, 2.0, substeps);
+        let sampled = SampledPath::new(&recorded, 9.0, 2.0, substeps);
         let parts = substeps.div_ceil(rows);
         assert_eq!(sampled.path.points.len(), rows * parts);
         assert_eq!(sampled.largest_indentation, 2.2);
@@ -482,7 +481,7 @@ fn recorded_paths_keep_their_rows_and_are_cut_evenly() {
             assert_eq!(point.lift, 0.2 - recorded.indentation[row]);
         }
         // Cutting straight lines changes no deflection, however few the substeps.
-        let whole = SampledPath::new(&Mode::Recorded(Arc::new(recorded.clone())), 9.0, 2.0, 1).path;
+        let whole = SampledPath::new(&recorded, 9.0, 2.0, 1).path;
         for law in laws().into_iter().take(2) {
             let [a, b] = [&whole, &sampled.path].map(|path| cycle(path, law, 0.6).deflection);
             for row in 0..rows {

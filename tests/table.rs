@@ -14,7 +14,7 @@ use fretwear::laws::wear::Archard;
 const GRADINGS: [f64; 8] = [-0.9999, -0.9, -0.5, 0.0, 0.3, 0.7, 0.9, 0.9999];
 
 fn table(radius: Vec<f64>, height: Vec<f64>) -> Indenter {
-    Indenter::Table(Arc::new(TabulatedProfile::new("rows", radius, height).unwrap()))
+    Indenter::from(Arc::new(TabulatedProfile::new("rows", radius, height).unwrap()))
 }
 
 /// `rows` radii from 0 to `last`, evenly spaced.

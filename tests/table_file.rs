@@ -301,7 +301,7 @@ fn an_interrupted_run_goes_on_without_the_file_of_the_profile_and_gives_the_same
         assert!(text(&info.stdout).contains("table rows.csv, 7 rows, radius 0 to 300 µm, f to 4.5 µm"));
         let table = found.header.table.expect("the rows");
         assert_eq!(
-            Indenter::Table(table),
+            Indenter::from(table),
             *Scene::from_path(whole.path().join("scene.toml")).unwrap().indenter()
         );
         return;

@@ -34,7 +34,7 @@ fn wavy(rows: usize, waves: f64, part: f64) -> (Vec<f64>, Vec<f64>) {
 }
 
 fn table((radius, height): (Vec<f64>, Vec<f64>)) -> Indenter {
-    Indenter::Table(Arc::new(TabulatedProfile::new("rows", radius, height).unwrap()))
+    Indenter::from(Arc::new(TabulatedProfile::new("rows", radius, height).unwrap()))
 }
 
 fn relative(found: f64, expected: f64) -> f64 {

@@ -489,11 +489,11 @@ mod tests {
         let height = radius.iter().map(|r| 30.0 * r * r + 1e-1 * r).collect();
         let table = TabulatedProfile::new("rows", radius, height).unwrap();
         [
-            Indenter::Table(std::sync::Arc::new(table)),
-            Indenter::Paraboloid { radius: 0.01 },
-            Indenter::Cone { slope: 0.05 },
-            Indenter::PowerLaw { coefficient: 1e3, exponent: 4.0 },
-            Indenter::Sphere { radius: 1e-4 },
+            Indenter::from(std::sync::Arc::new(table)),
+            Indenter::paraboloid(0.01).unwrap(),
+            Indenter::cone(0.05).unwrap(),
+            Indenter::power_law(1e3, 4.0).unwrap(),
+            Indenter::sphere(1e-4).unwrap(),
         ]
     }
 
@@ -554,7 +554,7 @@ mod tests {
 
     #[test]
     fn time_per_cycle_of_a_homogeneous_paraboloid_is_that_by_hand() {
-        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
+        let paraboloid = Indenter::paraboloid(0.01).unwrap();
         let found =
             contact(&paraboloid, 0.0, Load::Indentation(1e-6), Amplitude::Displacement(1e-7)).unwrap();
         // a0 = √(1e-2 · 1e-6) = 1e-4;  4 · 1e-14 · 1e10 / 1e-4 · 0.6 · 1e-6 / 0.7
@@ -569,7 +569,7 @@ mod tests {
 
     #[test]
     fn the_regimes_are_told_apart() {
-        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
+        let paraboloid = Indenter::paraboloid(0.01).unwrap();
         let regime = |amplitude| contact(&paraboloid, 0.0, Load::Indentation(1e-6), amplitude).unwrap();
         for none in [Amplitude::Displacement(0.0), Amplitude::Ratio(0.0), Amplitude::StickRatio(1.0)] {
             let stick = regime(none);
@@ -597,8 +597,8 @@ mod tests {
         use Amplitude::{Displacement, Ratio, StickRatio};
         use Load::{Indentation, InitialForce};
 
-        let paraboloid = Indenter::Paraboloid { radius: 0.01 };
-        let sphere = Indenter::Sphere { radius: 1e-4 };
+        let paraboloid = Indenter::paraboloid(0.01).unwrap();
+        let sphere = Indenter::sphere(1e-4).unwrap();
         let ratio = StickRatio(0.7);
         let cases = [
             (&paraboloid, Indentation(0.0), ratio, "loading.indentation = 0 is outside"),

@@ -131,11 +131,10 @@ impl SpringCycle {
 ///
 /// ```
 /// use fretwear::laws::friction::Coulomb;
-/// use fretwear::laws::loading::Mode;
-/// use fretwear::laws::path::SampledPath;
+/// use fretwear::laws::motion::{SampledPath, Tangential};
 /// use fretwear::contact::spring::{Shakedown, SpringCycle, steady_cycle};
 ///
-/// let path = SampledPath::new(&Mode::Tangential, 3.0, 1.0, 2).path;
+/// let path = SampledPath::new(&Tangential, 3.0, 1.0, 2).path;
 /// let law = Coulomb { coefficient: 0.5 };
 /// let mut cycle = SpringCycle::default();
 /// steady_cycle(&path, &law, 1.0, 4.0, &Shakedown::default(), &mut cycle);

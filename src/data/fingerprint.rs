@@ -4,7 +4,7 @@ use sha2::{Digest, Sha256};
 
 use super::layout::FORMAT_VERSION;
 use crate::contact::indenter::TabulatedProfile;
-use crate::laws::loading::RecordedPath;
+use crate::laws::motion::RecordedPath;
 
 /// SHA-256 over parts, each with its length: no two lists of parts run into one another.
 #[derive(Default)]

@@ -13,7 +13,7 @@ use super::{Checkpoint, Format, LimitCurves, RunHeader, Snapshot, StopReason};
 use crate::contact::indenter::TabulatedProfile;
 use crate::contact::stick_slip::Regime;
 use crate::error::Result;
-use crate::laws::loading::RecordedPath;
+use crate::laws::motion::RecordedPath;
 use crate::solver::model::{Linearised, Past, PastPoint, StickEdge};
 
 const NOT_A_RUN: &str = "give a file that `fretwear run` wrote";

@@ -6,7 +6,8 @@ use serde::{Serialize, Serializer};
 
 use crate::laws::friction::{Coulomb, FrictionLaw};
 use crate::laws::history::History;
-use crate::laws::loading::{Block, Clock, Mode, TangentialControl};
+use crate::laws::loading::{Block, Clock, TangentialControl};
+use crate::laws::motion::{Mode, Tangential};
 use crate::laws::wear::{Archard, WearLaw};
 
 /// Laws, mode, blocks and control of a run, beside its contact.
@@ -25,7 +26,8 @@ pub struct Conditions {
     /// Unit of the times of histories and blocks.
     pub clock: Clock,
     /// What the indenter does over one period.
-    pub mode: Mode,
+    #[serde(serialize_with = "law")]
+    pub mode: Arc<dyn Mode>,
     /// Blocks, one after the other; none is one block without end. After the last one it goes on, or all start again.
     pub blocks: Vec<Block>,
     /// Whether the blocks are repeated without end.
@@ -64,7 +66,7 @@ impl PartialEq for Conditions {
             && **wear == *other.wear
             && *wear_history == other.wear_history
             && *clock == other.clock
-            && *mode == other.mode
+            && **mode == *other.mode
             && *blocks == other.blocks
             && *repeat == other.repeat
             && *tangential_control == other.tangential_control
@@ -85,7 +87,7 @@ impl Conditions {
             wear: Arc::new(wear),
             wear_history: History::default(),
             clock: Clock::default(),
-            mode: Mode::default(),
+            mode: Arc::new(Tangential),
             blocks: Vec::new(),
             repeat: false,
             tangential_control: TangentialControl::default(),
@@ -107,12 +109,6 @@ impl Conditions {
     /// assert_eq!(conditions.departures(), ["a held normal force"]);
     /// ```
     pub fn departures(&self) -> Vec<&'static str> {
-        let mode = match self.mode {
-            Mode::Tangential => None,
-            Mode::NormalOscillation { .. } => Some("a normal oscillation"),
-            Mode::Orbit { .. } => Some("an orbit"),
-            Mode::Recorded(_) => Some("a recorded path"),
-        };
         let control = match self.tangential_control {
             TangentialControl::Displacement => None,
             TangentialControl::Force => Some(Self::HELD_FORCES[0]),
@@ -125,7 +121,7 @@ impl Conditions {
             changes(&self.friction_history, "friction that changes along the cycles"),
             self.wear.entry().departure,
             changes(&self.wear_history, "a wear coefficient that changes along the cycles"),
-            mode,
+            self.mode.entry().and_then(|mode| mode.departure),
             given(!self.blocks.is_empty(), "blocks"),
             control,
             given(self.holds_normal_force, Self::HELD_FORCES[1]),

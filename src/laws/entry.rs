@@ -1,12 +1,16 @@
-//! What the program knows of a law before it is built: its name, its keys and how it is made of their values.
+//! What the program knows of a law, a mode of motion or an indenter before it is built: its name, its keys and how it is made of their values.
 
+use std::any::Any;
+use std::cell::RefCell;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde::ser::{SerializeMap, Serializer};
 
-use crate::units::{Key, Rule, Table};
+use crate::error::Error;
+use crate::units::{Dimension, Key, Rule, Table};
 
-/// A law of a scene. Reader, schema, patches and reports are made of it.
+/// A law of a scene, a mode of motion or an indenter. Reader, schema, patches and reports are made of it.
 pub struct Entry<L: ?Sized + 'static> {
     /// Name of its table, `threshold` in `[wear.threshold]`.
     pub name: &'static str,
@@ -18,10 +22,16 @@ pub struct Entry<L: ?Sized + 'static> {
     pub departure: Option<&'static str>,
     /// Which of its keys go together.
     pub rules: &'static [Rule],
-    /// Key that is the indentation of the first cycle where it is left out.
-    pub indentation: Option<&'static str>,
-    /// Makes the law of its values.
-    pub build: fn(&Values) -> Result<Arc<L>, Wrong>,
+    /// Whether with these values it is made of the first contact too.
+    pub refers: fn(&Values) -> bool,
+    /// The columns of the file that its key `file` names.
+    pub columns: Option<&'static Columns>,
+    /// Key of a coefficient whose unit depends on the exponent of another key.
+    pub scaled: Option<Scaled>,
+    /// Whether it is a mode that decides the tangential amplitude itself.
+    pub gives_amplitude: bool,
+    /// Makes it of its values.
+    pub build: fn(&Values) -> Built<L>,
 }
 
 impl<L: ?Sized + 'static> Entry<L> {
@@ -30,9 +40,20 @@ impl<L: ?Sized + 'static> Entry<L> {
         name: &'static str,
         about: &'static str,
         keys: &'static [Key],
-        build: fn(&Values) -> Result<Arc<L>, Wrong>,
+        build: fn(&Values) -> Built<L>,
     ) -> Self {
-        Self { name, about, keys, departure: None, rules: &[], indentation: None, build }
+        Self {
+            name,
+            about,
+            keys,
+            departure: None,
+            rules: &[],
+            refers: |_| false,
+            columns: None,
+            scaled: None,
+            gives_amplitude: false,
+            build,
+        }
     }
 
     /// The entry of a law that departs from those of Coulomb and Archard.
@@ -50,10 +71,78 @@ impl<L: ?Sized + 'static> Entry<L> {
         Table::new(self.name, self.about, self.keys).rules(self.rules)
     }
 
-    /// The entry of a law with a key that is the indentation of the first cycle where it is left out.
-    pub const fn indentation(self, key: &'static str) -> Self {
-        Self { indentation: Some(key), ..self }
+    /// The entry of what is made of the first contact too, with such values.
+    pub const fn refers(self, refers: fn(&Values) -> bool) -> Self {
+        Self { refers, ..self }
     }
+
+    /// The entry of what is read from a file of columns.
+    pub const fn columns(self, columns: &'static Columns) -> Self {
+        Self { columns: Some(columns), ..self }
+    }
+
+    /// The entry with a coefficient whose unit depends on an exponent.
+    pub const fn scaled(self, scaled: Scaled) -> Self {
+        Self { scaled: Some(scaled), ..self }
+    }
+
+    /// The entry of a mode that decides the tangential amplitude itself.
+    pub const fn gives_amplitude(self) -> Self {
+        Self { gives_amplitude: true, ..self }
+    }
+}
+
+/// A coefficient whose unit depends on an exponent.
+#[derive(Clone, Copy)]
+pub struct Scaled {
+    /// Key of the coefficient.
+    pub coefficient: &'static str,
+    /// Key of the exponent, which stands before or behind it.
+    pub exponent: &'static str,
+    /// Dimension of the coefficient at an exponent.
+    pub dimension: fn(f64) -> Dimension,
+}
+
+/// What stands in a file of columns, for its reader and messages.
+pub struct Columns {
+    /// What it describes, with its article: `a profile`.
+    pub what: &'static str,
+    /// How many columns, in words.
+    pub count: &'static str,
+    /// Which columns: `r and f`.
+    pub listed: &'static str,
+    /// Names of the columns.
+    pub names: &'static [&'static str],
+    /// Keys of the units of the columns, of lengths.
+    pub units: &'static [&'static str],
+    /// Fewest columns of a row, the most being all names.
+    pub fewest: usize,
+    /// Most rows.
+    pub most_rows: usize,
+    /// What more a row must satisfy, in the units of the file.
+    pub check: fn(&[f64]) -> Result<(), String>,
+}
+
+/// A file of columns that was read.
+#[derive(Debug, Clone)]
+pub struct File {
+    /// Where it is.
+    pub path: PathBuf,
+    /// What the scene calls it.
+    pub name: String,
+    /// Its rows, at least one.
+    pub rows: Vec<Row>,
+}
+
+/// A row of a file, as written in a line, and in m.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// The line, from 1 on.
+    pub line: usize,
+    /// In the units of the file.
+    pub written: Vec<f64>,
+    /// In m.
+    pub metres: Vec<f64>,
 }
 
 /// A value of a key.
@@ -63,6 +152,8 @@ pub enum Value {
     Number(f64),
     /// One of the words of the key.
     Word(&'static str),
+    /// A ratio of whole numbers without common divisor.
+    Ratio([u32; 2]),
     /// The key was left out and has no default.
     Missing,
 }
@@ -73,25 +164,43 @@ impl From<f64> for Value {
     }
 }
 
-/// Values of the keys of a law.
-#[derive(Debug, Clone, PartialEq)]
+/// Lengths of the first contact that others refer to.
+#[derive(Debug, Clone, Copy)]
+pub struct Lengths {
+    /// Indentation `d`, m.
+    pub indentation: f64,
+    /// Tangential amplitude `U`, m.
+    pub amplitude: f64,
+}
+
+/// Values of the keys of a law, and what else it may be made of.
+#[derive(Debug, Clone)]
 pub struct Values {
     given: Vec<(&'static str, Value)>,
     /// Cycles per second, Hz, where the scene tells.
     pub frequency: Option<f64>,
+    /// The first contact; 1 m for all where [`Entry::refers`] says that they are not asked for.
+    pub contact: Lengths,
+    /// The file that was read.
+    pub file: Option<File>,
+    /// What was stored with a result in place of files.
+    pub stored: Vec<Arc<dyn Any + Send + Sync>>,
+    /// What is allowed but deserves a word.
+    pub warnings: RefCell<Vec<String>>,
 }
 
 impl Values {
     /// The values of some keys, in their order.
     pub fn new(keys: &'static [Key], values: Vec<Value>) -> Self {
         assert_eq!(keys.len(), values.len(), "one value per key");
-        Self { given: keys.iter().map(|key| key.name).zip(values).collect(), frequency: None }
-    }
-
-    /// Gives a key another value.
-    pub fn set(&mut self, name: &str, value: Value) {
-        let found = self.given.iter_mut().find(|(key, _)| *key == name);
-        found.unwrap_or_else(|| panic!("{name} is no key of this law")).1 = value;
+        Self {
+            given: keys.iter().map(|key| key.name).zip(values).collect(),
+            frequency: None,
+            contact: Lengths { indentation: 1.0, amplitude: 1.0 },
+            file: None,
+            stored: vec![],
+            warnings: RefCell::default(),
+        }
     }
 
     fn get(&self, name: &str) -> Value {
@@ -103,8 +212,8 @@ impl Values {
     pub fn optional(&self, name: &str) -> Option<f64> {
         match self.get(name) {
             Value::Number(number) => Some(number),
-            Value::Word(_) => panic!("{name} takes a word"),
             Value::Missing => None,
+            _ => panic!("{name} takes no number"),
         }
     }
 
@@ -121,19 +230,55 @@ impl Values {
         }
     }
 
+    /// The ratio of a key that takes one and is required or has a default.
+    pub fn ratio(&self, name: &str) -> [u32; 2] {
+        match self.get(name) {
+            Value::Ratio(ratio) => ratio,
+            _ => panic!("{name} takes a ratio"),
+        }
+    }
+
+    /// What was stored with a result, if it is of this type.
+    pub fn stored<T: Any + Send + Sync>(&self) -> Option<Arc<T>> {
+        self.stored.iter().find_map(|it| Arc::clone(it).downcast().ok())
+    }
+
+    /// The file that was read.
+    ///
+    /// # Errors
+    /// Its rows should have been stored with a result and were not.
+    pub fn file(&self) -> Result<&File, Wrong> {
+        let why = || "is not at hand: its rows are not stored in the result; run the scene again".into();
+        self.file.as_ref().ok_or_else(|| Wrong::Value { key: "file", why: why() })
+    }
+
     /// Whether a key was left out.
     pub fn lacks(&self, name: &str) -> bool {
         self.get(name) == Value::Missing
     }
 }
 
+/// What was made of values, or what is wrong with them though each is allowed.
+pub type Built<L> = Result<Arc<L>, Wrong>;
+
 /// What is wrong with values each of which is allowed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Wrong {
-    /// The key at which it shows.
-    pub key: &'static str,
-    /// What follows its name and value in an error.
-    pub why: String,
+#[derive(Debug)]
+pub enum Wrong {
+    /// It shows at the value of a key.
+    Value {
+        /// The key.
+        key: &'static str,
+        /// What follows its name and value in an error.
+        why: String,
+    },
+    /// An error that names a key of the scene, or what was read from a file.
+    Error(Error),
+}
+
+impl From<Error> for Wrong {
+    fn from(error: Error) -> Self {
+        Self::Error(error)
+    }
 }
 
 /// Writes a law as its name and its values.
@@ -148,6 +293,7 @@ pub(super) fn serialize<L: ?Sized, S: Serializer>(
         match value {
             Value::Number(number) => map.serialize_entry(key.name, number)?,
             Value::Word(word) => map.serialize_entry(key.name, word)?,
+            Value::Ratio(ratio) => map.serialize_entry(key.name, ratio)?,
             Value::Missing => {}
         }
     }

@@ -1,8 +1,6 @@
 //! What is done to the contact: how deep it is pressed, how far it is moved to and fro, and for how long.
 
-use std::sync::Arc;
-
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::error::{Error, Result};
 
@@ -115,128 +113,6 @@ pub struct Loading {
     pub amplitude: Amplitude,
     /// The end of the run.
     pub duration: Duration,
-}
-
-/// What the indenter does over one period, of which the tangential oscillation `u_x = U cos ωt` is a part.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Mode {
-    /// Nothing else.
-    #[default]
-    Tangential,
-    /// The indentation oscillates too, `d(t) = d + d_1 cos(m ωt/n + φ)`.
-    NormalOscillation {
-        /// `d_1`, m, positive, smaller than `d`.
-        amplitude: f64,
-        /// `m` and `n`, positive, without common divisor: `m` normal oscillations in `n` tangential ones.
-        frequency_ratio: [u32; 2],
-        /// `φ`, rad.
-        phase: f64,
-    },
-    /// The indenter goes round, `u = (o_x + U cos ωt, o_y + U_y sin(ωt + φ))`.
-    Orbit {
-        /// `U_y`, m, positive.
-        transverse_amplitude: f64,
-        /// `φ`, rad; zero is an ellipse with its axes along x and y.
-        phase: f64,
-        /// `o_x`, `o_y`, m: the centre, seen from where the indenter is pressed on.
-        centre: [f64; 2],
-    },
-    /// A recorded period.
-    #[serde(rename = "path", serialize_with = "without_rows")]
-    Recorded(Arc<RecordedPath>),
-}
-
-/// Name and number of rows of a path, which are enough to tell it.
-fn without_rows<S: Serializer>(path: &RecordedPath, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Summary<'a> {
-        source: &'a str,
-        rows: usize,
-    }
-    Summary { source: &path.source, rows: path.x.len() }.serialize(serializer)
-}
-
-/// A period as recorded: closed, straight between its rows, starting at the first one.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordedPath {
-    /// Where the rows came from.
-    pub source: String,
-    /// Tangential displacement along x, m, seen from where the indenter is pressed on.
-    pub x: Vec<f64>,
-    /// The same along y, m.
-    pub y: Vec<f64>,
-    /// Indentation over that of the scene, m; zero throughout if the indentation is constant.
-    pub indentation: Vec<f64>,
-}
-
-impl RecordedPath {
-    /// Fewest rows of a path.
-    pub const FEWEST_ROWS: usize = 3;
-
-    /// Most rows of a path.
-    pub const MOST_ROWS: usize = 10_000;
-
-    /// Path through rows.
-    ///
-    /// # Arguments
-    /// * `source` -- where the rows come from, in words; the name of the file as a rule
-    /// * `x`, `y`, `indentation` -- m, shape `(row,)` each, as the fields
-    ///
-    /// # Errors
-    /// [`Error::Inconsistent`] names `loading.path` and what is wrong with the rows.
-    ///
-    /// # Examples
-    /// ```
-    /// use fretwear::laws::loading::RecordedPath;
-    ///
-    /// let path = RecordedPath::new("triangle", vec![0.0, 3e-6, 0.0], vec![0.0, 0.0, 4e-6], vec![0.0; 3])?;
-    /// assert!((path.amplitude() / 2.5e-6 - 1.0).abs() < 1e-15);
-    /// # Ok::<(), fretwear::Error>(())
-    /// ```
-    pub fn new(source: impl Into<String>, x: Vec<f64>, y: Vec<f64>, indentation: Vec<f64>) -> Result<Self> {
-        let refused = |why: String| Err(Error::Inconsistent { what: "loading.path", why });
-        let rows = x.len();
-        if y.len() != rows || indentation.len() != rows {
-            return refused(format!(
-                "it has {rows} values of x, {} of y and {} of the indentation",
-                y.len(),
-                indentation.len()
-            ));
-        }
-        if !(Self::FEWEST_ROWS..=Self::MOST_ROWS).contains(&rows) {
-            let (fewest, most) = (Self::FEWEST_ROWS, Self::MOST_ROWS);
-            return refused(format!("it has {rows} rows; give from {fewest} to {most}"));
-        }
-        // What is formed from them must not overflow.
-        let sound = |value: f64| value.abs() < 1e100;
-        if let Some(value) = [&x, &y, &indentation].into_iter().flatten().find(|it| !sound(**it)) {
-            return refused(format!("it holds {value:e} m; check the units"));
-        }
-        if x.iter().all(|it| *it == x[0]) && y.iter().all(|it| *it == y[0]) {
-            return refused(
-                "all its rows are at the same x and y: the indenter does not move along the surface".into(),
-            );
-        }
-        Ok(Self { source: source.into(), x, y, indentation })
-    }
-
-    /// Half of the largest distance between two rows along the surface, m: of a straight path to and fro its amplitude.
-    pub fn amplitude(&self) -> f64 {
-        let place = |row: usize| [self.x[row], self.y[row]];
-        let mut largest = 0.0f64;
-        for row in 0..self.x.len() {
-            let [x, y] = place(row);
-            largest =
-                (0..row).map(place).fold(largest, |most, [u, v]| most.max((x - u).powi(2) + (y - v).powi(2)));
-        }
-        0.5 * largest.sqrt()
-    }
-
-    /// Whether the indentation changes along the path.
-    pub fn changes_indentation(&self) -> bool {
-        self.indentation.iter().any(|it| *it != 0.0)
-    }
 }
 
 /// What decides the tangential amplitude in each cycle.

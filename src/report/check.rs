@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::text::{Scale, TextTable, indenter, number};
+use super::text::{Scale, TextTable, number};
 use super::{conditions, unsigned_zero};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
-use crate::contact::indenter::{Indenter, SmoothedBy, Smoothing};
+use crate::contact::indenter::{SmoothedBy, Smoothing};
 use crate::contact::stick_slip::Regime;
 use crate::error::Result;
 use crate::laws::conditions::Conditions;
@@ -131,8 +131,8 @@ impl CheckReport {
         warnings.extend(doubts(&contact, limit.as_ref()));
         Ok(Self {
             title: scene.title().map(str::to_owned),
-            indenter: indenter(contact.indenter()),
-            smoothing: scene.table().and_then(|table| table.smoothing()).copied(),
+            indenter: contact.indenter().words(),
+            smoothing: scene.table().and_then(|table| table.smoothing().copied()),
             grading: half_space.grading(),
             normal_stiffness: half_space.normal_stiffness(),
             tangential_stiffness: half_space.stiffness_ratio() * half_space.normal_stiffness(),
@@ -285,7 +285,7 @@ fn doubts(contact: &InitialContact, limit: Option<&LimitingShape>) -> Vec<String
             number(slope)
         ));
     }
-    if let Indenter::Table(table) = contact.indenter() {
+    if let Some(table) = contact.indenter().table() {
         doubts.extend(table.smoothing().and_then(doubt_of_smoothing));
         let within = table.radii().iter().filter(|r| **r <= contact.contact_radius()).count();
         if within < FEW_ROWS {

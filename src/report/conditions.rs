@@ -1,9 +1,9 @@
 //! Laws, mode, blocks and control in words.
 
-use super::text::{Scale, TextTable, number, recorded_path};
+use super::text::{TextTable, number};
 use crate::laws::conditions::Conditions;
 use crate::laws::history::History;
-use crate::laws::loading::{Block, Clock, Mode, TangentialControl};
+use crate::laws::loading::{Block, Clock, TangentialControl};
 
 /// Blocks and times of which all are listed.
 const MOST_LISTED: usize = 6;
@@ -21,7 +21,7 @@ pub(super) fn put(rows: &mut TextTable, conditions: &Conditions) {
     if let Some(frequency) = conditions.frequency {
         rows.row("frequency", format!("{} Hz", number(frequency)));
     }
-    rows.row("mode", mode(&conditions.mode));
+    rows.row("mode", conditions.mode.words());
     let normal = if conditions.holds_normal_force { "normal force" } else { "indentation" };
     let tangential = match conditions.tangential_control {
         TangentialControl::Displacement => "amplitude held".to_owned(),
@@ -68,24 +68,5 @@ fn changing(rows: &mut TextTable, what: &str, history: &History, clock: &str) {
             let points = points.map(|(time, factor)| format!("{} at {}", number(*factor), number(*time)));
             rows.row(what, format!("of the first: {} {clock}", listed(points)));
         }
-    }
-}
-
-fn mode(mode: &Mode) -> String {
-    match mode {
-        Mode::Tangential => "tangential oscillation".into(),
-        Mode::NormalOscillation { amplitude, frequency_ratio: [over, under], phase } => format!(
-            "normal oscillation too, {}, {over} in {under}, phase {} rad",
-            Scale::LENGTH.show(*amplitude),
-            number(*phase)
-        ),
-        Mode::Orbit { transverse_amplitude, phase, centre: [x, y] } => format!(
-            "orbit, {} transverse, phase {} rad, centre {}, {}",
-            Scale::LENGTH.show(*transverse_amplitude),
-            number(*phase),
-            Scale::LENGTH.show(*x),
-            Scale::LENGTH.show(*y)
-        ),
-        Mode::Recorded(path) => recorded_path(path),
     }
 }

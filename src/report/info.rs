@@ -4,10 +4,12 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::text::{self, Scale, TextTable, recorded_path, shown, table};
+use super::text::{self, Scale, TextTable, shown};
+use crate::contact::indenter::Shape;
 use crate::data::quantity::{Entries, Reading, Value, number, word};
 use crate::data::{Checkpoint, DatasetSummary, LimitDistance, ResultPath, RunFile, Snapshot, largest};
 use crate::error::Result;
+use crate::laws::motion::Mode;
 
 /// The content of a result file in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -125,8 +127,8 @@ impl InfoReport {
             complete: run.complete,
             stop_reason: run.stop_reason.name(),
             program_version: run.program_version.clone(),
-            table: run.header.table.as_deref().map(table),
-            path: run.header.path.as_deref().map(recorded_path),
+            table: run.header.table.as_deref().map(Shape::words),
+            path: run.header.path.as_deref().map(Mode::words),
             nodes: run.header.radius.len(),
             radius_first: run.header.radius.first().copied(),
             radius_last: run.header.radius.last().copied(),

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::text::{Scale, TextTable, indenter, number};
+use super::text::{Scale, TextTable, number};
 use super::{bad_option, unsigned_zero};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
@@ -79,7 +79,7 @@ impl LimitReport {
             Some(radii) => ProfileTable::at(form.contact.indenter(), form.limit.as_ref(), radii)?,
             None => ProfileTable::graded(&form.contact, form.limit.as_ref()),
         };
-        let indenter = indenter(form.contact.indenter());
+        let indenter = form.contact.indenter().words();
         let readings = Entries::new(&LIMIT, &form);
         Ok(Self { title: scene.title().map(str::to_owned), indenter, readings, form, profile })
     }

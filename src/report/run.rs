@@ -4,9 +4,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::text::{Scale, TextTable, indenter, number};
+use super::text::{Scale, TextTable, number};
 use crate::contact::closed_form::LimitingShape;
-use crate::contact::indenter::Indenter;
+use crate::contact::indenter::Shape;
 use crate::data::quantity::Entries;
 use crate::run::Results;
 use crate::run::readings::RUN;
@@ -46,8 +46,8 @@ impl<'a> RunReport<'a> {
         let (last, checkpoint, limit) = (self.result.last(), self.result.checkpoint(), self.result.limit());
         let distance = self.result.distance();
         let mut rows = TextTable::default();
-        if let table @ Indenter::Table(_) = self.result.indenter() {
-            rows.row("indenter", indenter(table));
+        if let Some(table) = self.result.indenter().table() {
+            rows.row("indenter", table.words());
         }
         let stopped = match self.result.stop_reason().name() {
             "end" => "at its end".to_owned(),

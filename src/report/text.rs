@@ -2,42 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::contact::indenter::{Indenter, TabulatedProfile};
 use crate::data::quantity::{Reading, Value};
-use crate::laws::loading::RecordedPath;
 pub(crate) use crate::units::{Scale, number};
-
-/// `paraboloid, radius 10 mm`.
-pub(super) fn indenter(indenter: &Indenter) -> String {
-    match *indenter {
-        Indenter::Paraboloid { radius } => format!("paraboloid, radius {}", Scale::LENGTH.show(radius)),
-        Indenter::Sphere { radius } => format!("sphere, radius {}", Scale::LENGTH.show(radius)),
-        Indenter::Cone { slope } => format!("cone, slope {}", number(slope)),
-        Indenter::PowerLaw { coefficient, exponent } => {
-            format!("power law, {} r^{} (m)", number(coefficient), number(exponent))
-        }
-        Indenter::Table(ref table) => self::table(table),
-    }
-}
-
-/// `table ball.csv, 201 rows, radius 0 to 0.5 mm, f to 12 µm`.
-pub(super) fn table(table: &TabulatedProfile) -> String {
-    let smoothing = table
-        .smoothing()
-        .map_or_else(String::new, |it| format!(", smoothed with {}", Scale::LENGTH.show(it.deviation)));
-    format!(
-        "table {}, {} rows, radius 0 to {}, f to {}{smoothing}",
-        table.source(),
-        table.heights().len(),
-        Scale::LENGTH.show(table.largest_radius()),
-        Scale::LENGTH.show(table.heights().iter().copied().fold(0.0, f64::max)),
-    )
-}
-
-/// `path path.csv, 360 rows`.
-pub(super) fn recorded_path(path: &RecordedPath) -> String {
-    format!("path {}, {} rows", path.source, path.x.len())
-}
 
 /// Width of the names in a table.
 const WIDTH: usize = 34;

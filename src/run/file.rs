@@ -1,7 +1,6 @@
 //! A run with a result file: written at its end and at each checkpoint, and gone on with from there.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use super::limit::distance;
 use super::parts::Parts;
@@ -227,6 +226,6 @@ pub(crate) fn is_of(file: &RunFile, scene: &Scene) -> bool {
 
 /// What a run of a scene is computed from, as one word.
 pub(crate) fn hash_of(scene: &Scene) -> String {
-    let (table, path) = (scene.table().map(Arc::as_ref), scene.path().map(Arc::as_ref));
-    scene_hash(env!("CARGO_PKG_VERSION"), scene.text(), table, path)
+    let (table, path) = (scene.table(), scene.path());
+    scene_hash(env!("CARGO_PKG_VERSION"), scene.text(), table.as_deref(), path.as_deref())
 }

@@ -12,8 +12,8 @@ pub(super) fn header(scene: &Scene, model: &Model, limit: Option<&LimitingShape>
         scene: scene.text().to_owned(),
         radius: model.radii(),
         limit: limit.map(|limit| limit_curves(model, limit)),
-        table: scene.table().cloned(),
-        path: scene.path().cloned(),
+        table: scene.table(),
+        path: scene.path(),
     }
 }
 

@@ -7,7 +7,6 @@ use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
-use crate::laws::loading::Mode;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
 use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use crate::solver::simulation::Plan;
@@ -107,7 +106,7 @@ fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
 
 /// How periods are passed through.
 pub(super) fn resolution(scene: &Scene, numerics: &Numerics) -> Resolution {
-    let sampled = scene.conditions().mode != Mode::Tangential && numerics.springs.is_none();
+    let sampled = !scene.conditions().mode.is_tangential() && numerics.springs.is_none();
     let chosen = sampled.then(|| budget::substeps_for(numerics.accuracy));
     let resolved = numerics.cycle == Some(Cycle::Resolved);
     Resolution { resolved, substeps: numerics.substeps.or(chosen) }

@@ -3,68 +3,84 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use super::document::printable;
+use super::document::{Section, printable};
 use super::input::{self, Pipes, Unread};
 use crate::error::{Error, Result};
-use crate::units::{Dimension, parse};
+use crate::laws::entry::{Columns, File, Row};
+use crate::units::{Dimension, Key, Table, parse};
 
 /// Size of the largest file read, bytes: a million rows of a hundred characters.
 pub(super) const LARGEST: u64 = 100_000_000;
 
-/// What stands in a file, for the reader and for its messages.
-pub(super) struct Kind<'a> {
-    /// Key of the scene that names the file.
-    pub key: &'static str,
-    /// What it describes, with its article: `a profile`.
-    pub what: &'static str,
-    /// How many columns, in words, and which: `two`, `r and f`.
-    pub columns: [&'static str; 2],
-    /// Names of the columns.
-    pub names: &'a [&'static str],
-    /// Units of the columns, of lengths.
-    pub units: &'a [&'a str],
-    /// Fewest columns of a row, the most being all names.
-    pub fewest: usize,
-    /// Most rows.
-    pub most_rows: usize,
-    /// What more a row must satisfy, in the units of the file.
-    pub check: fn(&[f64]) -> std::result::Result<(), String>,
-}
-
-/// A row as written in a line, and in m.
-#[derive(Clone)]
-pub(super) struct Row {
-    pub line: usize,
-    pub written: Vec<f64>,
-    pub metres: Vec<f64>,
-}
-
-/// Reads the rows of a file, at least one, all with the same number of columns.
+/// Reads the file that the key `file` of a table names, if it is to be read; all rows have the same number of columns.
 ///
 /// The columns stand apart by a comma, a semicolon, a tab or blanks. Lines before the first row that begin with no number are a header; empty
 /// lines and what follows `#`, `%`, `//`, or `;` at the start of a line, are left out.
 ///
+/// # Arguments
+/// * `folder` -- that of the scene; none where the rows are stored
+///
 /// # Errors
 /// [`Error::File`] names the file, the line, what stands there and the cure.
-pub(super) fn read(path: &Path, kind: &Kind) -> Result<Vec<Row>> {
-    let failed = |why: String| Error::File { path: path.to_owned(), why };
-    let text = kind.text_of(path).map_err(failed)?;
-    kind.rows(&text).map_err(failed)
+pub(super) fn read(
+    section: &Section,
+    table: &Table,
+    columns: &Columns,
+    folder: Option<&Path>,
+) -> Result<Option<File>> {
+    let key = |name: &str| table.key(name).expect("columns are given by keys of their table");
+    let name = match section.read(key("file"))? {
+        "" => return Err(section.required_key(key("file"))?.error("is no name of a file")),
+        name => name,
+    };
+    let units = columns.units.iter().map(|unit| length_unit(section, key(unit))).collect::<Result<_>>()?;
+    let Some(folder) = folder else { return Ok(None) };
+    let path = folder.join(name);
+    if !path.exists() {
+        let why = "there is no such file; it is taken relative to the folder of the scene";
+        return Err(section.at_key("file", format_args!(": {}: {why}", path.display())));
+    }
+    let kind = Kind { columns, key: section.name("file"), units };
+    let rows = kind.text_of(&path).and_then(|text| kind.rows(&text));
+    match rows {
+        Ok(rows) => Ok(Some(File { path, name: name.into(), rows })),
+        Err(why) => Err(Error::File { path, why }),
+    }
+}
+
+/// A unit of length.
+fn length_unit<'a>(section: &Section<'a>, key: &Key) -> Result<&'a str> {
+    let unit: &str = section.read(key)?;
+    match (parse(&format!("1 {unit}"), Dimension::LENGTH), section.optional(key.name)) {
+        (Err(why), Some(entry)) => {
+            Err(entry.explained(why + "; give a unit of length alone, such as \"um\""))
+        }
+        _ => Ok(unit),
+    }
+}
+
+/// What stands in a file, and how a scene gives it.
+struct Kind<'a> {
+    columns: &'a Columns,
+    /// Key of the scene that names the file.
+    key: String,
+    /// Units of the columns, of lengths.
+    units: Vec<&'a str>,
 }
 
 impl Kind<'_> {
     /// `two columns, r and f`.
     fn columns(&self) -> String {
-        format!("{} columns, {}", self.columns[0], self.columns[1])
+        format!("{} columns, {}", self.columns.count, self.columns.listed)
     }
 
     /// `two numbers, r and f`.
     fn numbers(&self) -> String {
-        format!("{} numbers, {}", self.columns[0], self.columns[1])
+        format!("{} numbers, {}", self.columns.count, self.columns.listed)
     }
 
     fn widths(&self) -> RangeInclusive<usize> {
-        self.fewest..=self.names.len()
+        self.columns.fewest..=self.columns.names.len()
     }
 
     fn text_of(&self, path: &Path) -> std::result::Result<String, String> {
@@ -72,7 +88,10 @@ impl Kind<'_> {
             let cure = match unread {
                 Unread::Missing => format!("{} is taken relative to the folder of the scene", self.key),
                 Unread::TooLarge(_) => {
-                    format!("{} has {} columns, and fewer rows will do", self.what, self.columns[0])
+                    format!(
+                        "{} has {} columns, and fewer rows will do",
+                        self.columns.what, self.columns.count
+                    )
                 }
                 Unread::NotText(_) => "save the file in UTF-8".into(),
                 _ => format!("name a file of {}", self.columns()),
@@ -81,7 +100,7 @@ impl Kind<'_> {
         };
         let bytes = input::bytes(path, LARGEST, Pipes::Refused).map_err(refused)?;
         if bytes.contains(&0) {
-            let name = self.what.rsplit(' ').next().unwrap_or_default();
+            let name = self.columns.what.rsplit(' ').next().unwrap_or_default();
             return Err(format!(
                 "is not text; save the {name} as plain text in UTF-8 with {}",
                 self.columns()
@@ -102,8 +121,8 @@ impl Kind<'_> {
                 header = header.or((!line.is_empty()).then_some((number, full)));
                 continue;
             }
-            if rows.len() == self.most_rows {
-                let most = self.most_rows;
+            if rows.len() == self.columns.most_rows {
+                let most = self.columns.most_rows;
                 return Err(format!(
                     "line {number}: there are more than {most} rows; give fewer, evenly spread"
                 ));
@@ -121,7 +140,7 @@ impl Kind<'_> {
             let metres = |(field, unit): (&&str, &&str)| {
                 parse(&format!("{field} {unit}"), Dimension::LENGTH).map(|it| it + 0.0)
             };
-            let metres = fields.iter().zip(self.units).map(metres).collect::<std::result::Result<_, _>>();
+            let metres = fields.iter().zip(&self.units).map(metres).collect::<std::result::Result<_, _>>();
             rows.push(Row { line: number, written, metres: metres.map_err(shown)? });
         }
         match (rows.is_empty(), header) {
@@ -164,8 +183,8 @@ impl Kind<'_> {
             )),
         };
         let row: Vec<f64> =
-            self.names.iter().zip(fields).map(number).collect::<std::result::Result<_, _>>()?;
-        (self.check)(&row)?;
+            self.columns.names.iter().zip(fields).map(number).collect::<std::result::Result<_, _>>()?;
+        (self.columns.check)(&row)?;
         Ok(row)
     }
 }

@@ -2,7 +2,6 @@
 
 use std::fmt::{Display, Write};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
 
 use serde_spanned::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -156,28 +155,16 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses keys other than `known`.
-    pub(super) fn only(&self, known: &[&str]) -> Result<()> {
-        self.refuse_strangers(|key| known.contains(&key), |stranger| suggestion(stranger, known))
-    }
-
-    /// Refuses keys that a table does not have.
+    /// Refuses the first key that a table does not have.
     pub(super) fn only_of(&self, table: &Table) -> Result<()> {
-        self.refuse_strangers(
-            |key| table.key(key).is_some(),
-            |stranger| match table.keys.iter().find(|key| key.aliases.contains(&stranger)) {
-                Some(key) => format!("did you mean {}?", key.name),
-                None => suggestion(stranger, &table.keys.iter().map(|key| key.name).collect::<Vec<_>>()),
-            },
-        )
-    }
-
-    /// Refuses the first key that is not known.
-    fn refuse_strangers(&self, is_known: impl Fn(&str) -> bool, cure: impl Fn(&str) -> String) -> Result<()> {
-        let strangers = self.table.keys().filter(|key| !is_known(key.get_ref()));
+        let strangers = self.table.keys().filter(|key| table.key(key.get_ref()).is_none());
         let Some(first) = strangers.min_by_key(|key| key.span().start) else { return Ok(()) };
-        let (name, cure) = (self.name(first.get_ref()), cure(first.get_ref()));
-        let message = format!("{name} is not a key of {}; {cure}", self.source.kind);
+        let stranger: &str = first.get_ref();
+        let cure = match table.keys.iter().find(|key| key.aliases.contains(&stranger)) {
+            Some(key) => format!("did you mean {}?", key.name),
+            None => suggestion(stranger, &table.keys.iter().map(|key| key.name).collect::<Vec<_>>()),
+        };
+        let message = format!("{} is not a key of {}; {cure}", self.name(stranger), self.source.kind);
         Err(self.source.error(first.span(), message))
     }
 
@@ -222,47 +209,6 @@ impl<'a> Section<'a> {
             return Err(second.excludes(first, &choice));
         }
         Ok((given.pop(), choice))
-    }
-
-    /// Refuses keys that have no meaning beside another.
-    pub(super) fn refuse_beside(&self, keys: &[&str], other: &Entry) -> Result<()> {
-        match keys.iter().find_map(|key| self.optional(key)) {
-            Some(stray) => Err(stray.without_meaning_beside(other)),
-            None => Ok(()),
-        }
-    }
-
-    /// The key `file`: the name of a file.
-    pub(super) fn file_name(&self, cure: &str) -> Result<&'a str> {
-        let file = self.required("file", cure)?;
-        match file.string()? {
-            "" => Err(file.error("is no name of a file")),
-            name => Ok(name),
-        }
-    }
-
-    /// The file of that name in the folder of the scene, which must be there.
-    pub(super) fn file(&self, folder: &Path, name: &str) -> Result<PathBuf> {
-        let path = folder.join(name);
-        match path.exists() {
-            true => Ok(path),
-            false => Err(self.at_key(
-                "file",
-                format_args!(
-                    ": {}: there is no such file; it is taken relative to the folder of the scene",
-                    path.display()
-                ),
-            )),
-        }
-    }
-
-    /// A unit of length, the metre if it is not given.
-    pub(super) fn length_unit(&self, key: &str) -> Result<&'a str> {
-        let Some(entry) = self.optional(key) else { return Ok("m") };
-        let unit = entry.string()?;
-        units::parse(&format!("1 {unit}"), Dimension::LENGTH)
-            .map_err(|why| entry.explained(why + "; give a unit of length alone, such as \"um\""))?;
-        Ok(unit)
     }
 
     /// Shows an error of the library, which names a quantity as `table.key`, at that key of this table.
@@ -461,22 +407,6 @@ impl<'a> Entry<'a> {
             true => Ok(number),
             false => Err(self.error("is not a finite number")),
         }
-    }
-
-    /// A quantity that must satisfy a condition; the range says it in words.
-    pub(super) fn quantity_in(
-        &self,
-        dimension: Dimension,
-        range: &str,
-        holds: impl Fn(f64) -> bool,
-    ) -> Result<f64> {
-        let value = self.quantity(dimension)?;
-        if holds(value) { Ok(value) } else { Err(self.outside(range)) }
-    }
-
-    /// A quantity above zero.
-    pub(super) fn positive(&self, dimension: Dimension) -> Result<f64> {
-        self.quantity_in(dimension, "(0, inf)", |value| value > 0.0)
     }
 
     /// The entries of an array, named `key[0]`, `key[1]` and so on.

@@ -6,6 +6,7 @@ mod laws;
 mod loading;
 mod numerics;
 mod studies;
+mod tables;
 
 pub(super) use bodies::*;
 pub(super) use laws::*;

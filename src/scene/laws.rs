@@ -1,16 +1,17 @@
-//! The tables `[friction]` and `[wear]`: the laws and how they change along the cycles.
+//! What a scene gives by the name of a law, a mode of motion or an indenter, and how laws change along the cycles.
 
+use std::fmt::Display;
 use std::sync::Arc;
 
 use super::document::{Entry, Section};
 use super::keys::{self, MOST_TIMES};
-use crate::error::Result;
-use crate::laws::entry::{self as law, Value, Values, Wrong};
-use crate::laws::friction::{self, Coulomb, FrictionLaw};
+use super::reading::Read;
+use super::{Rows, columns};
+use crate::error::{Error, Result};
+use crate::laws::entry::{self as law, Lengths, Value, Values, Wrong};
 use crate::laws::history::History;
 use crate::laws::loading::Clock;
-use crate::laws::wear::{self, WearLaw};
-use crate::units::{Dimension, Key, Kind, Table};
+use crate::units::{Key, Kind, Table};
 
 /// The one clock of all times in histories and blocks, and the first key that used it.
 #[derive(Default)]
@@ -42,83 +43,85 @@ pub(super) fn clock_of(key: &str) -> Clock {
     if key.ends_with("tau") { Clock::Tau } else { Clock::Cycles }
 }
 
-/// A law of friction, but for what only the contact tells.
-pub(super) struct Friction<'a>(Given<'a, dyn FrictionLaw>);
-
-impl Friction<'_> {
-    /// Coulomb's law that stands for it.
-    pub(super) fn reference(&self) -> Result<Coulomb> {
-        // Whatever the indentation, it is the same.
-        Ok(Coulomb { coefficient: self.0.build(None, || Ok(1.0))?.reference_coefficient() })
-    }
-
-    /// The law; the indentation, m, is asked for only if the law was given in terms of it.
-    pub(super) fn finish(&self, indentation: impl FnOnce() -> Result<f64>) -> Result<Arc<dyn FrictionLaw>> {
-        self.0.build(None, indentation)
-    }
-}
-
-pub(super) fn friction<'a>(section: &Section<'a>) -> Result<Friction<'a>> {
-    given(section, &keys::FRICTION, friction::ENTRIES).map(Friction)
-}
-
-/// A law of wear, but for what other tables tell.
-pub(super) struct Wear<'a>(Given<'a, dyn WearLaw>);
-
-impl Wear<'_> {
-    /// The law, at a number of cycles per second, Hz, if the scene tells one.
-    pub(super) fn build(&self, frequency: Option<f64>) -> Result<Arc<dyn WearLaw>> {
-        self.0.build(frequency, || unreachable!("no wear law takes the indentation"))
-    }
-}
-
-pub(super) fn wear<'a>(section: &Section<'a>) -> Result<Wear<'a>> {
-    given(section, &keys::WEAR, wear::ENTRIES).map(Wear)
-}
-
-/// A law as a table gives it.
-struct Given<'a, L: ?Sized + 'static> {
-    entry: &'static law::Entry<L>,
+/// A law, a mode of motion or an indenter as a table gives it, but for what other tables tell.
+pub(super) struct Given<'a, L: ?Sized + 'static> {
+    pub(super) entry: &'static law::Entry<L>,
     section: Section<'a>,
-    values: Values,
+    pub(super) values: Values,
 }
 
 impl<L: ?Sized> Given<'_, L> {
-    fn build(&self, frequency: Option<f64>, indentation: impl FnOnce() -> Result<f64>) -> Result<Arc<L>> {
-        let mut values = self.values.clone();
-        values.frequency = frequency;
-        if let Some(key) = self.entry.indentation.filter(|key| values.lacks(key)) {
-            values.set(key, indentation()?.into());
+    /// Takes lengths of the first contact, which is formed only where something refers to it.
+    pub(super) fn refer(&mut self, contact: impl FnOnce() -> Result<Lengths>) -> Result<()> {
+        if (self.entry.refers)(&self.values) {
+            self.values.contact = contact()?;
         }
-        (self.entry.build)(&values).map_err(|Wrong { key, why }| match self.section.optional(key) {
-            Some(entry) => entry.error(why),
-            None => self.section.error(format_args!("{} {why}", self.section.name(key))),
+        Ok(())
+    }
+
+    pub(super) fn build(&self) -> Result<Arc<L>> {
+        (self.entry.build)(&self.values).map_err(|wrong| match wrong {
+            Wrong::Value { key, why } => match self.section.optional(key) {
+                Some(entry) => entry.error(why),
+                None => self.section.error(format_args!("{} {why}", self.section.name(key))),
+            },
+            Wrong::Error(Error::Inconsistent { what, why }) => {
+                let named = |key: &&Key| self.section.name(key.name) == what;
+                let key = self.entry.keys.iter().find(named).and_then(|key| self.section.optional(key.name));
+                match (key, &self.values.file) {
+                    (Some(entry), _) => entry.explained(why),
+                    (None, Some(file)) => Error::File { path: file.path.clone(), why },
+                    (None, None) => Error::Inconsistent { what, why },
+                }
+            }
+            Wrong::Error(other) => other,
         })
+    }
+
+    /// An error that what is given is wrong as a whole, shown at the first of its keys.
+    pub(super) fn error(&self, why: impl Display) -> Error {
+        let first = self.entry.keys.iter().find_map(|key| self.section.optional(key.name));
+        first.expect("its table holds one of its keys").error(why)
     }
 }
 
-/// The one law of a table, which may have a history beside it.
-fn given<'a, L: ?Sized>(
+/// What a table gives of some entries; none if it gives none of them.
+pub(super) fn given<'a, L: ?Sized>(
     section: &Section<'a>,
-    table: &Table,
     entries: &'static [&'static law::Entry<L>],
-) -> Result<Given<'a, L>> {
-    section.check(table)?;
-    let found = entries.iter().find_map(|law| Some((*law, section.optional(law.name)?)));
-    let (law, entry) = found.expect("the table has exactly one");
-    let section = entry.section()?;
-    section.check(&law.table())?;
-    let values = law.keys.iter().map(|key| value(&section, key)).collect::<Result<_>>()?;
-    Ok(Given { entry: law, section, values: Values::new(law.keys, values) })
+    rows: &Rows,
+) -> Result<Option<Given<'a, L>>> {
+    let found = entries.iter().find_map(|it| Some((*it, section.optional(it.name)?)));
+    let Some((entry, place)) = found else { return Ok(None) };
+    let (section, table) = (place.section()?, entry.table());
+    section.check(&table)?;
+    let values = entry.keys.iter().map(|key| value(&section, key, entry)).collect::<Result<_>>()?;
+    let mut values = Values::new(entry.keys, values);
+    if let Some(columns) = entry.columns {
+        let (folder, stored) = match rows {
+            Rows::In(folder) => (Some(*folder), &[][..]),
+            Rows::Stored(stored) => (None, &stored[..]),
+        };
+        values.file = columns::read(&section, &table, columns, folder)?;
+        values.stored = stored.to_vec();
+    }
+    Ok(Some(Given { entry, section, values }))
 }
 
 /// The value of a key, or what is taken where it is left out.
-fn value(section: &Section, key: &'static Key) -> Result<Value> {
+fn value<L: ?Sized>(section: &Section, key: &'static Key, entry: &law::Entry<L>) -> Result<Value> {
     if !key.required && key.default.is_none() && section.optional(key.name).is_none() {
         return Ok(Value::Missing);
     }
     match key.kind {
         Kind::Word(words) => section.read(key).map(|place: usize| Value::Word(words[place])),
+        Kind::Ratio => section.read(key).map(Value::Ratio),
+        Kind::Name => Ok(Value::Missing),
+        Kind::Scaled => {
+            let scaled = entry.scaled.expect("its coefficient");
+            let exponent = entry.keys.iter().find(|it| it.name == scaled.exponent).expect("its exponent");
+            section.read(&key.of((scaled.dimension)(section.read(exponent)?))).map(Value::Number)
+        }
         _ => section.read(key).map(Value::Number),
     }
 }
@@ -126,34 +129,26 @@ fn value(section: &Section, key: &'static Key) -> Result<Value> {
 /// The table `history` beside a law.
 ///
 /// # Arguments
-/// * `ends_at_zero` -- whether the factor may fall to zero
-pub(super) fn history(section: &Section, ends_at_zero: bool, clock: &mut OneClock) -> Result<History> {
-    const FORMS: [&str; 2] = ["final_factor", "factors"];
-    const TIME: [&str; 2] = ["cycles", "tau"];
-    const TIMES: [&str; 2] = ["at_cycles", "at_tau"];
-    let Some(entry) = section.optional("history") else { return Ok(History::Constant) };
+/// * `table` -- its keys
+pub(super) fn history(section: &Section, table: &Table, clock: &mut OneClock) -> Result<History> {
+    let Some(entry) = section.optional(table.name) else { return Ok(History::Constant) };
     let history = entry.section()?;
-    history.only(&[FORMS, TIME, TIMES].concat())?;
-    match history.one_of(&FORMS)? {
-        ("final_factor", last) => {
-            history.refuse_beside(&TIMES, &last)?;
-            let range = if ends_at_zero { "[0, inf)" } else { "(0, inf)" };
-            let within = |factor: f64| factor > 0.0 || (ends_at_zero && factor == 0.0);
-            let last = last.quantity_in(Dimension::NUMBER, range, within)?;
-            let (key, time) = history.one_of(&TIME)?;
-            clock.take(clock_of(key), &time)?;
-            Ok(History::Exponential { last, time: time.positive(Dimension::NUMBER)? })
-        }
-        (_, factors) => {
-            history.refuse_beside(&TIME, &factors)?;
-            let (key, times) = history.one_of(&TIMES)?;
-            clock.take(clock_of(key), &times)?;
-            table(&factors, &times)
-        }
+    history.check(table)?;
+    let given = |name: &str| Some((table.key(name)?, history.optional(name)?));
+    let of_clocks = |names: [&str; 2]| names.into_iter().find_map(given).expect("its form has one of them");
+    if let Some((key, last)) = given("final_factor") {
+        let last = f64::read(&last, key)?;
+        let (key, time) = of_clocks(["cycles", "tau"]);
+        clock.take(clock_of(key.name), &time)?;
+        return Ok(History::Exponential { last, time: f64::read(&time, key)? });
     }
+    let (_, factors) = given("factors").expect("its form has factors");
+    let (key, times) = of_clocks(["at_cycles", "at_tau"]);
+    clock.take(clock_of(key.name), &times)?;
+    of_rows(&factors, &times)
 }
 
-fn table(factors: &Entry, times: &Entry) -> Result<History> {
+fn of_rows(factors: &Entry, times: &Entry) -> Result<History> {
     let [factor_entries, time_entries] = [factors.array(MOST_TIMES)?, times.array(MOST_TIMES)?];
     let (count, of_times) = (factor_entries.len(), time_entries.len());
     if count == 0 {
@@ -163,11 +158,11 @@ fn table(factors: &Entry, times: &Entry) -> Result<History> {
         return Err(times
             .misplaced(format_args!("has {of_times} times for {count} factors; give one time per factor")));
     }
-    let positive = |entry: &Entry| entry.positive(Dimension::NUMBER);
-    let factors = factor_entries.iter().map(positive).collect::<Result<_>>()?;
+    let factors =
+        factor_entries.iter().map(|entry| f64::read(entry, &keys::HISTORY_FACTOR)).collect::<Result<_>>()?;
     let mut times: Vec<f64> = Vec::with_capacity(count);
     for entry in time_entries {
-        let time = entry.quantity_in(Dimension::NUMBER, "[0, inf)", |time| time >= 0.0)?;
+        let time = f64::read(&entry, &keys::TIME)?;
         if let Some(before) = times.last().filter(|before| **before >= time) {
             return Err(entry.error(format_args!("does not come after {before}; times must increase")));
         }

@@ -129,7 +129,7 @@ impl Scene {
         Patch::new(&read(patch)?).apply(&mut scene).map_err(wrong)?;
         scene.insert("numerics".into(), Value::Table(read(numerics)?));
         let name = "variant of the scene";
-        Self::from_stored(&scene.to_string(), name, self.table().cloned(), self.path().cloned())
+        Self::from_stored(&scene.to_string(), name, self.table(), self.path())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::document::{Entry, Section};
 use crate::error::Result;
-use crate::units::{self, Form, Key, Kind, Rule, Table};
+use crate::units::{self, Dimension, Form, Key, Kind, Rule, Table};
 
 /// What a key can be read as.
 pub(super) trait Read<'a>: Sized {
@@ -77,6 +77,49 @@ impl<'a> Read<'a> for String {
     fn parse(text: &'static str, _: &Key) -> Option<Self> {
         Some(text.into())
     }
+}
+
+/// Ratios `m/n` of whole numbers, as `m` and `n` without common divisor.
+impl<'a> Read<'a> for [u32; 2] {
+    fn read(entry: &Entry<'a>, key: &Key) -> Result<Self> {
+        const LARGEST: u32 = 64;
+        /// What the digits of a decimal fraction such as 1.3333333333333333 leave open.
+        const ROUNDING: f64 = 1e-12;
+        let ratio = match entry.string() {
+            Ok(text) if text.contains('/') => {
+                let whole = |part: &str| part.trim().parse::<u64>().ok().filter(|number| *number > 0);
+                let parts = text.split_once('/').and_then(|(over, under)| whole(over).zip(whole(under)));
+                parts.and_then(|(over, under)| {
+                    let divisor = common_divisor(over, under);
+                    let small =
+                        |number: u64| u32::try_from(number / divisor).ok().filter(|it| *it <= LARGEST);
+                    Some([small(over)?, small(under)?])
+                })
+            }
+            _ => {
+                let value = f64::read(entry, &key.of(Dimension::NUMBER))?;
+                (1..=LARGEST).find_map(|under| {
+                    let over = (value * f64::from(under)).round();
+                    let near = (value * f64::from(under) - over).abs() <= ROUNDING * over;
+                    (near && (1.0..=f64::from(LARGEST)).contains(&over)).then_some([over as u32, under])
+                })
+            }
+        };
+        let why =
+            || format!("is no ratio of whole numbers up to {LARGEST}; write for example 2, 0.5 or \"4/3\"");
+        ratio.ok_or_else(|| entry.error(why()))
+    }
+
+    fn parse(_: &'static str, _: &Key) -> Option<Self> {
+        None
+    }
+}
+
+fn common_divisor(mut a: u64, mut b: u64) -> u64 {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 /// Texts.

@@ -1,21 +1,20 @@
 //! The tables of a scene, one function each: keys, units, ranges.
 
 use std::cell::OnceCell;
-use std::f64::consts::FRAC_PI_2;
-use std::sync::Arc;
 
 use super::document::{Entry, Section, Source};
-use super::laws::{self, OneClock};
+use super::laws::{self, Given, OneClock};
 use super::reading::Read;
-use super::{Cycle, MOST_SNAPSHOTS, Numerics, Output, Rows, Scene, Stepper, keys, motion, profile_file};
+use super::{Cycle, MOST_SNAPSHOTS, Numerics, Output, Rows, Scene, Stepper, keys, motion};
 use crate::contact::InitialContact;
 use crate::contact::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
-use crate::contact::indenter::{Indenter, TabulatedProfile};
-use crate::error::{Error, Result};
+use crate::contact::indenter::{self, Indenter};
+use crate::error::Result;
 use crate::laws::conditions::Conditions;
-use crate::laws::friction::Coulomb;
-use crate::laws::loading::{Duration, Loading, Mode};
-use crate::laws::wear::Archard;
+use crate::laws::entry as law;
+use crate::laws::friction::{self, Coulomb};
+use crate::laws::loading::{Duration, Loading};
+use crate::laws::wear::{self, Archard};
 use crate::units::{Dimension, Table};
 
 /// Reads the whole document; the text is kept as it is.
@@ -23,8 +22,9 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     root.check(&keys::SCENE)?;
     let mut warnings = Vec::new();
     let title = root.read_optional(&keys::TITLE)?;
-    let shape = table(root, &keys::INDENTER)?;
-    let indenter = indenter(&shape, rows, &mut warnings)?;
+    let shape = one_of(&table(root, &keys::INDENTER)?, &keys::INDENTER, indenter::ENTRIES, rows)?;
+    let indenter = Indenter::from(shape.build()?);
+    warnings.append(&mut shape.values.warnings.borrow_mut());
     let half_space = contact(root, &mut warnings)?;
     let Physics { loading, wear, conditions } = physics(root, &indenter, &half_space, rows)?;
     let friction = Coulomb { coefficient: conditions.friction.reference_coefficient() };
@@ -67,32 +67,35 @@ struct Physics {
 fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &Rows) -> Result<Physics> {
     let mut clock = OneClock::default();
     let friction_table = table(root, &keys::FRICTION)?;
-    let friction = laws::friction(&friction_table)?;
-    let friction_history = laws::history(&friction_table, false, &mut clock)?;
+    let mut friction = one_of(&friction_table, &keys::FRICTION, friction::ENTRIES, rows)?;
+    let friction_history = laws::history(&friction_table, &keys::FRICTION_HISTORY, &mut clock)?;
     let wear_table = table(root, &keys::WEAR)?;
-    let wear = laws::wear(&wear_table)?;
-    let wear_history = laws::history(&wear_table, true, &mut clock)?;
+    let mut wear = one_of(&wear_table, &keys::WEAR, wear::ENTRIES, rows)?;
+    let wear_history = laws::history(&wear_table, &keys::WEAR_HISTORY, &mut clock)?;
     let section = table(root, &keys::LOADING)?;
-    let motion = motion::motion(&section, rows, &mut clock)?;
-    let wear = wear.build(motion.frequency)?;
+    let mut motion = motion::motion(&section, rows, &mut clock)?;
+    wear.values.frequency = motion.frequency;
+    let wear = wear.build()?;
 
-    // Formed only where something refers to it. Whatever the wear coefficient, it is the same contact.
-    let coulomb = friction.reference()?;
+    // Formed only where something refers to it. Whatever the wear coefficient, it is the same contact, and Coulomb's law that stands for the
+    // law of friction is the same whatever lengths that refers to.
+    let coulomb = Coulomb { coefficient: friction.build()?.reference_coefficient() };
     let provisional = Archard { coefficient: half_space.normal_stiffness().recip() };
     let formed = OnceCell::new();
-    let contact = || {
+    let contact = |loading: &Loading| {
         if formed.get().is_none() {
-            let contact = InitialContact::new(indenter, half_space, &coulomb, &provisional, &motion.loading);
+            let contact = InitialContact::new(indenter, half_space, &coulomb, &provisional, loading);
             let _ = formed.set(contact.map_err(|error| section.error(error))?);
         }
         Ok(formed.get().expect("formed above"))
     };
-    let mode = motion::mode(&section, &motion, contact)?;
-    let friction = friction.finish(|| contact().map(InitialContact::indentation))?;
-    motion::check(&section, &motion, &*friction)?;
+    let mode = motion::mode(&mut motion, contact)?;
+    friction.refer(|| contact(&motion.loading).map(motion::lengths))?;
+    let friction = friction.build()?;
+    motion::check(&section, &motion, &*mode, &*friction)?;
     let reference_wear = match wear.archard_coefficient(Some(coulomb.coefficient)) {
         Some(coefficient) => Archard { coefficient },
-        None => contact()?.reference_wear(&*wear),
+        None => contact(&motion.loading)?.reference_wear(&*wear),
     };
     if !reference_wear.coefficient.is_normal() {
         return Err(wear_table.error(format_args!(
@@ -117,6 +120,17 @@ fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &R
     Ok(Physics { loading: motion.loading, wear: reference_wear, conditions })
 }
 
+/// What a table gives exactly one of.
+fn one_of<'a, L: ?Sized>(
+    section: &Section<'a>,
+    table: &Table,
+    entries: &'static [&'static law::Entry<L>],
+    rows: &Rows,
+) -> Result<Given<'a, L>> {
+    section.check(table)?;
+    Ok(laws::given(section, entries, rows)?.expect("the table has exactly one"))
+}
+
 /// The closed form knows nothing of what is not plain.
 fn warning_of_another_limit(conditions: &Conditions) -> Option<String> {
     let mut departures = conditions.departures();
@@ -135,82 +149,6 @@ fn warning_of_another_limit(conditions: &Conditions) -> Option<String> {
 
 fn table<'a>(root: &Section<'a>, table: &Table) -> Result<Section<'a>> {
     root.required_key(keys::SCENE.key(table.name).expect("a table of the scene"))?.section()
-}
-
-fn indenter(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Indenter> {
-    const SHAPES: [&str; 5] = ["paraboloid", "sphere", "cone", "power-law", "table"];
-    section.only(&SHAPES)?;
-    let (shape, entry) = section.one_of(&SHAPES)?;
-    let body = entry.section()?;
-    match shape {
-        "paraboloid" | "sphere" => {
-            body.only(&["radius"])?;
-            let radius = body.required("radius", "for example \"10 mm\"")?.positive(Dimension::LENGTH)?;
-            Ok(if shape == "sphere" { Indenter::Sphere { radius } } else { Indenter::Paraboloid { radius } })
-        }
-        "cone" => {
-            body.only(&["slope", "half_angle"])?;
-            Ok(Indenter::Cone { slope: slope(body.one_of(&["slope", "half_angle"])?)? })
-        }
-        "table" => Ok(Indenter::Table(profile(&body, rows, warnings)?)),
-        _ => {
-            body.only(&["coefficient", "exponent"])?;
-            let exponent = body.required("exponent", "2 is a paraboloid")?.positive(Dimension::NUMBER)?;
-            let unit = Dimension::profile_coefficient(exponent);
-            let coefficient =
-                body.required("coefficient", "in m^(1-n) for f = coefficient r^n")?.positive(unit)?;
-            Ok(Indenter::PowerLaw { coefficient, exponent })
-        }
-    }
-}
-
-/// A measured profile, from its file or as it was stored.
-fn profile(section: &Section, rows: &Rows, warnings: &mut Vec<String>) -> Result<Arc<TabulatedProfile>> {
-    const UNITS: [&str; 2] = ["radius_unit", "profile_unit"];
-    section.only(&["file", UNITS[0], UNITS[1], "smoothing"])?;
-    let name = section.file_name("for example \"profile.csv\", two columns r and f")?;
-    let units = [section.length_unit(UNITS[0])?, section.length_unit(UNITS[1])?];
-    let smoothing = section.optional("smoothing");
-    let deviation = match &smoothing {
-        Some(entry) => entry.quantity_in(Dimension::LENGTH, "[0, inf)", |deviation| deviation >= 0.0)?,
-        None => 0.0,
-    };
-    let profile = match rows {
-        Rows::In(folder) => {
-            let path = section.file(folder, name)?;
-            profile_file::read(&path, name, units, deviation, warnings)
-        }
-        Rows::Stored { table: Some(table), .. } if table.deviation() == deviation => {
-            return Ok(Arc::clone(table));
-        }
-        // The scene was patched.
-        Rows::Stored { table: Some(table), .. } => TabulatedProfile::smoothed(
-            table.source(),
-            table.radii().to_vec(),
-            table.heights().to_vec(),
-            deviation,
-        ),
-        Rows::Stored { table: None, .. } => {
-            Err(section.error("its rows are not stored in the result; run the scene again"))
-        }
-    };
-    profile.map(Arc::new).map_err(|error| match (error, &smoothing) {
-        (Error::Inconsistent { what, why }, Some(entry)) if what == TabulatedProfile::SMOOTHING => {
-            entry.explained(why)
-        }
-        (other, _) => other,
-    })
-}
-
-/// `tan θ` of a cone's flank, or `cot α` of half its apex angle `α`, which lies between axis and flank.
-fn slope((key, entry): (&str, Entry)) -> Result<f64> {
-    if key == "slope" {
-        return entry.positive(Dimension::NUMBER);
-    }
-    let range = "(0, 90 deg); it lies between axis and flank, and a number without unit is in radian";
-    let angle = entry.quantity_in(Dimension::ANGLE, range, |angle| angle > 0.0 && angle < FRAC_PI_2)?;
-    let slope = angle.tan().recip();
-    if slope.is_finite() { Ok(slope) } else { Err(entry.outside(range)) }
 }
 
 /// The half-space, in series with the counter-body if that is elastic too.
@@ -313,7 +251,7 @@ fn check_numerics(
     conditions: &Conditions,
     warnings: &mut Vec<String>,
 ) -> Result<()> {
-    if numerics.cycle == Some(Cycle::ClosedForm) && conditions.mode != Mode::Tangential {
+    if numerics.cycle == Some(Cycle::ClosedForm) && !conditions.mode.is_tangential() {
         return Err(section.required_key(&keys::CYCLE)?.error(
             "holds for tangential oscillation alone; leave it out or write \"resolved\" beside another mode",
         ));

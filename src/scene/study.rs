@@ -216,15 +216,17 @@ impl Study {
 
     /// The files of measured profiles and recorded paths, of the base scene and along the axes.
     fn files(&self) -> Vec<&str> {
-        let named = |table: &'static str, key: &'static str| {
-            let in_base = self.base.get(table).and_then(|it| it.get(key)).and_then(|it| it.get("file"));
+        let named = |key: String| {
+            let mut parts = key.split('.');
+            let first = parts.next().and_then(|table| self.base.get(table));
+            let in_base = parts.fold(first, |table, part| table.and_then(|it| it.get(part)));
             let along = self.axes.iter().flat_map(move |axis| {
-                let place = axis.keys.iter().position(|it| *it == format!("{table}.{key}.file"));
+                let place = axis.keys.iter().position(|it| *it == key);
                 axis.rows.iter().filter_map(move |row| place.map(|place| &row[place]))
             });
             in_base.into_iter().chain(along).filter_map(Value::as_str)
         };
-        named("indenter", "table").chain(named("loading", "path")).collect()
+        keys::SCENE.dotted().into_iter().filter(|key| key.ends_with(".file")).flat_map(named).collect()
     }
 
     /// The keys that vary, axes before samples.

@@ -6,7 +6,8 @@ use fretwear::contact::InitialContact;
 use fretwear::contact::closed_form::LimitingShape;
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::{FrictionLaw, LoadDependent, StaticKinetic};
-use fretwear::laws::loading::{Block, Mode};
+use fretwear::laws::loading::Block;
+use fretwear::laws::motion::{Mode, NormalOscillation, Orbit, Tangential};
 use fretwear::laws::wear::{DissipatedEnergy, NonLocal, PowerLaw, Threshold, WearLaw};
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Outcome, Plan, Simulation};
@@ -61,20 +62,16 @@ pub fn friction_laws(contact: &InitialContact) -> Vec<(&'static str, Arc<dyn Fri
     ]
 }
 
-pub fn modes(contact: &InitialContact) -> Vec<(&'static str, Mode)> {
+pub fn modes(contact: &InitialContact) -> Vec<(&'static str, Arc<dyn Mode>)> {
     let (u, d) = (contact.amplitude(), contact.indentation());
-    let normal = |frequency_ratio: [u32; 2]| Mode::NormalOscillation {
-        amplitude: 0.1 * d,
-        frequency_ratio,
-        phase: 1.0,
+    let normal = |frequency_ratio: [u32; 2]| -> Arc<dyn Mode> {
+        Arc::new(NormalOscillation { amplitude: 0.1 * d, frequency_ratio, phase: 1.0 })
     };
-    let orbit = |transverse: f64, phase: f64, centre: f64| Mode::Orbit {
-        transverse_amplitude: transverse * u,
-        phase,
-        centre: [centre * u, 0.0],
+    let orbit = |transverse: f64, phase: f64, centre: f64| -> Arc<dyn Mode> {
+        Arc::new(Orbit { transverse_amplitude: transverse * u, phase, centre: [centre * u, 0.0] })
     };
     vec![
-        ("tangential", Mode::Tangential),
+        ("tangential", Arc::new(Tangential)),
         ("normal 1:1", normal([1, 1])),
         ("normal 2:1", normal([2, 1])),
         ("ellipse", orbit(0.6, 0.0, 0.0)),

@@ -1,118 +1,160 @@
-//! The equivalent profile of a sphere, a hypergeometric function, by a quadrature whose terms are all positive.
+//! The sphere.
 
-use crate::error::Result;
-use crate::numerics::quadrature::Rule;
-use std::sync::OnceLock;
+use std::sync::Arc;
 
-/// Node counts, and the largest argument `z = x²/R²` at which each reaches round-off.
-///
-/// The integrands are analytic but for a singularity at `u = -(1-z)/z`, so the error of `n` nodes falls as `ρ^(-2n)`,
-/// `ρ = 1 + 2δ + 2√(δ+δ²)`, `δ = (1-z)/z`.
-const LEVELS: [(usize, f64); 3] = [(18, 0.6), (48, 0.93), (200, SphereIntegral::LARGEST_ARGUMENT)];
+use super::Indenter;
+use super::equivalent::Equivalent;
+use super::shape::{Shape, positive};
+use super::sphere_integral::SphereIntegral;
+use crate::error::{Error, Result};
+use crate::laws::entry::Entry;
+use crate::numerics::roots;
+use crate::units::{Dimension, Key, Range, Scale};
 
-/// Newton steps for an inverse; the iteration is monotone and takes five to ten.
-const MAX_NEWTON_STEPS: usize = 100;
+/// `[indenter.sphere]`.
+pub static ENTRY: Entry<dyn Shape> = Entry::new("sphere", "f = R - √(R² - r²).", &[RADIUS], |values| {
+    Ok(Arc::new(Sphere { radius: values.number(RADIUS.name) }))
+});
 
-/// Integral behind the equivalent profile of a sphere [S, Eq. (19)], as a function of `z = x²/R²`, with `ν = (1+k)/2`.
-///
-/// ```text
-/// g(x) = R/(1+k) h(x²/R²),     h(z) = z ν ∫_0^1 (1-z+zu)^(-1/2) u^(ν-1) du  =  z 2F1(1/2, 1; 1+ν; z)
-/// ```
-/// The divided difference of `h` between `y` and `z` is the same integral over `K = (1/(pq) + 1)/(p+q)`, `p² = 1-y+yu`,
-/// `q² = 1-z+zu`, and by parts `1 + ∫ u^ν (-dK/du) du`, in which every term is positive and the weight is benign for every `k`.
-#[derive(Debug, Clone)]
-pub(super) struct SphereIntegral {
-    /// `ν = (1+k)/2`.
-    nu: f64,
-    first_rule: Rule,
-    /// Rules for arguments closer to one; rarely needed and dear.
-    later_rules: [OnceLock<Rule>; 2],
+const RADIUS: Key =
+    Key::quantity("radius", Dimension::LENGTH, "Radius R, m.").range(Range::POSITIVE).example("10 mm");
+
+/// `f = R - √(R² - r²)`.
+#[derive(Debug)]
+struct Sphere {
+    /// Radius `R`, m.
+    radius: f64,
 }
 
-impl SphereIntegral {
-    /// `x = 0.999 R`.
-    pub(super) const LARGEST_ARGUMENT: f64 = 0.998001;
-
-    pub(super) fn new(grading: f64) -> Result<Self> {
-        let nu = 0.5 * (1.0 + grading);
-        Ok(Self {
-            nu,
-            first_rule: Rule::jacobi(LEVELS[0].0, 0.0, nu)?,
-            later_rules: [OnceLock::new(), OnceLock::new()],
-        })
-    }
-
-    fn rule(&self, argument: f64) -> &Rule {
-        let level = LEVELS.iter().position(|&(_, largest)| argument <= largest).unwrap_or(LEVELS.len() - 1);
-        match level {
-            0 => &self.first_rule,
-            _ => self.later_rules[level - 1].get_or_init(|| {
-                Rule::jacobi(LEVELS[level].0, 0.0, self.nu)
-                    .expect("the exponents were accepted for the first rule")
-            }),
-        }
-    }
-
-    /// Divided difference `(h(z) - h(y)) / (z - y)`, the derivative where they agree; `0 <= y, z < 1`.
-    pub(super) fn mean_slope(&self, y: f64, z: f64) -> f64 {
-        let rule = self.rule(y.max(z));
-        let excess: f64 = rule.nodes.iter().zip(&rule.weights).fold(0.0, |sum, (&u, &weight)| {
-            let (p_squared, q_squared) = ((1.0 - y) + y * u, (1.0 - z) + z * u);
-            let (p, q) = (p_squared.sqrt(), q_squared.sqrt());
-            let inverse_sum = 1.0 / (p + q);
-            let inverse_product = 1.0 / (p * q);
-            let product_part = inverse_product * 0.5 * (y / p_squared + z / q_squared) * inverse_sum;
-            let sum_part = (inverse_product + 1.0) * 0.5 * (y / p + z / q) * inverse_sum * inverse_sum;
-            sum + weight * (product_part + sum_part)
-        });
-        1.0 + excess / (1.0 + self.nu)
-    }
-
-    /// Load of the contact radius `√z R` over that radius to the power `3+k`, times `R(1+k)`.
+impl Indenter {
+    /// Sphere of radius `R`, m.
     ///
-    /// ```text
-    /// ∫_0^1 v u^(ν-1) (1-zv)^(-1/2) du = (1/ν) ∫_0^1 u^ν [(1-zv)^(-1/2) + (v z/2)(1-zv)^(-3/2)] du,     v = 1-u
-    /// ```
-    pub(super) fn load(&self, z: f64) -> f64 {
-        let rule = self.rule(z);
-        let mean: f64 = rule.nodes.iter().zip(rule.complements.iter().zip(&rule.weights)).fold(
-            0.0,
-            |sum, (&u, (&v, &weight))| {
-                let squared = (1.0 - z) + z * u;
-                sum + weight * (1.0 + 0.5 * v * z / squared) / squared.sqrt()
-            },
-        );
-        mean / (self.nu * (1.0 + self.nu))
+    /// # Errors
+    /// [`Error::OutOfRange`] names `indenter.sphere.radius`.
+    pub fn sphere(radius: f64) -> Result<Self> {
+        Ok(Self(Arc::new(Sphere { radius: positive("indenter.sphere.radius", radius)? })))
+    }
+}
+
+impl Shape for Sphere {
+    fn entry(&self) -> &'static Entry<dyn Shape> {
+        &ENTRY
     }
 
-    /// `z` with `h(z) = value`; none if that lies beyond the largest argument.
-    pub(super) fn argument_at(&self, value: f64) -> Option<f64> {
-        // h is convex and at least z: from the right Newton's method descends to the root without passing it.
-        let mut z = value.min(Self::LARGEST_ARGUMENT);
-        if z * self.mean_slope(0.0, z) < value {
-            return None;
-        }
-        for _ in 0..MAX_NEWTON_STEPS {
-            let step = (z * self.mean_slope(0.0, z) - value) / self.mean_slope(z, z);
-            z -= step;
-            if step.abs() <= 2.0 * f64::EPSILON * z {
-                break;
-            }
-        }
-        Some(z)
+    fn numbers(&self) -> Vec<f64> {
+        vec![self.radius]
     }
 
-    /// `y >= 0` with `h(z) - h(z-y) = drop`, to full relative accuracy for small drops.
-    pub(super) fn argument_drop(&self, z: f64, drop: f64) -> f64 {
-        // The difference is concave in y: from zero Newton's method climbs to the root without passing it.
-        let mut y = 0.0;
-        for _ in 0..MAX_NEWTON_STEPS {
-            let step = (drop - y * self.mean_slope(z - y, z)) / self.mean_slope(z - y, z - y);
-            y = (y + step).min(z);
-            if step.abs() <= 2.0 * f64::EPSILON * y {
-                break;
-            }
+    fn words(&self) -> String {
+        format!("sphere, radius {}", Scale::LENGTH.show(self.radius))
+    }
+
+    fn profile(&self, r: f64) -> f64 {
+        r * r / (self.radius + ((self.radius - r) * (self.radius + r)).sqrt())
+    }
+
+    fn profile_derivative(&self, r: f64) -> f64 {
+        r / ((self.radius - r) * (self.radius + r)).sqrt()
+    }
+
+    fn radius_at_height(&self, height: f64) -> f64 {
+        if height < self.radius { (height * (2.0 * self.radius - height)).sqrt() } else { self.radius }
+    }
+
+    fn equivalent(&self, grading: f64) -> Result<Arc<dyn Equivalent>> {
+        let integral = SphereIntegral::new(grading)?;
+        Ok(Arc::new(SphereEquivalent { grading, radius: self.radius, integral }))
+    }
+}
+
+/// `g = R/(1+k) h(x²/R²)`.
+#[derive(Debug)]
+struct SphereEquivalent {
+    grading: f64,
+    radius: f64,
+    integral: SphereIntegral,
+}
+
+impl Equivalent for SphereEquivalent {
+    fn grading(&self) -> f64 {
+        self.grading
+    }
+
+    /// 0.999 of the radius, at whose equator the flank is vertical.
+    fn largest_radius(&self) -> f64 {
+        self.radius * SphereIntegral::LARGEST_ARGUMENT.sqrt()
+    }
+
+    fn singular_radius(&self) -> Option<f64> {
+        Some(self.radius)
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        self.rise(0.0, x.min(2.0 * self.radius).powi(2))
+    }
+
+    fn derivative(&self, x: f64) -> f64 {
+        let argument = (x / self.radius).powi(2);
+        2.0 * x / (self.radius * (1.0 + self.grading)) * self.integral.mean_slope(argument, argument)
+    }
+
+    fn rise(&self, start: f64, offset: f64) -> f64 {
+        let Self { grading, radius, integral } = self;
+        let first = (start / radius).powi(2);
+        let increase = offset / (radius * radius);
+        radius / (1.0 + grading) * increase * integral.mean_slope(first, first + increase)
+    }
+
+    fn radius_at(&self, depth: f64) -> Result<f64> {
+        let radius = self.radius;
+        let scaled = depth * (1.0 + self.grading) / radius;
+        let argument = self.integral.argument_at(scaled).ok_or_else(|| Error::Inconsistent {
+            what: "contact radius",
+            why: format!(
+                "a sphere of radius {radius} m at an indentation of {depth} m would touch beyond 0.999 of its radius"
+            ),
+        })?;
+        Ok(radius * argument.sqrt())
+    }
+
+    fn radius_squared_drop(&self, radius: f64, depth_drop: f64) -> f64 {
+        let scaled = depth_drop * (1.0 + self.grading) / self.radius;
+        self.radius * self.radius * self.integral.argument_drop((radius / self.radius).powi(2), scaled)
+    }
+
+    fn load_integral(&self, radius: f64) -> f64 {
+        let q = 1.0 + self.grading;
+        let argument = (radius / self.radius).powi(2);
+        radius.powf(q + 2.0) / (self.radius * q) * self.integral.load(argument)
+    }
+
+    fn depth_for_load(&self, load: f64) -> Result<f64> {
+        let (radius, q) = (self.radius, 1.0 + self.grading);
+        let largest = self.largest_radius();
+        if self.load_integral(largest) < load {
+            let why = format!(
+                "F_N/c_N = {load} m^(2+k) presses a sphere of radius {radius} m in beyond 0.999 of its radius"
+            );
+            return Err(Error::Inconsistent { what: "indentation under the normal force", why });
         }
-        y
+        // A sphere carries more than its paraboloid of the same contact radius.
+        let paraboloid = (0.5 * load * q * q * (2.0 + q) * radius / 2.0).powf((2.0 + q).recip());
+        let contact =
+            roots::bracketed(|a| self.load_integral(a) - load, 0.0, largest.min(1.001 * paraboloid), 0.0)?;
+        Ok(self.value(contact))
+    }
+
+    fn origin(&self, radius: f64) -> f64 {
+        (radius / self.radius).powi(2)
+    }
+
+    fn rise_from(&self, origin: f64, logarithm: f64) -> f64 {
+        let increase = origin * (2.0 * logarithm).exp_m1();
+        self.radius / (1.0 + self.grading) * increase * self.integral.mean_slope(origin, origin + increase)
+    }
+
+    fn logarithmic_slope_from(&self, origin: f64, logarithm: f64) -> f64 {
+        let argument = origin * (2.0 * logarithm).exp();
+        2.0 * self.radius / (1.0 + self.grading) * argument * self.integral.mean_slope(argument, argument)
     }
 }

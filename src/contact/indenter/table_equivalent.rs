@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use rayon::prelude::*;
 
 use super::cubic::Cubic;
-use super::power_law_factor;
-use super::table::TabulatedProfile;
+use super::equivalent::Equivalent;
+use super::power_law::power_law_factor;
 use super::table_rise::RiseTransform;
 use super::table_transform::Transform;
 use crate::error::{Error, Result};
@@ -25,14 +25,14 @@ const LOAD_NODES: usize = 12;
 /// Pieces looked at one by one for the place to which `g` falls, before a search by halves.
 const MOST_WALKED: usize = 64;
 
-/// Equivalent profile `g` [S, Eq. (19)] of a [`TabulatedProfile`]: value and slope at the rows and halfway between them by
+/// Equivalent profile `g` [S, Eq. (19)] of a measured profile: value and slope at the rows and halfway between them by
 /// [`Transform`], cubics in between.
 ///
 /// Rows of a power law with the exponent 1, 2 or 3 give its `g` but for rounding. Else the error is that of the table: against a sphere in to
 /// half its radius it falls with the power 3.6 to 4 of the number of rows for `k >= 0`, with the power 3 as `k → -1`.
 #[derive(Debug)]
 pub(super) struct TabulatedEquivalent {
-    grading: f64,
+    pub(super) grading: f64,
     exponent: f64,
     curve: Arc<Cubic>,
     /// Load integral at the contact radii that are knots.
@@ -47,15 +47,19 @@ pub(super) struct TabulatedEquivalent {
 }
 
 impl TabulatedEquivalent {
-    pub(super) fn new(table: &TabulatedProfile, grading: f64) -> Result<Self> {
-        let transform = Transform::new(table.curve(), grading)?;
-        let (radii, largest) = (table.curve().knots(), table.largest_radius());
+    /// The equivalent of a curve.
+    ///
+    /// # Arguments
+    /// * `largest` -- radius at which its rows end, m
+    pub(super) fn new(profile: &Cubic, largest: f64, grading: f64) -> Result<Self> {
+        let transform = Transform::new(profile, grading)?;
+        let radii = profile.knots();
         let count = DIVISIONS * (radii.len() - 1) + 1;
         let (mut knots, mut values, mut slopes) = (Vec::new(), Vec::new(), Vec::new());
         knots.reserve(count);
         knots.push(0.0);
         values.push(0.0);
-        slopes.push(power_law_factor(1.0, grading) * table.profile_derivative(0.0));
+        slopes.push(power_law_factor(1.0, grading) * profile.derivative(0.0));
         let share = |part: usize| part as f64 / DIVISIONS as f64;
         // Each by itself, so that threads change nothing; a few rows are not worth one.
         let pieces = (0..radii.len() - 1).into_par_iter().with_min_len(256);
@@ -102,54 +106,6 @@ impl TabulatedEquivalent {
         Ok(equivalent)
     }
 
-    pub(super) fn grading(&self) -> f64 {
-        self.grading
-    }
-
-    /// Radius up to which `g` rises.
-    pub(super) fn largest_radius(&self) -> f64 {
-        self.curve.knots()[self.rising]
-    }
-
-    /// The transform of the rise over the value at a radius, m.
-    pub(super) fn rise_transform(&self, radius: f64) -> Result<Arc<RiseTransform>> {
-        let known = || self.transform.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(transform) = known().as_ref().filter(|it| it.radius() == radius) {
-            return Ok(Arc::clone(transform));
-        }
-        // Not under the lock: threads may be at work on different contacts.
-        let transform = Arc::new(RiseTransform::new(&self.curve, self.grading, radius)?);
-        *known() = Some(Arc::clone(&transform));
-        Ok(transform)
-    }
-
-    /// Radius within which `g` is zero.
-    pub(super) fn flat_radius(&self) -> f64 {
-        let above = (0..=self.rising).find(|&i| self.curve.at_knot(i) > 0.0).unwrap_or(self.rising);
-        self.curve.knots()[above.saturating_sub(1)]
-    }
-
-    pub(super) fn value(&self, x: f64) -> f64 {
-        self.curve.value(x)
-    }
-
-    pub(super) fn derivative(&self, x: f64) -> f64 {
-        self.curve.derivative(x)
-    }
-
-    pub(super) fn rise(&self, start: f64, offset: f64) -> f64 {
-        self.curve.rise(start, offset)
-    }
-
-    /// See [`EquivalentProfile::radius_at`](super::EquivalentProfile::radius_at).
-    pub(super) fn radius_at(&self, depth: f64) -> Result<f64> {
-        if depth > self.curve.at_knot(self.rising) {
-            return Err(self.unreachable(&format!("an indentation of {depth:e} m")));
-        }
-        let below = self.last_at_most(depth, |i| self.curve.at_knot(i));
-        Ok(self.curve.knots()[below] + self.curve.climb(below, depth - self.curve.at_knot(below)))
-    }
-
     /// The last piece whose left knot has at most `value` of something that grows from knot to knot as far as `g` rises.
     fn last_at_most(&self, value: f64, at_knot: impl Fn(usize) -> f64) -> usize {
         let (mut low, mut high) = (0, self.rising);
@@ -160,8 +116,91 @@ impl TabulatedEquivalent {
         low
     }
 
-    /// See [`EquivalentProfile::radius_squared_drop`](super::EquivalentProfile::radius_squared_drop).
-    pub(super) fn radius_squared_drop(&self, radius: f64, depth_drop: f64) -> f64 {
+    /// Part of the load integral that comes from a piece up to the distance `t` from its knot; by parts, so that every term is positive.
+    ///
+    /// ```text
+    /// 2 ∫ x^k (g(a) - g(x)) dx = 2/(1+k) ∫ x^(1+k) g'(x) dx
+    /// ```
+    fn load(&self, piece: usize, t: f64) -> f64 {
+        let (q, left) = (self.exponent, self.curve.knots()[piece]);
+        let [_, slope, square, cube] = self.curve.piece(piece);
+        let right = left + t;
+        if right <= 2.0 * left {
+            let mean = self.rule.mean(|v| {
+                let u = t * v;
+                (left + u).powf(q) * (slope + u * (2.0 * square + 3.0 * u * cube))
+            });
+            return 2.0 / q * t * mean;
+        }
+        // In powers of x: next to the axis nothing cancels.
+        let powers = [
+            slope - left * (2.0 * square - 3.0 * left * cube),
+            2.0 * (square - 3.0 * left * cube),
+            3.0 * cube,
+        ];
+        let term = |(j, coefficient): (usize, f64)| {
+            let power = q + 1.0 + j as f64;
+            coefficient * (right.powf(power) - left.powf(power)) / power
+        };
+        2.0 / q * powers.into_iter().enumerate().map(term).sum::<f64>()
+    }
+
+    fn unreachable(&self, what: &str) -> Error {
+        Error::Inconsistent {
+            what: "contact radius",
+            why: format!("{what} is too much: {}", self.end_of_table().unwrap_or_default()),
+        }
+    }
+}
+
+impl Equivalent for TabulatedEquivalent {
+    fn grading(&self) -> f64 {
+        self.grading
+    }
+
+    /// Radius up to which `g` rises.
+    fn largest_radius(&self) -> f64 {
+        self.curve.knots()[self.rising]
+    }
+
+    fn rise_transform(&self, radius: f64) -> Result<Option<Arc<RiseTransform>>> {
+        let known = || self.transform.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(transform) = known().as_ref().filter(|it| it.radius() == radius) {
+            return Ok(Some(Arc::clone(transform)));
+        }
+        // Not under the lock: threads may be at work on different contacts.
+        let transform = Arc::new(RiseTransform::new(&self.curve, self.grading, radius)?);
+        *known() = Some(Arc::clone(&transform));
+        Ok(Some(transform))
+    }
+
+    /// Radius within which `g` is zero.
+    fn flat_radius(&self) -> f64 {
+        let above = (0..=self.rising).find(|&i| self.curve.at_knot(i) > 0.0).unwrap_or(self.rising);
+        self.curve.knots()[above.saturating_sub(1)]
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        self.curve.value(x)
+    }
+
+    fn derivative(&self, x: f64) -> f64 {
+        self.curve.derivative(x)
+    }
+
+    fn rise(&self, start: f64, offset: f64) -> f64 {
+        self.curve.rise(start, offset)
+    }
+
+    fn radius_at(&self, depth: f64) -> Result<f64> {
+        if depth > self.curve.at_knot(self.rising) {
+            return Err(self.unreachable(&format!("an indentation of {depth:e} m")));
+        }
+        let below = self.last_at_most(depth, |i| self.curve.at_knot(i));
+        Ok(self.curve.knots()[below] + self.curve.climb(below, depth - self.curve.at_knot(below)))
+    }
+
+    fn radius_squared_drop(&self, radius: f64, depth_drop: f64) -> f64 {
         let mut piece = self.curve.index(radius).min(self.rising.saturating_sub(1));
         let mut t = radius - self.curve.knots()[piece];
         let (mut left, mut back) = (depth_drop, 0.0);
@@ -194,8 +233,7 @@ impl TabulatedEquivalent {
         back * (2.0 * radius - back)
     }
 
-    /// See [`EquivalentProfile::load_integral`](super::EquivalentProfile::load_integral); at most that of the largest radius.
-    pub(super) fn load_integral(&self, radius: f64) -> f64 {
+    fn load_integral(&self, radius: f64) -> f64 {
         let piece = self.curve.index(radius);
         if piece >= self.rising {
             return self.loads[self.rising];
@@ -203,37 +241,7 @@ impl TabulatedEquivalent {
         self.loads[piece] + self.load(piece, radius - self.curve.knots()[piece])
     }
 
-    /// Part of the load integral that comes from a piece up to the distance `t` from its knot; by parts, so that every term is positive.
-    ///
-    /// ```text
-    /// 2 ∫ x^k (g(a) - g(x)) dx = 2/(1+k) ∫ x^(1+k) g'(x) dx
-    /// ```
-    fn load(&self, piece: usize, t: f64) -> f64 {
-        let (q, left) = (self.exponent, self.curve.knots()[piece]);
-        let [_, slope, square, cube] = self.curve.piece(piece);
-        let right = left + t;
-        if right <= 2.0 * left {
-            let mean = self.rule.mean(|v| {
-                let u = t * v;
-                (left + u).powf(q) * (slope + u * (2.0 * square + 3.0 * u * cube))
-            });
-            return 2.0 / q * t * mean;
-        }
-        // In powers of x: next to the axis nothing cancels.
-        let powers = [
-            slope - left * (2.0 * square - 3.0 * left * cube),
-            2.0 * (square - 3.0 * left * cube),
-            3.0 * cube,
-        ];
-        let term = |(j, coefficient): (usize, f64)| {
-            let power = q + 1.0 + j as f64;
-            coefficient * (right.powf(power) - left.powf(power)) / power
-        };
-        2.0 / q * powers.into_iter().enumerate().map(term).sum::<f64>()
-    }
-
-    /// See [`EquivalentProfile::depth_for_load`](super::EquivalentProfile::depth_for_load).
-    pub(super) fn depth_for_load(&self, load: f64) -> Result<f64> {
+    fn depth_for_load(&self, load: f64) -> Result<f64> {
         if load > self.loads[self.rising] {
             return Err(self.unreachable(&format!("F_N/c_N = {load:e} m^(2+k)")));
         }
@@ -245,25 +253,33 @@ impl TabulatedEquivalent {
         Ok(self.value(left + t))
     }
 
-    /// Why the contact cannot be wider than the largest radius, and the cure.
-    pub(super) fn end(&self) -> String {
+    fn end_of_table(&self) -> Option<String> {
         let (radius, depth) = (self.largest_radius(), self.curve.at_knot(self.rising));
         if self.falling == self.rising {
-            return format!(
+            return Some(format!(
                 "the table ends at {radius:e} m, where the equivalent profile g is {depth:e} m; measure further out, or press less deep"
-            );
+            ));
         }
-        format!(
+        Some(format!(
             "between its rows at r = {radius:e} m and {:e} m the equivalent profile g falls from {depth:e} m to {:e} m, so that the contact \
              would split into rings; where that is noise, smooth it: give the standard deviation of its heights as indenter.table.smoothing; \
              else press less deep",
             self.curve.knots()[self.falling],
             self.curve.at_knot(self.falling),
-        )
+        ))
     }
 
-    fn unreachable(&self, what: &str) -> Error {
-        Error::Inconsistent { what: "contact radius", why: format!("{what} is too much: {}", self.end()) }
+    fn origin(&self, radius: f64) -> f64 {
+        radius
+    }
+
+    fn rise_from(&self, origin: f64, logarithm: f64) -> f64 {
+        self.rise(origin, origin * origin * (2.0 * logarithm).exp_m1())
+    }
+
+    fn logarithmic_slope_from(&self, origin: f64, logarithm: f64) -> f64 {
+        let x = origin * logarithm.exp();
+        x * self.derivative(x)
     }
 }
 

@@ -46,7 +46,7 @@ const STEP: f64 = 1.25;
 /// halved towards it, and those farther away are taken in blocks on which the kernel is interpolated: a value costs the logarithm of the
 /// number of rows, be they smooth or rough.
 #[derive(Debug)]
-pub(crate) struct RiseTransform {
+pub struct RiseTransform {
     curve: Arc<Cubic>,
     radius: f64,
     mu: f64,

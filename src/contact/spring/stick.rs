@@ -39,12 +39,11 @@ const JUST_LIFTED: f64 = 1e-6;
 ///
 /// ```
 /// use fretwear::laws::friction::Coulomb;
-/// use fretwear::laws::loading::Mode;
-/// use fretwear::laws::path::SampledPath;
+/// use fretwear::laws::motion::{SampledPath, Tangential};
 /// use fretwear::contact::spring::stick_compression;
 ///
 /// let law = Coulomb { coefficient: 0.5 };
-/// let path = SampledPath::new(&Mode::Tangential, 3.0, 1.0, 2).path;
+/// let path = SampledPath::new(&Tangential, 3.0, 1.0, 2).path;
 /// assert_eq!(stick_compression(&path, &law, 1.0), 6.0); // M U/μ_f
 /// ```
 pub fn stick_compression(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> f64 {

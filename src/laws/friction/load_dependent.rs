@@ -15,12 +15,12 @@ pub static ENTRY: Entry<dyn FrictionLaw> = Entry::<dyn FrictionLaw>::new(
         Ok(Arc::new(LoadDependent {
             coefficient: values.number("coefficient"),
             exponent: values.number("exponent"),
-            reference: values.number(REFERENCE),
+            reference: values.optional(REFERENCE).unwrap_or(values.contact.indentation),
         }))
     },
 )
 .departs("friction that depends on the load")
-.indentation(REFERENCE);
+.refers(|values| values.lacks(REFERENCE));
 
 const REFERENCE: &str = "reference_compression";
 

@@ -11,7 +11,7 @@ pub static ENTRY: Entry<dyn FrictionLaw> =
     Entry::<dyn FrictionLaw>::new("static-kinetic", "Springs are held harder while they stick than while they slip.", &KEYS, |values| {
         let [static_coefficient, kinetic_coefficient] = [values.number(KEYS[0].name), values.number(KEYS[1].name)];
         if kinetic_coefficient > static_coefficient {
-            return Err(Wrong {
+            return Err(Wrong::Value {
                 key: KEYS[1].name,
                 why: format!(
                     "is above friction.static-kinetic.static_coefficient = {static_coefficient}; slip must not be held harder than stick"

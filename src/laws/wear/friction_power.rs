@@ -12,7 +12,7 @@
 use std::sync::Arc;
 
 use super::law::{Rate, Rubbing, Scales, WearLaw};
-use crate::laws::entry::{Entry, Value, Values, Wrong};
+use crate::laws::entry::{Built, Entry, Value, Values, Wrong};
 use crate::units::{Dimension, Form, Key, Kind, Range, Rule, number};
 
 /// `[wear.friction-power]`.
@@ -148,7 +148,7 @@ pub struct FrictionPower {
     pub local: bool,
 }
 
-fn build(values: &Values) -> Result<Arc<dyn WearLaw>, Wrong> {
+fn build(values: &Values) -> Built<dyn WearLaw> {
     let local = values.word("scope") == "local";
     let coefficient = match values.optional("decay") {
         Some(decay) => Coefficient::Exponential {
@@ -167,7 +167,7 @@ fn build(values: &Values) -> Result<Arc<dyn WearLaw>, Wrong> {
         let part = adhesive / (abrasive - adhesive);
         let least = (-2.0_f64).exp();
         if abrasive > adhesive && part <= least {
-            return Err(Wrong {
+            return Err(Wrong::Value {
                 key: EXPONENTIAL[1],
                 why: format!(
                     "is {part:.3} of abrasive_coefficient - adhesive_coefficient; place by place wear must rise with the power, for which \
@@ -176,7 +176,7 @@ fn build(values: &Values) -> Result<Arc<dyn WearLaw>, Wrong> {
             });
         }
     }
-    let frequency = values.frequency.ok_or_else(|| Wrong {
+    let frequency = values.frequency.ok_or_else(|| Wrong::Value {
         key: "scope",
         why: "needs the power of friction, which cycles alone do not tell; give loading.frequency, for example \"10 Hz\"".into(),
     })?;

@@ -7,7 +7,6 @@ use super::super::parts::Parts;
 use super::substeps::Unsampled;
 use crate::data::Snapshot;
 use crate::error::Result;
-use crate::laws::loading::Mode;
 use crate::scene::{Numerics, Scene, Stepper};
 use crate::solver::model::OperatorStore;
 use crate::solver::simulation::{End, Flow, Observer, Outcome, Simulation};
@@ -71,7 +70,7 @@ impl Companion {
         let Coarser { scene, numerics, .. } = coarser;
         let parts = Parts::on_any(scene, numerics, Some(coarser.springs), coarser.store).ok()?;
         let ends_by_rate = matches!(parts.plan.end, End::Rate(_));
-        let samples = coarser.samples && scene.conditions().mode != Mode::Tangential;
+        let samples = coarser.samples && !scene.conditions().mode.is_tangential();
         let unsampled = if samples { Some(Unsampled::new(scene, numerics, &parts.model)?) } else { None };
         let model = parts.model.shown_at(coarser.offsets.to_vec());
         let mut simulation = Simulation::new(model, parts.stepper, parts.tolerance, parts.plan).ok()?;

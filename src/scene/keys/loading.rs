@@ -1,6 +1,8 @@
 //! Load, amplitude and end; control, mode and blocks.
 
+use super::tables::{keys, names, tables};
 use crate::laws::loading::Duration;
+use crate::laws::motion;
 use crate::units::{Dimension, Form, Key, Kind, Range, Rule, Table};
 
 /// Most times of a history, and most blocks.
@@ -9,43 +11,72 @@ pub(in crate::scene) const MOST_TIMES: usize = 10_000;
 pub(in crate::scene) const LOADING: Table = Table::new(
     "loading",
     "Load, amplitude and end: exactly one of each; control, mode and blocks.",
-    &[
-        INDENTATION,
-        INITIAL_FORCE,
-        NORMAL_FORCE,
-        AMPLITUDE,
-        AMPLITUDE_RATIO,
-        STICK_RATIO,
-        CYCLES,
-        TAU,
-        UNTIL_RATE,
-        TANGENTIAL_CONTROL,
-        RIG_STIFFNESS,
-        Key::new(
-            "blocks",
-            Kind::Tables(&BLOCK, [1, MOST_TIMES]),
-            "Blocks of cycles, one after the other; the last goes on.",
-        )
-        .example("[[loading.blocks]] with cycles and amplitude_factor")
-        .optional(),
-        REPEAT,
-        FREQUENCY,
-        Key::table(&NORMAL_OSCILLATION).optional(),
-        Key::table(&ORBIT).optional(),
-        Key::table(&PATH).optional(),
-    ],
+    &LOADING_KEYS,
 )
-.rules(&[
+.rules(&LOADING_RULES);
+
+const OWN_KEYS: [Key; 14] = [
+    INDENTATION,
+    INITIAL_FORCE,
+    NORMAL_FORCE,
+    AMPLITUDE,
+    AMPLITUDE_RATIO,
+    STICK_RATIO,
+    CYCLES,
+    TAU,
+    UNTIL_RATE,
+    TANGENTIAL_CONTROL,
+    RIG_STIFFNESS,
+    Key::new(
+        "blocks",
+        Kind::Tables(&BLOCK, [1, MOST_TIMES]),
+        "Blocks of cycles, one after the other; the last goes on.",
+    )
+    .example("[[loading.blocks]] with cycles and amplitude_factor")
+    .optional(),
+    REPEAT,
+    FREQUENCY,
+];
+
+const MODES: usize = motion::ENTRIES.len();
+static MODE_TABLES: [Table; MODES] = tables(motion::ENTRIES);
+static MODE_NAMES: [&str; MODES] = names(&MODE_TABLES);
+static LOADING_KEYS: [Key; OWN_KEYS.len() + MODES] = keys(&OWN_KEYS, &MODE_TABLES, &[]);
+static LOADING_RULES: [Rule; 6] = [
     Rule::OneOf(&["indentation", "initial_force", "normal_force"]),
-    Rule::OneOf(&["amplitude", "amplitude_ratio", "stick_ratio", "path"]),
+    Rule::OneOf(&AMPLITUDES),
     Rule::OneOf(&["cycles", "tau", "until_rate"]),
-    Rule::AtMostOneOf(&["normal_oscillation", "orbit", "path"]),
+    Rule::AtMostOneOf(&MODE_NAMES),
     Rule::Needs("repeat", "blocks"),
     Rule::Words(
         "tangential_control",
         &[("displacement", Form::NONE), ("force", Form::NONE), ("rig", Form::new(&["rig_stiffness"]))],
     ),
-]);
+];
+
+/// What decides the tangential amplitude: a key of its own, or a mode.
+static AMPLITUDES: [&str; 3 + own_amplitudes()] = {
+    let mut names = ["amplitude"; 3 + own_amplitudes()];
+    (names[1], names[2]) = ("amplitude_ratio", "stick_ratio");
+    let (mut place, mut mode) = (3, 0);
+    while mode < MODES {
+        if motion::ENTRIES[mode].gives_amplitude {
+            names[place] = motion::ENTRIES[mode].name;
+            place += 1;
+        }
+        mode += 1;
+    }
+    names
+};
+
+const fn own_amplitudes() -> usize {
+    let (mut count, mut mode) = (0, 0);
+    while mode < MODES {
+        count += motion::ENTRIES[mode].gives_amplitude as usize;
+        mode += 1;
+    }
+    count
+}
 
 const fn force(name: &'static str, about: &'static str) -> Key {
     Key::quantity(name, Dimension::FORCE, about).range(Range::POSITIVE).example("10 N").optional()
@@ -132,62 +163,3 @@ pub(in crate::scene) const AMPLITUDE_FACTOR: Key =
     Key::number("amplitude_factor", "Factor on the amplitude.").range(Range::NOT_NEGATIVE).default("1");
 pub(in crate::scene) const INDENTATION_FACTOR: Key =
     Key::number("indentation_factor", "Factor on the indentation.").range(Range::POSITIVE).default("1");
-
-const NORMAL_OSCILLATION: Table = Table::new(
-    "normal_oscillation",
-    "The indentation oscillates too.",
-    &[
-        length("amplitude", "Amplitude d1, m, below the indentation.").example("0.1 um"),
-        positive("amplitude_ratio", "d1 over the indentation.")
-            .range(Range::above(0.0).below(1.0))
-            .example("0.2"),
-        Key::new(
-            "frequency_ratio",
-            Kind::Ratio,
-            "Normal oscillations per tangential one, a ratio of whole numbers up to 64.",
-        )
-        .range(Range::POSITIVE)
-        .example("3/2"),
-        Key::quantity("phase", Dimension::ANGLE, "Phase against the tangential oscillation, rad.")
-            .example("35 deg")
-            .default("0 deg"),
-    ],
-)
-.rules(&[Rule::OneOf(&["amplitude", "amplitude_ratio"])]);
-
-const fn centre(name: &'static str, about: &'static str) -> Key {
-    Key::quantity(name, Dimension::LENGTH, about).example("0.1 um").default("0 m")
-}
-
-const ORBIT: Table = Table::new(
-    "orbit",
-    "The indenter moves along x and y.",
-    &[
-        length("transverse_amplitude", "Amplitude along y, m.").example("0.1 um"),
-        positive("transverse_ratio", "Amplitude along y over that along x.").example("0.5"),
-        Key::quantity(
-            "phase",
-            Dimension::ANGLE,
-            "Phase of the motion along y, rad; 0 is an ellipse with the axes x and y.",
-        )
-        .example("35 deg")
-        .default("0 deg"),
-        centre("centre_x", "Where the indenter was pressed on, along x, m."),
-        centre("centre_y", "Where the indenter was pressed on, along y, m."),
-    ],
-)
-.rules(&[Rule::OneOf(&["transverse_amplitude", "transverse_ratio"])]);
-
-const PATH: Table = Table::new(
-    "path",
-    "The indenter follows a recorded path; the amplitude is left out.",
-    &[
-        Key::new(
-            "file",
-            Kind::Name,
-            "File of columns x, y and, if it changes, the indentation over that of the scene; relative to the scene.",
-        )
-        .example("path.csv"),
-        Key::new("displacement_unit", Kind::Name, "Unit of all columns, a length.").default("m"),
-    ],
-);

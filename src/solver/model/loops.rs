@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use super::schedule::CycleLoading;
 use super::{CycleFields, Fields, Model};
 use crate::contact::spring::{Shakedown, SpringCycle, steady_cycle};
-use crate::laws::loading::Mode;
 use crate::laws::path::{Path, PathPoint};
 use crate::numerics::quadrature::Rule;
 
@@ -84,7 +83,7 @@ impl Model {
                 work: cycle.dissipation,
             };
         }
-        let tangential = self.schedule.conditions().mode == Mode::Tangential;
+        let tangential = self.schedule.conditions().mode.is_tangential();
         match loading.path.as_deref().filter(|_| !tangential) {
             Some(path) => self.spring_loop(loading, path, compression, fields),
             None => {

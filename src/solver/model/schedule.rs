@@ -9,8 +9,9 @@ use crate::error::{Error, Result};
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::history::History;
-use crate::laws::loading::{Block, Clock, Mode, TangentialControl, has_come};
-use crate::laws::path::{Path, SampledPath};
+use crate::laws::loading::{Block, Clock, TangentialControl, has_come};
+use crate::laws::motion::SampledPath;
+use crate::laws::path::Path;
 use crate::laws::wear::WearLaw;
 
 /// What is asked of the contact tangentially in one cycle.
@@ -124,7 +125,7 @@ impl Schedule {
             end
         });
         let ends: Vec<f64> = ends.collect();
-        let resolved = resolution.resolved || conditions.mode != Mode::Tangential;
+        let resolved = resolution.resolved || !conditions.mode.is_tangential();
         let friction = conditions.friction.scaled(conditions.friction_history.at(0.0));
         let driven = driven_amplitude(contact, conditions, &*friction)?;
         let mut loadings = Vec::with_capacity(blocks.len());
@@ -150,10 +151,11 @@ impl Schedule {
             };
             let mut depth = indentation;
             if resolved {
-                let fewest = if conditions.mode == Mode::Tangential { FEWEST_SUBSTEPS } else { SUBSTEPS };
-                let mode = scaled(&conditions.mode, block.amplitude_factor);
-                let sampled =
-                    SampledPath::new(&mode, amplitude, indentation, resolution.substeps.unwrap_or(fewest));
+                let fewest = if conditions.mode.is_tangential() { FEWEST_SUBSTEPS } else { SUBSTEPS };
+                let substeps = resolution.substeps.unwrap_or(fewest);
+                let scaled = conditions.mode.scaled(block.amplitude_factor);
+                let mode = scaled.as_ref().unwrap_or(&conditions.mode);
+                let sampled = SampledPath::new(&**mode, amplitude, indentation, substeps);
                 depth = sampled.largest_indentation;
                 loading.cycles_per_period = f64::from(sampled.oscillations);
                 loading.response = response(&sampled.path, &*loading.friction, &loadings);
@@ -310,7 +312,7 @@ impl Schedule {
 
     /// Steps of the loop of every period, for which one to and fro at constant indentation takes `plain`.
     pub fn loop_steps(&self, plain: usize) -> usize {
-        if self.conditions.mode == Mode::Tangential {
+        if self.conditions.mode.is_tangential() {
             return plain;
         }
         let paths = self.loadings.iter().filter_map(|loading| loading.path.as_ref());
@@ -327,7 +329,7 @@ impl Schedule {
     pub fn is_uniform(&self) -> bool {
         let conditions = &self.conditions;
         conditions.blocks.is_empty()
-            && conditions.mode == Mode::Tangential
+            && conditions.mode.is_tangential()
             && conditions.friction.coefficient().is_some()
             && *self.friction_change() == History::Constant
             && conditions.tangential_control == TangentialControl::Displacement
@@ -395,22 +397,4 @@ fn response(path: &Path, friction: &dyn FrictionLaw, before: &[CycleLoading]) ->
     }
     let same = before.iter().find(|loading| loading.path.as_deref() == Some(path));
     same.map_or_else(|| Response::new(path).map(Arc::new), |loading| loading.response.clone())
-}
-
-/// The mode with the transverse displacements of a block.
-fn scaled(mode: &Mode, factor: f64) -> Mode {
-    let times = |values: &[f64]| values.iter().map(|value| factor * value).collect();
-    match mode {
-        Mode::Tangential | Mode::NormalOscillation { .. } => mode.clone(),
-        Mode::Orbit { transverse_amplitude, phase, centre } => Mode::Orbit {
-            transverse_amplitude: factor * transverse_amplitude,
-            phase: *phase,
-            centre: *centre,
-        },
-        Mode::Recorded(path) => Mode::Recorded(Arc::new(crate::laws::loading::RecordedPath {
-            x: times(&path.x),
-            y: times(&path.y),
-            ..path.as_ref().clone()
-        })),
-    }
 }

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use crate::error::{Error, Result};
-use crate::laws::loading::Mode;
 use crate::scene::{Cycle, FINEST_ACCURACY, Scene, Stepper};
 
 /// The ladders, of which every rung is combined with every other.
@@ -139,10 +138,7 @@ impl Candidate {
 
 /// How cycles of the scene can be passed through, the default first.
 pub(super) fn cycles(scene: &Scene) -> &'static [Cycle] {
-    match scene.conditions().mode {
-        Mode::Tangential => &[Cycle::ClosedForm, Cycle::Resolved],
-        _ => &[Cycle::Resolved],
-    }
+    if scene.conditions().mode.is_tangential() { &Cycle::ALL } else { &[Cycle::Resolved] }
 }
 
 /// All candidates; of those that differ in springs and tolerance only the coarser come first.

@@ -1,0 +1,124 @@
+//! What the program asks of a mode of motion.
+
+use std::any::Any;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use serde::{Serialize, Serializer};
+use serde_json::Value;
+
+use crate::laws::entry::Entry;
+use crate::laws::path::{Path, PathPoint};
+
+/// What the indenter does over one period, of which the tangential oscillation `u_x = U cos ωt` is a part.
+///
+/// Solvers ask for its properties, never for its name.
+pub trait Mode: Any + Debug + Send + Sync {
+    /// Its entry in the table of modes; none for plain tangential oscillation.
+    fn entry(&self) -> Option<&'static Entry<dyn Mode>> {
+        None
+    }
+
+    /// Its numbers, as JSON tells them.
+    fn told(&self) -> Vec<(&'static str, Value)>;
+
+    /// The mode and its numbers, as reports say it.
+    fn words(&self) -> String;
+
+    /// The corners of one period; the smallest lift is zero. A curved path is second order in the substeps.
+    ///
+    /// # Arguments
+    /// * `amplitude` -- `U`, m
+    /// * `substeps` -- about how many; raised to what the reversals and extrema need
+    fn period(&self, amplitude: f64, substeps: usize) -> Vec<PathPoint>;
+
+    /// Tangential oscillations in the period.
+    fn oscillations(&self) -> u32 {
+        1
+    }
+
+    /// Smallest and largest indentation over that of the scene, m.
+    fn indentations(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// The mode with its own displacements along the surface times `factor`; none where it has none.
+    fn scaled(&self, _factor: f64) -> Option<Arc<dyn Mode>> {
+        None
+    }
+
+    /// Tangential amplitude, m, of a mode that decides it itself.
+    fn amplitude(&self) -> Option<f64> {
+        None
+    }
+
+    /// What it was recorded as, column by column.
+    fn rows(&self) -> Vec<&[f64]> {
+        vec![]
+    }
+}
+
+impl dyn Mode {
+    /// Whether it is plain tangential oscillation, of which a cycle has a closed form.
+    pub fn is_tangential(&self) -> bool {
+        self.entry().is_none()
+    }
+
+    /// Whether the indentation changes within the period.
+    pub fn changes_indentation(&self) -> bool {
+        self.indentations() != [0.0; 2]
+    }
+
+    fn name(&self) -> String {
+        self.entry().map_or("tangential".into(), |entry| entry.name.replace('_', "-"))
+    }
+}
+
+impl PartialEq for dyn Mode {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name() && self.told() == other.told() && self.rows() == other.rows()
+    }
+}
+
+impl Serialize for dyn Mode {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let told = self.told().into_iter();
+        serializer.collect_map([("kind", self.name().into())].into_iter().chain(told))
+    }
+}
+
+/// A mode as a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledPath {
+    /// One period.
+    pub path: Path,
+    /// Largest indentation of the period, `d_max`, m, from which lift is measured.
+    pub largest_indentation: f64,
+    /// Tangential oscillations in the period: `n` of a ratio `m/n` of frequencies, else one.
+    pub oscillations: u32,
+}
+
+impl SampledPath {
+    /// The path of a mode over one period.
+    ///
+    /// # Arguments
+    /// * `amplitude`, `substeps` -- as [`Mode::period`] takes them
+    /// * `indentation` -- `d`, m, of the scene
+    ///
+    /// ```
+    /// use fretwear::laws::motion::{NormalOscillation, SampledPath};
+    ///
+    /// let mode = NormalOscillation { amplitude: 0.1, frequency_ratio: [1, 2], phase: 0.3 };
+    /// let sampled = SampledPath::new(&mode, 2.0, 1.0, 40);
+    /// assert_eq!((sampled.largest_indentation, sampled.oscillations), (1.1, 2));
+    /// let reversals = sampled.path.points.iter().filter(|point| point.tangential[0].abs() == 2.0);
+    /// assert_eq!(reversals.count(), 4);
+    /// ```
+    pub fn new(mode: &dyn Mode, amplitude: f64, indentation: f64, substeps: usize) -> Self {
+        Self {
+            path: Path { points: mode.period(amplitude, substeps) },
+            largest_indentation: indentation + mode.indentations()[1],
+            oscillations: mode.oscillations(),
+        }
+    }
+}
