@@ -207,3 +207,58 @@ fn what_would_move_the_edge_is_refused() {
         assert!(error.contains(key) && error.contains(word), "{new}: {error}");
     }
 }
+
+/// `c/a0 = (1 - F_x/(μ_f F_N))^(1/(n+1+k))`, and nothing else about the scene.
+#[test]
+fn the_tangential_force_gives_the_stick_radius_of_cattaneo_and_mindlin() {
+    for (grading, exponent) in [(0.0, 2.0), (0.5, 1.0), (-0.6, 4.0)] {
+        for share in [1e-6_f64, 0.3, 0.999] {
+            let by_ratio = scene(grading, exponent, 0.7, ARCHARD, "tau = 1");
+            let force = share * 0.5 * 10.0;
+            let text = by_ratio.text().replace("stick_ratio = 0.7", &format!("tangential_force = {force}"));
+            for text in [text.replace("tangential_control = \"force\"\n", ""), text] {
+                let scene = Scene::from_str(&text).unwrap();
+                assert!(scene.conditions().holds_both_forces());
+                let contact = scene.contact().unwrap();
+                let expected = (1.0 - share).powf((exponent + 1.0 + grading).recip());
+                let found = contact.stick_radius().unwrap() / contact.contact_radius();
+                assert!(
+                    relative(1.0 - found, 1.0 - expected) < 1e-9,
+                    "{grading}, {exponent}, {share}: {found}"
+                );
+            }
+        }
+    }
+    let text = scene(0.0, 2.0, 0.7, ARCHARD, "tau = 1").text().to_owned();
+    let cases = [
+        ("tangential_force = 5.0", "not below μ_f F_N"),
+        ("tangential_force = 0", "outside (0, inf)"),
+        ("tangential_force = 1\nstroke = 1e-6", "loading"),
+    ];
+    for (line, words) in cases {
+        let scene = Scene::from_str(&text.replace("stick_ratio = 0.7", line));
+        let error = scene.and_then(|scene| scene.contact().map(drop)).unwrap_err().to_string();
+        assert!(error.contains(words), "{line}: {error}");
+    }
+    let displaced =
+        text.replace("\"force\"", "\"displacement\"").replace("stick_ratio = 0.7", "tangential_force = 1");
+    let error = Scene::from_str(&displaced).unwrap_err().to_string();
+    assert!(error.contains("loading.tangential_control") && error.contains("remove"), "{error}");
+    let friction = text
+        .replace(
+            "[friction.coulomb]\ncoefficient = 0.5",
+            "[friction.load-dependent]\ncoefficient = 0.5\nexponent = 0.9",
+        )
+        .replace("stick_ratio = 0.7", "tangential_force = 1");
+    let error = Scene::from_str(&friction).unwrap_err().to_string();
+    assert!(error.contains("loading.tangential_force"), "{error}");
+}
+
+#[test]
+fn a_stroke_is_twice_the_amplitude() {
+    let text = scene(0.0, 2.0, 0.7, ARCHARD, "tau = 1").text().to_owned();
+    let amplitude = |line: &str| {
+        Scene::from_str(&text.replace("stick_ratio = 0.7", line)).unwrap().contact().unwrap().amplitude()
+    };
+    assert_eq!(amplitude("stroke = \"2 nm\"").to_bits(), amplitude("amplitude = \"1 nm\"").to_bits());
+}

@@ -16,7 +16,7 @@ use serde_json::Value;
 use std::f64::consts::PI;
 use support::command::{done, names, object, run, text};
 
-const KEYS: [&str; 18] = [
+const KEYS: [&str; 19] = [
     "grading",
     "stiffness_ratio",
     "normal_stiffness",
@@ -42,7 +42,6 @@ const KEYS: [&str; 18] = [
 const WORN: [&str; 5] = [
     "slip_width_limit",
     "contact_growth_limit",
-    "indentation_limit",
     "wear_volume_limit",
     "wear_volume_asymptotic",
     "wear_depth_max",

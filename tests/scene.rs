@@ -314,7 +314,7 @@ fn every_bad_value_is_refused_at_its_line_with_its_key_and_a_cure() {
             "",
             "[loading]",
             &[
-                "loading.amplitude, loading.amplitude_ratio, loading.stick_ratio or loading.path",
+                "loading.amplitude, loading.stroke, loading.tangential_force, loading.amplitude_ratio, loading.stick_ratio or loading.path",
                 "exactly one",
             ],
         ),

@@ -80,22 +80,15 @@ impl InitialContact {
         positive("friction.coulomb.coefficient", friction.coefficient)?;
         positive("wear.archard.coefficient", wear.coefficient)?;
         let profile = indenter.equivalent_profile(half_space.grading())?;
-        let Press { indentation, contact_radius, normal_force } =
-            Press::new(&profile, half_space.normal_stiffness(), loading.load)?;
+        let press = Press::new(&profile, half_space.normal_stiffness(), loading.load)?;
+        let Press { indentation, contact_radius, normal_force } = press;
         let mean_pressure = normal_force / (PI * contact_radius * contact_radius);
         representable("mean pressure, Pa", mean_pressure, &["loading", "indenter", "half_space"])?;
 
         let stiffness_ratio = half_space.stiffness_ratio();
         let sliding = full_sliding_amplitude(stiffness_ratio, friction.coefficient, indentation);
         representable("amplitude of full sliding μ_f d/M, m", sliding, &["friction"])?;
-        let slip = Slip::new(
-            &profile,
-            indentation,
-            contact_radius,
-            stiffness_ratio,
-            friction.coefficient,
-            loading.amplitude,
-        )?;
+        let slip = Slip::new(&profile, &press, half_space, friction.coefficient, loading.amplitude)?;
 
         let radial = contact_radius.powf(half_space.grading() - 1.0);
         let tau_per_cycle = 4.0 * (wear.coefficient * half_space.normal_stiffness()) * (radial * sliding);
@@ -365,12 +358,13 @@ struct Slip {
 impl Slip {
     fn new(
         profile: &EquivalentProfile,
-        indentation: f64,
-        contact_radius: f64,
-        stiffness_ratio: f64,
+        press: &Press,
+        half_space: &HalfSpace,
         friction_coefficient: f64,
         amplitude: Amplitude,
     ) -> Result<Self> {
+        let Press { indentation, contact_radius, normal_force } = *press;
+        let stiffness_ratio = half_space.stiffness_ratio();
         let from_displacement = |value: f64, displacement: f64| {
             let key = amplitude.key();
             if !(value >= 0.0 && value.is_finite()) {
@@ -392,6 +386,23 @@ impl Slip {
         };
         let slip = match amplitude {
             Amplitude::Displacement(displacement) => from_displacement(displacement, displacement)?,
+            Amplitude::Stroke(stroke) => from_displacement(stroke, 0.5 * stroke)?,
+            Amplitude::Force(force) => {
+                positive(amplitude.key(), force)?;
+                let most = friction_coefficient * normal_force;
+                // F_N - F_x/μ_f = 2 c_N ∫_0^c x^k (g0(c) - g0) dx  (Cattaneo, Mindlin; Ciavarella, Jäger)
+                let borne = normal_force - force / friction_coefficient;
+                if borne <= 0.0 {
+                    let why = format!(
+                        "{force} N is not below μ_f F_N = {most} N, so that the contact slides as a whole and a held force accelerates it; \
+                         ask for less, or give the amplitude as a length"
+                    );
+                    return Err(Error::Inconsistent { what: amplitude.key(), why });
+                }
+                let height = profile.depth_for_load(borne / half_space.normal_stiffness())?;
+                let compression = (indentation - height).max(0.0);
+                from_displacement(force, slip_amplitude(stiffness_ratio, friction_coefficient, compression))?
+            }
             Amplitude::Ratio(ratio) => {
                 from_displacement(ratio, ratio * (friction_coefficient * indentation))?
             }

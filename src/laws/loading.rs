@@ -31,6 +31,10 @@ impl Load {
 pub enum Amplitude {
     /// `U`, m, at least 0.
     Displacement(f64),
+    /// Stroke `2 U` from end to end, m, at least 0.
+    Stroke(f64),
+    /// Amplitude of the tangential force `F_x`, N, positive: that of the first cycle, which is then held.
+    Force(f64),
     /// `U/(μ_f d)`, at least 0; full sliding begins at `1/M`.
     Ratio(f64),
     /// Stick radius over contact radius `c/a0` before any wear, in (0, 1]; 1 is no slip.
@@ -42,6 +46,8 @@ impl Amplitude {
     pub fn key(self) -> &'static str {
         match self {
             Self::Displacement(_) => "loading.amplitude",
+            Self::Stroke(_) => "loading.stroke",
+            Self::Force(_) => "loading.tangential_force",
             Self::Ratio(_) => "loading.amplitude_ratio",
             Self::StickRatio(_) => "loading.stick_ratio",
         }

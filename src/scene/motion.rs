@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Rows;
-use super::document::Section;
+use super::document::{Entry, Section};
 use super::keys::{self, MOST_TIMES};
 use super::laws::{Given, OneClock, clock_of, given};
 use super::reading::Read;
@@ -49,6 +49,10 @@ pub(super) fn motion<'a>(section: &Section<'a>, rows: &Rows, clock: &mut OneCloc
         Amplitude::Displacement(mode.build()?.amplitude().expect("it decides the amplitude"))
     } else if let Some(amplitude) = quantity(&keys::AMPLITUDE)? {
         Amplitude::Displacement(amplitude)
+    } else if let Some(stroke) = quantity(&keys::STROKE)? {
+        Amplitude::Stroke(stroke)
+    } else if let Some(force) = quantity(&keys::TANGENTIAL_FORCE)? {
+        Amplitude::Force(force)
     } else if let Some(ratio) = quantity(&keys::AMPLITUDE_RATIO)? {
         Amplitude::Ratio(ratio)
     } else {
@@ -67,10 +71,25 @@ pub(super) fn motion<'a>(section: &Section<'a>, rows: &Rows, clock: &mut OneCloc
         (None, 1) => TangentialControl::Force,
         _ => TangentialControl::Displacement,
     };
+    let control = match (amplitude, control_given(section)) {
+        (Amplitude::Force(_), Some(other)) if control != TangentialControl::Force => {
+            return Err(other.misplaced(
+                "does not go together with loading.tangential_force, which holds the force; remove one of the two",
+            ));
+        }
+        (Amplitude::Force(_), _) => TangentialControl::Force,
+        _ => control,
+    };
     let blocks = blocks(section, clock)?;
     let repeat = section.read(&keys::REPEAT)?;
     let frequency = quantity(&keys::FREQUENCY)?;
     Ok(Motion { loading: Loading { load, amplitude, duration }, control, blocks, repeat, frequency, mode })
+}
+
+/// The key that says what is held tangentially, if one does.
+fn control_given<'a>(section: &Section<'a>) -> Option<Entry<'a>> {
+    let keys = [keys::RIG_STIFFNESS, keys::TANGENTIAL_CONTROL];
+    keys.iter().find_map(|key| section.optional(key.name))
 }
 
 fn blocks(section: &Section, clock: &mut OneClock) -> Result<Vec<Block>> {
@@ -146,8 +165,15 @@ pub(super) fn check(
             )));
         }
     }
-    let control =
-        [keys::RIG_STIFFNESS, keys::TANGENTIAL_CONTROL].iter().find_map(|key| section.optional(key.name));
+    let force = section.optional(keys::TANGENTIAL_FORCE.name);
+    if let Some(entry) = force.as_ref().filter(|_| friction.coefficient().is_none()) {
+        return Err(entry.misplaced(format_args!(
+            "is turned into a stick radius by one coefficient of friction, and friction.{} has several; give the amplitude as a length, and \
+             loading.tangential_control = \"force\"",
+            friction.entry().name
+        )));
+    }
+    let control = control_given(section).or(force);
     let Some(control) = control.filter(|_| motion.control != TangentialControl::Displacement) else {
         return Ok(());
     };

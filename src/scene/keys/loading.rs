@@ -15,11 +15,13 @@ pub(in crate::scene) const LOADING: Table = Table::new(
 )
 .rules(&LOADING_RULES);
 
-const OWN_KEYS: [Key; 14] = [
+const OWN_KEYS: [Key; 16] = [
     INDENTATION,
     INITIAL_FORCE,
     NORMAL_FORCE,
     AMPLITUDE,
+    STROKE,
+    TANGENTIAL_FORCE,
     AMPLITUDE_RATIO,
     STICK_RATIO,
     CYCLES,
@@ -55,10 +57,11 @@ static LOADING_RULES: [Rule; 6] = [
 ];
 
 /// What decides the tangential amplitude: a key of its own, or a mode.
-static AMPLITUDES: [&str; 3 + own_amplitudes()] = {
-    let mut names = ["amplitude"; 3 + own_amplitudes()];
-    (names[1], names[2]) = ("amplitude_ratio", "stick_ratio");
-    let (mut place, mut mode) = (3, 0);
+static AMPLITUDES: [&str; 5 + own_amplitudes()] = {
+    let mut names = ["amplitude"; 5 + own_amplitudes()];
+    (names[1], names[2]) = ("stroke", "tangential_force");
+    (names[3], names[4]) = ("amplitude_ratio", "stick_ratio");
+    let (mut place, mut mode) = (5, 0);
     while mode < MODES {
         if motion::ENTRIES[mode].gives_amplitude {
             names[place] = motion::ENTRIES[mode].name;
@@ -106,6 +109,15 @@ pub(in crate::scene) const AMPLITUDE: Key =
         .aliases(&["displacement", "displacement_amplitude", "U"])
         .range(Range::NOT_NEGATIVE)
         .example("0.3 um");
+pub(in crate::scene) const STROKE: Key = length("stroke", "Stroke from end to end, twice the amplitude, m.")
+    .aliases(&["peak_to_peak", "travel"])
+    .range(Range::NOT_NEGATIVE)
+    .example("0.6 um");
+pub(in crate::scene) const TANGENTIAL_FORCE: Key = force(
+    "tangential_force",
+    "Amplitude of the tangential force, N; held, so that the amplitude of the displacement follows. Below μ_f times the normal force.",
+)
+.aliases(&["shear_force", "F_x"]);
 pub(in crate::scene) const AMPLITUDE_RATIO: Key =
     positive("amplitude_ratio", "U/(μ_f d).").range(Range::NOT_NEGATIVE).example("0.5");
 pub(in crate::scene) const STICK_RATIO: Key =
