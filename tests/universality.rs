@@ -119,9 +119,19 @@ fn the_studies_of_the_data_folder_can_be_read() {
             study_scene(&study, &case.name, text);
         }
     }
+    let theorem = UniversalityStudy::read(&folder.join("held_forces.toml")).unwrap();
+    assert_eq!(theorem.cases().len(), 60, "six laws in ten media");
+    for case in theorem.cases() {
+        assert_eq!(case.predicted, Prediction::Within);
+        assert!(
+            theorem.scene(&case.name, &case.scene).unwrap().conditions().holds_both_forces(),
+            "{}",
+            case.name
+        );
+    }
     let count = |predicted| study.cases().iter().filter(|case| case.predicted == predicted).count();
     let [within, outside] = Prediction::ALL.map(count);
-    assert!((64..=75).contains(&within), "8 media with 8 modes are 64 pairs: {within} cases");
+    assert!((72..=85).contains(&within), "8 media with 9 modes are 72 pairs: {within} cases");
     assert!(outside >= 10, "{outside} negative controls");
 }
 

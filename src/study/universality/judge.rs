@@ -158,8 +158,13 @@ impl Course {
     }
 }
 
-/// Eq. (9), for every profile, from the permanent stick radius and the largest indentation.
+/// Eq. (9), for every profile, from the permanent stick radius and the largest indentation; under both forces held from the scene alone.
 fn limit(scene: &Scene, indentation: f64, stick_radius: f64) -> Result<LimitingShape> {
+    if scene.conditions().holds_both_forces()
+        && let Some(limit) = LimitingShape::under(&scene.contact()?, scene.conditions())?
+    {
+        return Ok(limit);
+    }
     let (indenter, grading) = (scene.indenter(), scene.half_space().grading());
     let contact_radius = indenter.equivalent_profile(grading)?.radius_at(indentation)?;
     // Without slip the two are the same to the last digit but one.
