@@ -27,7 +27,7 @@ pub struct Entry<L: ?Sized + 'static> {
     /// The columns of the file that its key `file` names.
     pub columns: Option<&'static Columns>,
     /// Key of the exponent that the unit of its coefficient depends on, and the dimension of that.
-    pub by_exponent: Option<(&'static str, fn(f64) -> Dimension)>,
+    pub by_exponent: Option<(&'static str, OfExponent)>,
     /// Whether it is a mode that decides the tangential amplitude itself.
     pub gives_amplitude: bool,
     /// Makes it of its values.
@@ -82,7 +82,7 @@ impl<L: ?Sized + 'static> Entry<L> {
     }
 
     /// The entry with a coefficient whose unit depends on the exponent of another key.
-    pub const fn by_exponent(self, exponent: &'static str, dimension: fn(f64) -> Dimension) -> Self {
+    pub const fn by_exponent(self, exponent: &'static str, dimension: OfExponent) -> Self {
         Self { by_exponent: Some((exponent, dimension)), ..self }
     }
 
@@ -102,6 +102,9 @@ impl<L: ?Sized + 'static> Entry<L> {
             .expect("a common factor changes no relation between them")
     }
 }
+
+/// Dimension of a coefficient at an exponent.
+pub type OfExponent = fn(f64) -> Dimension;
 
 /// What stands in a file of columns, for its reader and messages.
 pub struct Columns {

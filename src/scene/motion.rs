@@ -87,8 +87,11 @@ fn control_given<'a>(section: &Section<'a>) -> Option<Entry<'a>> {
     keys.iter().find_map(|key| section.optional(key.name))
 }
 
+/// A key and what its number is.
+type Alternative<'k, T> = (&'k Key, fn(f64) -> T);
+
 /// What the one key says that a table has of some.
-fn one<T, const N: usize>(section: &Section, alternatives: [(&Key, fn(f64) -> T); N]) -> Result<T> {
+fn one<T, const N: usize>(section: &Section, alternatives: [Alternative<T>; N]) -> Result<T> {
     let given = alternatives.into_iter().find(|(key, _)| section.optional(key.name).is_some());
     let (key, of) = given.expect("the table has one of them");
     section.read(key).map(of)
