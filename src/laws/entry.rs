@@ -26,8 +26,8 @@ pub struct Entry<L: ?Sized + 'static> {
     pub refers: fn(&Values) -> bool,
     /// The columns of the file that its key `file` names.
     pub columns: Option<&'static Columns>,
-    /// Key of a coefficient whose unit depends on the exponent of another key.
-    pub scaled: Option<Scaled>,
+    /// Key of the exponent that the unit of its coefficient depends on, and the dimension of that.
+    pub by_exponent: Option<(&'static str, OfExponent)>,
     /// Whether it is a mode that decides the tangential amplitude itself.
     pub gives_amplitude: bool,
     /// Makes it of its values.
@@ -50,7 +50,7 @@ impl<L: ?Sized + 'static> Entry<L> {
             rules: &[],
             refers: |_| false,
             columns: None,
-            scaled: None,
+            by_exponent: None,
             gives_amplitude: false,
             build,
         }
@@ -81,27 +81,30 @@ impl<L: ?Sized + 'static> Entry<L> {
         Self { columns: Some(columns), ..self }
     }
 
-    /// The entry with a coefficient whose unit depends on an exponent.
-    pub const fn scaled(self, scaled: Scaled) -> Self {
-        Self { scaled: Some(scaled), ..self }
+    /// The entry with a coefficient whose unit depends on the exponent of another key.
+    pub const fn by_exponent(self, exponent: &'static str, dimension: OfExponent) -> Self {
+        Self { by_exponent: Some((exponent, dimension)), ..self }
     }
 
     /// The entry of a mode that decides the tangential amplitude itself.
     pub const fn gives_amplitude(self) -> Self {
         Self { gives_amplitude: true, ..self }
     }
+
+    /// The law of these values with its coefficients, which the names of their keys tell, times `factor`.
+    pub(super) fn scaled(&self, values: Vec<Value>, factor: f64) -> Arc<L> {
+        let times = |(key, value): (&Key, Value)| match value {
+            Value::Number(number) if key.name.ends_with("coefficient") => Value::Number(factor * number),
+            other => other,
+        };
+        let values = self.keys.iter().zip(values).map(times).collect();
+        (self.build)(&Values::new(self.keys, values))
+            .expect("a common factor changes no relation between them")
+    }
 }
 
-/// A coefficient whose unit depends on an exponent.
-#[derive(Clone, Copy)]
-pub struct Scaled {
-    /// Key of the coefficient.
-    pub coefficient: &'static str,
-    /// Key of the exponent, which stands before or behind it.
-    pub exponent: &'static str,
-    /// Dimension of the coefficient at an exponent.
-    pub dimension: fn(f64) -> Dimension,
-}
+/// Dimension of a coefficient at an exponent.
+pub type OfExponent = fn(f64) -> Dimension;
 
 /// What stands in a file of columns, for its reader and messages.
 pub struct Columns {

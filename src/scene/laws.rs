@@ -118,9 +118,9 @@ fn value<L: ?Sized>(section: &Section, key: &'static Key, entry: &law::Entry<L>)
         Kind::Ratio => section.read(key).map(Value::Ratio),
         Kind::Name => Ok(Value::Missing),
         Kind::Scaled => {
-            let scaled = entry.scaled.expect("its coefficient");
-            let exponent = entry.keys.iter().find(|it| it.name == scaled.exponent).expect("its exponent");
-            section.read(&key.of((scaled.dimension)(section.read(exponent)?))).map(Value::Number)
+            let (exponent, dimension) = entry.by_exponent.expect("its unit depends on an exponent");
+            let exponent = entry.keys.iter().find(|key| key.name == exponent).expect("one of its keys");
+            section.read(&key.of(dimension(section.read(exponent)?))).map(Value::Number)
         }
         _ => section.read(key).map(Value::Number),
     }

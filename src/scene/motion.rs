@@ -13,6 +13,7 @@ use crate::laws::entry::Lengths;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::loading::{Amplitude, Block, Duration, Load, Loading, TangentialControl};
 use crate::laws::motion::{self, Mode, Tangential};
+use crate::units::Key;
 
 /// What the table says without a look at the contact.
 pub(super) struct Motion<'a> {
@@ -35,38 +36,32 @@ impl Motion<'_> {
 /// Reads everything but what the mode takes from the contact.
 pub(super) fn motion<'a>(section: &Section<'a>, rows: &Rows, clock: &mut OneClock) -> Result<Motion<'a>> {
     section.check(&keys::LOADING)?;
-    let quantity = |key| section.read_optional::<f64>(key);
-    let load = if let Some(indentation) = quantity(&keys::INDENTATION)? {
-        Load::Indentation(indentation)
-    } else if let Some(force) = quantity(&keys::INITIAL_FORCE)? {
-        Load::InitialForce(force)
-    } else {
-        Load::NormalForce(section.read(&keys::NORMAL_FORCE)?)
-    };
+    let loads: [(_, fn(_) -> _); 3] = [
+        (&keys::INDENTATION, Load::Indentation),
+        (&keys::INITIAL_FORCE, Load::InitialForce),
+        (&keys::NORMAL_FORCE, Load::NormalForce),
+    ];
+    let amplitudes: [(_, fn(_) -> _); 5] = [
+        (&keys::AMPLITUDE, Amplitude::Displacement),
+        (&keys::STROKE, Amplitude::Stroke),
+        (&keys::TANGENTIAL_FORCE, Amplitude::Force),
+        (&keys::AMPLITUDE_RATIO, Amplitude::Ratio),
+        (&keys::STICK_RATIO, Amplitude::StickRatio),
+    ];
+    let durations: [(_, fn(_) -> _); 3] = [
+        (&keys::CYCLES, Duration::Cycles),
+        (&keys::TAU, Duration::Tau),
+        (&keys::UNTIL_RATE, Duration::UntilRate),
+    ];
+    let load = one(section, loads)?;
     let mode = given(section, motion::ENTRIES, rows)?;
-    let own = mode.as_ref().filter(|mode| mode.entry.gives_amplitude);
-    let amplitude = if let Some(mode) = own {
-        Amplitude::Displacement(mode.build()?.amplitude().expect("it decides the amplitude"))
-    } else if let Some(amplitude) = quantity(&keys::AMPLITUDE)? {
-        Amplitude::Displacement(amplitude)
-    } else if let Some(stroke) = quantity(&keys::STROKE)? {
-        Amplitude::Stroke(stroke)
-    } else if let Some(force) = quantity(&keys::TANGENTIAL_FORCE)? {
-        Amplitude::Force(force)
-    } else if let Some(ratio) = quantity(&keys::AMPLITUDE_RATIO)? {
-        Amplitude::Ratio(ratio)
-    } else {
-        Amplitude::StickRatio(section.read(&keys::STICK_RATIO)?)
+    let amplitude = match mode.as_ref().filter(|mode| mode.entry.gives_amplitude) {
+        Some(mode) => Amplitude::Displacement(mode.build()?.amplitude().expect("it decides the amplitude")),
+        None => one(section, amplitudes)?,
     };
-    let duration = if let Some(cycles) = quantity(&keys::CYCLES)? {
-        Duration::Cycles(cycles)
-    } else if let Some(tau) = quantity(&keys::TAU)? {
-        Duration::Tau(tau)
-    } else {
-        Duration::UntilRate(section.read(&keys::UNTIL_RATE)?)
-    };
+    let duration = one(section, durations)?;
     let word: usize = section.read(&keys::TANGENTIAL_CONTROL)?;
-    let control = match (quantity(&keys::RIG_STIFFNESS)?, word) {
+    let control = match (section.read_optional(&keys::RIG_STIFFNESS)?, word) {
         (Some(stiffness), _) => TangentialControl::Rig { stiffness },
         (None, 1) => TangentialControl::Force,
         _ => TangentialControl::Displacement,
@@ -82,7 +77,7 @@ pub(super) fn motion<'a>(section: &Section<'a>, rows: &Rows, clock: &mut OneCloc
     };
     let blocks = blocks(section, clock)?;
     let repeat = section.read(&keys::REPEAT)?;
-    let frequency = quantity(&keys::FREQUENCY)?;
+    let frequency = section.read_optional(&keys::FREQUENCY)?;
     Ok(Motion { loading: Loading { load, amplitude, duration }, control, blocks, repeat, frequency, mode })
 }
 
@@ -90,6 +85,16 @@ pub(super) fn motion<'a>(section: &Section<'a>, rows: &Rows, clock: &mut OneCloc
 fn control_given<'a>(section: &Section<'a>) -> Option<Entry<'a>> {
     let keys = [keys::RIG_STIFFNESS, keys::TANGENTIAL_CONTROL];
     keys.iter().find_map(|key| section.optional(key.name))
+}
+
+/// A key and what its number is.
+type Alternative<'k, T> = (&'k Key, fn(f64) -> T);
+
+/// What the one key says that a table has of some.
+fn one<T, const N: usize>(section: &Section, alternatives: [Alternative<T>; N]) -> Result<T> {
+    let given = alternatives.into_iter().find(|(key, _)| section.optional(key.name).is_some());
+    let (key, of) = given.expect("the table has one of them");
+    section.read(key).map(of)
 }
 
 fn blocks(section: &Section, clock: &mut OneClock) -> Result<Vec<Block>> {

@@ -13,7 +13,7 @@ mod shell;
 pub use engine::{Engine, Submitted};
 pub use measure::{MeasuredScene, Measurement};
 pub use proposal::{Proposal, Wishes};
-pub use report::{MeasuredRow, SubmitReport};
+pub use report::SubmitReport;
 
 use std::path::{Path, PathBuf};
 

@@ -6,7 +6,7 @@ use super::Indenter;
 use super::equivalent::Equivalent;
 use super::shape::{Shape, positive};
 use crate::error::Result;
-use crate::laws::entry::{Entry, Scaled};
+use crate::laws::entry::Entry;
 use crate::units::{Dimension, Key, Kind, Range, number};
 
 /// `[indenter.power-law]`.
@@ -15,11 +15,7 @@ pub static ENTRY: Entry<dyn Shape> =
         let [coefficient, exponent] = KEYS.map(|key| values.number(key.name));
         Ok(Arc::new(PowerLaw { coefficient, exponent }))
     })
-    .scaled(Scaled {
-        coefficient: KEYS[0].name,
-        exponent: KEYS[1].name,
-        dimension: Dimension::profile_coefficient,
-    });
+    .by_exponent(KEYS[1].name, Dimension::profile_coefficient);
 
 const KEYS: [Key; 2] = [
     Key::new("coefficient", Kind::Scaled, "Coefficient A of f = A r^n, m^(1-n).")

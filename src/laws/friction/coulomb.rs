@@ -33,10 +33,6 @@ impl FrictionLaw for Coulomb {
         vec![self.coefficient.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn FrictionLaw> {
-        Arc::new(Self { coefficient: factor * self.coefficient })
-    }
-
     fn words(&self) -> String {
         format!("Coulomb, {}", number(self.coefficient))
     }

@@ -20,7 +20,9 @@ pub trait FrictionLaw: Debug + Send + Sync {
     fn values(&self) -> Vec<Value>;
 
     /// The law with its coefficients times `factor`.
-    fn scaled(&self, factor: f64) -> Arc<dyn FrictionLaw>;
+    fn scaled(&self, factor: f64) -> Arc<dyn FrictionLaw> {
+        self.entry().scaled(self.values(), factor)
+    }
 
     /// The law and its numbers, as reports say it.
     fn words(&self) -> String;

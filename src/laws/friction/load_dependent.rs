@@ -68,10 +68,6 @@ impl FrictionLaw for LoadDependent {
         vec![self.coefficient.into(), self.exponent.into(), self.reference.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn FrictionLaw> {
-        Arc::new(Self { coefficient: factor * self.coefficient, ..*self })
-    }
-
     fn words(&self) -> String {
         let reference = Scale::LENGTH.show(self.reference);
         format!("{} (q/{reference})^{}", number(self.coefficient), number(self.exponent))

@@ -49,13 +49,6 @@ impl FrictionLaw for StaticKinetic {
         vec![self.static_coefficient.into(), self.kinetic_coefficient.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn FrictionLaw> {
-        Arc::new(Self {
-            static_coefficient: factor * self.static_coefficient,
-            kinetic_coefficient: factor * self.kinetic_coefficient,
-        })
-    }
-
     fn words(&self) -> String {
         format!("static {}, kinetic {}", number(self.static_coefficient), number(self.kinetic_coefficient))
     }

@@ -54,10 +54,6 @@ impl FrictionLaw for WearDependent {
         vec![self.first.into(), self.last.into(), self.energy.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn FrictionLaw> {
-        Arc::new(Self { first: factor * self.first, last: factor * self.last, ..*self })
-    }
-
     fn words(&self) -> String {
         let [first, last, energy] = [self.first, self.last, self.energy].map(number);
         format!("from {first} to {last}, by 1/e in {energy} J/m² of dissipated energy")

@@ -20,7 +20,9 @@ pub trait Mode: Any + Debug + Send + Sync {
     }
 
     /// Its numbers, as JSON tells them.
-    fn told(&self) -> Vec<(&'static str, Value)>;
+    fn told(&self) -> Vec<(&'static str, Value)> {
+        vec![]
+    }
 
     /// The mode and its numbers, as reports say it.
     fn words(&self) -> String;

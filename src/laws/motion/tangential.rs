@@ -1,7 +1,5 @@
 //! Plain tangential oscillation, of which every other mode is an extension.
 
-use serde_json::Value;
-
 use super::mode::Mode;
 use crate::laws::path::PathPoint;
 
@@ -10,10 +8,6 @@ use crate::laws::path::PathPoint;
 pub struct Tangential;
 
 impl Mode for Tangential {
-    fn told(&self) -> Vec<(&'static str, Value)> {
-        vec![]
-    }
-
     fn words(&self) -> String {
         "tangential oscillation".into()
     }

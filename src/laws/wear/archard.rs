@@ -31,10 +31,6 @@ impl WearLaw for Archard {
         vec![self.coefficient.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn WearLaw> {
-        Arc::new(Self { coefficient: self.coefficient * factor })
-    }
-
     fn words(&self) -> String {
         format!("Archard, {} 1/Pa", number(self.coefficient))
     }

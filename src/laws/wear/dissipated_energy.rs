@@ -40,10 +40,6 @@ impl WearLaw for DissipatedEnergy {
         vec![self.coefficient.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn WearLaw> {
-        Arc::new(Self { coefficient: self.coefficient * factor })
-    }
-
     fn words(&self) -> String {
         format!("dissipated energy, {} m³/J", number(self.coefficient))
     }

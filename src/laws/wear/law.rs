@@ -20,7 +20,9 @@ pub trait WearLaw: Debug + Send + Sync {
     fn values(&self) -> Vec<Value>;
 
     /// The law with its coefficient times `factor`.
-    fn scaled(&self, factor: f64) -> Arc<dyn WearLaw>;
+    fn scaled(&self, factor: f64) -> Arc<dyn WearLaw> {
+        self.entry().scaled(self.values(), factor)
+    }
 
     /// The law and its numbers, as reports say it.
     fn words(&self) -> String;

@@ -41,10 +41,6 @@ impl WearLaw for NonLocal {
         vec![self.coefficient.into(), self.length.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn WearLaw> {
-        Arc::new(Self { coefficient: self.coefficient * factor, ..*self })
-    }
-
     fn words(&self) -> String {
         let length = Scale::LENGTH.show(self.length);
         format!("Archard on the pressure averaged over {length}, {} 1/Pa", number(self.coefficient))

@@ -49,10 +49,6 @@ impl WearLaw for PowerLaw {
         vec![self.coefficient.into(), self.pressure_exponent.into(), self.slip_exponent.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn WearLaw> {
-        Arc::new(Self { coefficient: self.coefficient * factor, ..*self })
-    }
-
     fn words(&self) -> String {
         let [pressure, slip] = [self.pressure_exponent, self.slip_exponent].map(number);
         format!("power law, {} p^{pressure} s^{slip} (SI)", number(self.coefficient))

@@ -43,10 +43,6 @@ impl WearLaw for Threshold {
         vec![self.coefficient.into(), self.pressure.into()]
     }
 
-    fn scaled(&self, factor: f64) -> Arc<dyn WearLaw> {
-        Arc::new(Self { coefficient: self.coefficient * factor, ..*self })
-    }
-
     fn words(&self) -> String {
         format!("Archard above {}, {} 1/Pa", Scale::PRESSURE.show(self.pressure), number(self.coefficient))
     }

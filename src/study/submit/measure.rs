@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
+
 use crate::error::{Error, Result};
 use crate::run::readings::ClosedForm;
 use crate::run::{Shared, Simulation, memory_figure};
@@ -31,7 +33,7 @@ pub struct Measurement {
 }
 
 /// One of them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuredScene {
     /// Its number.
     pub scene: u64,

@@ -20,7 +20,7 @@ pub struct SubmitReport {
     /// `run` or `limit`.
     pub task: &'static str,
     /// The scenes measured.
-    pub measured: Vec<MeasuredRow>,
+    pub measured: Vec<MeasuredScene>,
     /// Mean wall time of a scene on one core, s.
     pub seconds_per_scene: f64,
     /// Longest wall time of one, s.
@@ -49,17 +49,6 @@ pub struct SubmitReport {
     pub refusal: Option<String>,
 }
 
-/// One scene that was measured.
-#[derive(Debug, Clone, Serialize)]
-pub struct MeasuredRow {
-    /// Its number.
-    pub scene: u64,
-    /// Wall time on one core, s.
-    pub seconds: f64,
-    /// Why it failed.
-    pub failure: Option<String>,
-}
-
 impl SubmitReport {
     /// Describes a submission.
     pub fn new(submission: &Submission) -> Self {
@@ -70,17 +59,12 @@ impl SubmitReport {
             Some(Submitted::Refused(words)) => (vec![], Some(words.clone())),
             None => (vec![], None),
         };
-        let row = |it: &MeasuredScene| MeasuredRow {
-            scene: it.scene,
-            seconds: it.seconds,
-            failure: it.failure.clone(),
-        };
         Self {
             title: submission.title.clone(),
             engine: submission.engine.name(),
             scenes: submission.scenes,
             task: submission.task.name(),
-            measured: measurement.scenes.iter().map(row).collect(),
+            measured: measurement.scenes.clone(),
             seconds_per_scene: measurement.mean_seconds,
             seconds_longest: measurement.longest_seconds,
             shards: proposal.shards,

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::{Serialize, Serializer};
+
 use super::folder::{files, is_part, parts_folder, shard_of};
 use super::gathering::{Gathering, fold_files};
 use super::shard_range;
@@ -9,7 +11,7 @@ use crate::data::{AtomicFile, SweepHeader, check_distinct};
 use crate::error::{Error, Result};
 
 /// What is in a merged file, or is missing for it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Merged {
     /// Scenes of the study.
     pub scenes: u64,
@@ -19,10 +21,15 @@ pub struct Merged {
     pub duplicates: u64,
     /// Scenes without a row.
     pub missing: u64,
-    /// Shards that lack scenes, increasing.
+    /// Shards that lack scenes, increasing; in JSON as `--array` takes them.
+    #[serde(serialize_with = "as_array")]
     pub missing_shards: Vec<u64>,
     /// Files read.
     pub files: usize,
+}
+
+fn as_array<S: Serializer>(shards: &[u64], serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    serializer.serialize_str(&array_syntax(shards))
 }
 
 /// Merges the files of a sweep into one, sorted by scene, without duplicates; writes nothing if scenes are missing.

@@ -65,18 +65,9 @@ impl SweepReport {
 pub struct MergeReport {
     /// The merged file; null if scenes are missing.
     pub output: Option<String>,
-    /// Scenes of the study.
-    pub scenes: u64,
-    /// Failed scenes.
-    pub failed: u64,
-    /// Rows that were there more than once.
-    pub duplicates: u64,
-    /// Scenes without a row.
-    pub missing: u64,
-    /// The shards that lack them, as `--array` takes them; empty if none.
-    pub missing_shards: String,
-    /// Files read.
-    pub files: usize,
+    /// What was merged.
+    #[serde(flatten)]
+    pub merged: Merged,
 }
 
 impl MergeReport {
@@ -84,24 +75,20 @@ impl MergeReport {
     pub fn new(merged: &Merged, output: &Path) -> Self {
         Self {
             output: merged.missing_shards.is_empty().then(|| output.display().to_string()),
-            scenes: merged.scenes,
-            failed: merged.failed,
-            duplicates: merged.duplicates,
-            missing: merged.missing,
-            missing_shards: array_syntax(&merged.missing_shards),
-            files: merged.files,
+            merged: merged.clone(),
         }
     }
 
     /// Some lines for people.
     pub fn text(&self) -> String {
-        let Self { scenes, failed, duplicates, missing, missing_shards, files, .. } = self;
+        let Merged { scenes, failed, duplicates, missing, missing_shards, files } = &self.merged;
         match &self.output {
             Some(output) => format!(
                 "{scenes} scenes, {failed} failed, {duplicates} duplicates, from {files} files\nwritten to {output}\n"
             ),
             None => format!(
-                "{missing} of {scenes} scenes are missing, nothing was written\n--array={missing_shards}\n"
+                "{missing} of {scenes} scenes are missing, nothing was written\n--array={}\n",
+                array_syntax(missing_shards)
             ),
         }
     }

@@ -1,6 +1,7 @@
 //! The grading that wears least, over the amplitude.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::medium::Column;
 use super::{Form, Medium};
@@ -78,7 +79,7 @@ pub struct OptimumCurve {
 }
 
 /// Amplitudes `U/(μ_f d)` at which, at the same indentation, the comparison of gradings turns; none where it does not.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Thresholds {
     /// Below it a slightly negative grading wears less than a homogeneous medium, above it a slightly positive one.
     pub optimum_crosses_zero: Option<f64>,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{Control, MapStudy, Optimum};
+use super::{Control, MapStudy, Optimum, Thresholds};
 use crate::error::Result;
 use crate::report::{TextTable, number};
 use crate::scene::MapScene;
@@ -27,12 +27,9 @@ pub struct MapReport {
     pub points: [usize; 2],
     /// Smallest and largest `ΔV(k)/ΔV(0)` on the map; null where the homogeneous contact slides at every amplitude.
     pub wear_volume_ratio_range: Option<[f64; 2]>,
-    /// Amplitude ratio below which a slightly negative grading wears less than a homogeneous medium.
-    pub optimum_crosses_zero: Option<f64>,
-    /// Amplitude ratio above which the limit `k → 1` wears less than the homogeneous medium.
-    pub limit_beats_homogeneous: Option<f64>,
-    /// Amplitude ratio above which no grading wears less than the limit `k → 1`.
-    pub limit_is_best: Option<f64>,
+    /// Where the comparison of gradings turns.
+    #[serde(flatten)]
+    pub thresholds: Thresholds,
     /// The optimal grading over the amplitude at the same indentation.
     pub optimum: Vec<OptimumRow>,
 }
@@ -80,9 +77,7 @@ impl MapReport {
             wear_volume_ratio_range: least
                 .is_finite()
                 .then(|| [least, ratios().fold(f64::NEG_INFINITY, f64::max)]),
-            optimum_crosses_zero: study.thresholds.optimum_crosses_zero,
-            limit_beats_homogeneous: study.thresholds.limit_beats_homogeneous,
-            limit_is_best: study.thresholds.limit_is_best,
+            thresholds: study.thresholds,
             optimum: at_indentation.iter().flat_map(|curve| curve.points.iter().map(row)).collect(),
         })
     }
@@ -101,9 +96,9 @@ impl MapReport {
         );
         rows.optional("worn volume over homogeneous", self.wear_volume_ratio_range.map(range));
         rows.gap();
-        rows.optional("negative k is best below", amplitude(self.optimum_crosses_zero));
-        rows.optional("k → 1 beats k = 0 above", amplitude(self.limit_beats_homogeneous));
-        rows.optional("k → 1 is best above", amplitude(self.limit_is_best));
+        rows.optional("negative k is best below", amplitude(self.thresholds.optimum_crosses_zero));
+        rows.optional("k → 1 beats k = 0 above", amplitude(self.thresholds.limit_beats_homogeneous));
+        rows.optional("k → 1 is best above", amplitude(self.thresholds.limit_is_best));
         rows.gap();
         let stride = self.optimum.len().div_ceil(MOST_ROWS).max(1);
         for row in self.optimum.iter().step_by(stride) {
