@@ -145,7 +145,8 @@ impl StickStage<'_> {
                 if x <= 0.0 || x >= 1.0 {
                     return 0.0;
                 }
-                model.between_springs(&worn, x) * model.unworn.at_stick(area, q, z).slip
+                // Nothing grows back where the polynomial swings below zero, next to an edge at which slip jumps.
+                (model.between_springs(&worn, x) * model.unworn.at_stick(area, q, z).slip).max(0.0)
             };
             wear_depth = model.output.offsets().iter().map(depth).collect();
         }
