@@ -2,6 +2,7 @@
 
 use faer::Mat;
 
+use super::operators::Operators;
 use super::{CycleFields, Fields, Model};
 use crate::error::{Error, Result};
 use crate::numerics::grid::{Clustering, MOST_POINTS, Mesh};
@@ -30,12 +31,16 @@ impl Stencil {
 ///
 /// The material moves inwards past the springs, so the stencils lean outwards. On a smooth mesh they reach beyond the contact edge, where
 /// nothing wears: so do those of the last springs not depend on what lies behind the wave alone.
-pub(super) fn derivative_stencils(mesh: &Mesh) -> Vec<Stencil> {
+///
+/// # Arguments
+/// * `back` -- by how many nodes they are moved inwards, for ground that moves outwards past the springs
+pub(super) fn derivative_stencils(mesh: &Mesh, back: usize) -> Vec<Stencil> {
     let last = mesh.cells();
     let smooth = mesh.clustering() == Clustering::Smooth;
     let points = mesh.clustering().degree() + 1;
     let stencil = |node: usize| {
-        let nodes = Mesh::stencil(node, points, if smooth { last + points } else { last });
+        let nodes =
+            Mesh::stencil(node.saturating_sub(back), points, if smooth { last + points } else { last });
         let place = mesh.node(node);
         // At the contact edge itself the slope of the map is zero, and nothing asks for a derivative there.
         let scale = if node == last { 0.0 } else { place.value / place.slope };
@@ -49,6 +54,19 @@ impl Model {
     /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
     pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
         self.operators.derivative.iter().map(|stencil| stencil.apply(values)).collect()
+    }
+
+    /// As [`Model::along_annulus`], of an edge of stick that moves inwards: leaning to where the ground comes from at every spring.
+    ///
+    /// # Arguments
+    /// * `motion` -- by how much ground passes a spring inwards, shape `(n,)` with `n` springs at most
+    pub(super) fn along_motion(&self, values: &[f64], motion: &[f64]) -> Vec<f64> {
+        let Operators { derivative, derivative_inwards, .. } = &*self.operators;
+        let stencil = |(i, motion): (usize, &f64)| {
+            let stencils = if *motion < 0.0 { derivative_inwards } else { derivative };
+            stencils[i].apply(values)
+        };
+        motion.iter().enumerate().map(stencil).collect()
     }
 
     /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.
