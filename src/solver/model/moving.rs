@@ -40,7 +40,7 @@ const STATIONS: usize = 24;
 const FARTHEST: f64 = 5.0;
 
 /// Area of stick, over that of the core of the mesh, below which it is taken for lost.
-const LOST: f64 = 1.5;
+const LOST: f64 = 4.0;
 
 /// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
