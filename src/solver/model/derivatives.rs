@@ -2,7 +2,6 @@
 
 use faer::Mat;
 
-use super::operators::Operators;
 use super::{CycleFields, Fields, Model};
 use crate::error::{Error, Result};
 use crate::numerics::grid::{Clustering, MOST_POINTS, Mesh};
@@ -22,7 +21,7 @@ impl Stencil {
         (self.first, &self.weights[..self.count])
     }
 
-    fn apply(&self, values: &[f64]) -> f64 {
+    pub(super) fn apply(&self, values: &[f64]) -> f64 {
         dot(&self.weights[..self.count], &values[self.first..self.first + self.count])
     }
 }
@@ -54,19 +53,6 @@ impl Model {
     /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
     pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
         self.operators.derivative.iter().map(|stencil| stencil.apply(values)).collect()
-    }
-
-    /// As [`Model::along_annulus`], of an edge of stick that moves inwards: leaning to where the ground comes from at every spring.
-    ///
-    /// # Arguments
-    /// * `motion` -- by how much ground passes a spring inwards, shape `(n,)` with `n` springs at most
-    pub(super) fn along_motion(&self, values: &[f64], motion: &[f64]) -> Vec<f64> {
-        let Operators { derivative, derivative_inwards, .. } = &*self.operators;
-        let stencil = |(i, motion): (usize, &f64)| {
-            let stencils = if *motion < 0.0 { derivative_inwards } else { derivative };
-            stencils[i].apply(values)
-        };
-        motion.iter().enumerate().map(stencil).collect()
     }
 
     /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.

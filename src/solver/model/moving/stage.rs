@@ -270,11 +270,15 @@ impl StickStage<'_> {
 
     /// `ξ ∂/∂ξ` at the inner springs. Where an edge recedes, leaning to where the ground comes from: else what springs next to it are off by grows.
     fn along_annulus(&self, values: &[f64], motion: &[f64]) -> Vec<f64> {
-        if self.moving.recedes() {
-            self.model.along_motion(values, motion)
-        } else {
-            self.model.along_annulus(values)
+        if !self.moving.recedes() {
+            return self.model.along_annulus(values);
         }
+        let operators = &self.model.operators;
+        let stencil = |(i, motion): (usize, &f64)| {
+            let leaning = if *motion < 0.0 { &operators.derivative_inwards } else { &operators.derivative };
+            leaning[i].apply(values)
+        };
+        motion.iter().enumerate().map(stencil).collect()
     }
 
     /// `ln((S - K)/S_0)` at the contact edge; not a number where less slipped than was left behind.
