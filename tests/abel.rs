@@ -10,7 +10,7 @@ use support::orders;
 
 const GRADINGS: [f64; 11] = [-0.9999, -0.99, -0.9, -0.5, -0.2, 0.0, 0.3, 0.6, 0.9, 0.99, 0.9999];
 const CELLS: usize = 40;
-const MESHES: [Clustering; 3] = [Clustering::Smooth, Clustering::Cubic, Clustering::MovingStick];
+const MESHES: [Clustering; 3] = [Clustering::Smooth, Clustering::Cubic, Clustering::RecedingStick];
 
 fn operators(grading: f64, cells: usize, clustering: Clustering) -> AbelOperators {
     AbelOperators::new(grading, Mesh::new(cells, clustering.stretch(1.5, 0.0), clustering)).unwrap()

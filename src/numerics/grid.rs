@@ -11,6 +11,10 @@ const NO_STRETCH: f64 = 1e-8;
 /// Least stretch of a smooth mesh.
 const SMOOTH_STRETCH: f64 = 10.0;
 
+/// The same where the edge of stick recedes: far less fine ones lose the layer of ground just passed where the edge nearly stops, finer ones take more
+/// steps.
+const RECEDING_STRETCH: f64 = 6.0;
+
 /// Springs up to which the ends of a smooth mesh are as fine as its exponents make them, and by how much of the mesh they are cut short for each
 /// spring more, and for the third root of it: next to the edge of stick slip, a difference of what springs would do without pressure and with
 /// it, and at the contact edge compressions would have no digits left in cells finer than those of that many.
@@ -31,8 +35,9 @@ pub enum Clustering {
     /// Degree 3, spacing `n^-3` at the contact edge and `n^-2` at an edge of stick that creeps: ground passes through the springs there, and
     /// finer ones amplify what they are off by.
     CreepingStick,
-    /// Degree 3, spacing `n^-3` at the contact edge and `n^-1` at an edge of stick that moves as fast as wear.
-    MovingStick,
+    /// Degree 3, for an edge of stick that recedes over unworn ground: as [`Clustering::CreepingStick`], but towards that edge nodes lie nearly evenly in
+    /// `ln(r² - c²)`. The ground just passed is a layer there, of `ln(S/S_0) = κ p/|d(c²)/dN| (r² - c²)`, the thinner the slower the edge.
+    RecedingStick,
 }
 
 impl Clustering {
@@ -42,8 +47,7 @@ impl Clustering {
             Self::Smooth => (1, 3),
             Self::Cubic => (3, 2),
             Self::Quadratic => (3, 1),
-            Self::CreepingStick => (1, 2),
-            Self::MovingStick => (0, 2),
+            Self::CreepingStick | Self::RecedingStick => (1, 2),
         }
     }
 
@@ -66,10 +70,10 @@ impl Clustering {
     /// On a smooth mesh the front next to the edge of stick is followed to far within what the output shows; as `k → 1` it is as high there as
     /// anywhere.
     pub fn stretch(self, natural: f64, grading: f64) -> f64 {
-        if self == Self::Smooth {
-            (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0))
-        } else {
-            natural
+        match self {
+            Self::Smooth => (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0)),
+            Self::RecedingStick => natural.max(RECEDING_STRETCH),
+            _ => natural,
         }
     }
 }
@@ -415,7 +419,7 @@ mod tests {
         Clustering::Cubic,
         Clustering::Quadratic,
         Clustering::CreepingStick,
-        Clustering::MovingStick,
+        Clustering::RecedingStick,
     ];
 
     #[test]

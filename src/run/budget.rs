@@ -6,7 +6,7 @@
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::Clustering;
-use crate::solver::model::Schedule;
+use crate::solver::model::{Model, MovingStick, Schedule};
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
 pub(in crate::run) const MOST_RAISED: usize = 600;
@@ -25,8 +25,10 @@ const THIRD_ORDER: [f64; 2] = [0.35, 4.5];
 /// Part of the accuracy asked for that the fitted error may take up, so that scenes off the fit keep to it too.
 const MARGIN: f64 = 0.35;
 
-/// Part of the accuracy asked for that the error of the time stepping may take up.
+/// Part of the accuracy asked for that the error of the time stepping may take up; less where stick is lost in the end, for the nearer that comes the
+/// more errors grow.
 const OF_TIME: f64 = 0.3;
+const OF_TIME_LOSING_STICK: f64 = 0.03;
 
 /// Springs added, as a part, for every unit of `n ln(a0/c)` beyond the first number, up to the second: with a small stick zone the fit's order sets
 /// in late.
@@ -117,8 +119,9 @@ impl Falling {
 }
 
 /// Tolerance of the time stepping, whose error is about as large, that leaves most of `accuracy` to the springs.
-pub(in crate::run) fn tolerance_for(accuracy: f64) -> f64 {
-    OF_TIME * accuracy
+pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
+    let loses_stick = model.slides() && model.moving().is_some_and(MovingStick::recedes);
+    accuracy * if loses_stick { OF_TIME_LOSING_STICK } else { OF_TIME }
 }
 
 /// Springs with which a held normal force is followed to an accuracy: the edge of stick creeps over worn ground, to second order

@@ -53,7 +53,8 @@ impl Parts {
         let unlimited = model.slides() || path_dependent || by_energy;
         let limit = if unlimited { None } else { LimitingShape::under(model.contact(), conditions)? };
         check_stepper(numerics.stepper, &model)?;
-        let tolerance = numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy));
+        let tolerance =
+            numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy, &model));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),

@@ -288,7 +288,11 @@ impl Model {
 
     /// Relative uncertainty of the worn volume by the core that stays unworn in gross slip; zero where a stick zone is left.
     pub fn core_uncertainty(&self) -> f64 {
-        if self.slides { envelope::core_share(self.contact.half_space().grading()) } else { 0.0 }
+        if self.slides && self.moving.as_ref().is_none_or(MovingStick::slides) {
+            envelope::core_share(self.contact.half_space().grading())
+        } else {
+            0.0
+        }
     }
 
     /// What acts when.

@@ -286,6 +286,9 @@ impl Simulation {
             if let Some(outcome) = self.outcome() {
                 return Ok(outcome);
             }
+            if self.model.loses_stick(&self.state) {
+                return Err(self.slides_off());
+            }
             let landed = self.advance(observers).map_err(|error| match error {
                 // A search within a step does not know the time.
                 Error::NotConverged { what, why } if what != STEPPING => {

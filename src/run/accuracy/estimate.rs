@@ -34,9 +34,10 @@ const LEAST_OF_TIME: f64 = 0.15;
 /// Least ratio of the springs that tells anything: a mesh may have to be raised to carry the companion.
 const LEAST_RATIO: f64 = 1.2;
 
-/// Orders that are believed: edges that move outwards and kinks of wear are of second order at best, edges that may move inwards of first, and
-/// below the last number nothing is known.
+/// Orders that are believed: edges that move outwards and kinks of wear are of second order at best, edges of stick that recede of third, others that
+/// may move inwards of first, and below the last number nothing is known.
 const ORDER: f64 = 2.0;
+const ORDER_RECEDING: f64 = 3.0;
 const ORDER_INWARDS: f64 = 1.0;
 const LEAST_ORDER: f64 = 0.5;
 
@@ -102,12 +103,17 @@ impl Companions {
         let shown = model.radii().into_iter().step_by(every);
         let radii = model.moving().map(|_| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
-        let inwards = held || model.slides() || model.moving().is_some_and(MovingStick::recedes);
+        let recedes = model.moving().is_some_and(MovingStick::recedes);
+        let order = match held || model.slides() {
+            _ if recedes => ORDER_RECEDING,
+            true => ORDER_INWARDS,
+            false => ORDER,
+        };
         let unseen = || model.unseen_depth().unwrap_or(0.0);
         Self {
             springs: model.springs(),
             smooth,
-            order: if inwards { ORDER_INWARDS } else { ORDER },
+            order,
             every,
             radii,
             limit: (limited || smooth).then(|| [model.limit_volume(), model.depth_scale()]),

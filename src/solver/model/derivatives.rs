@@ -21,7 +21,7 @@ impl Stencil {
         (self.first, &self.weights[..self.count])
     }
 
-    fn apply(&self, values: &[f64]) -> f64 {
+    pub(super) fn apply(&self, values: &[f64]) -> f64 {
         dot(&self.weights[..self.count], &values[self.first..self.first + self.count])
     }
 }
@@ -30,12 +30,16 @@ impl Stencil {
 ///
 /// The material moves inwards past the springs, so the stencils lean outwards. On a smooth mesh they reach beyond the contact edge, where
 /// nothing wears: so do those of the last springs not depend on what lies behind the wave alone.
-pub(super) fn derivative_stencils(mesh: &Mesh) -> Vec<Stencil> {
+///
+/// # Arguments
+/// * `back` -- by how many nodes they are moved inwards, for ground that moves outwards past the springs
+pub(super) fn derivative_stencils(mesh: &Mesh, back: usize) -> Vec<Stencil> {
     let last = mesh.cells();
     let smooth = mesh.clustering() == Clustering::Smooth;
     let points = mesh.clustering().degree() + 1;
     let stencil = |node: usize| {
-        let nodes = Mesh::stencil(node, points, if smooth { last + points } else { last });
+        let nodes =
+            Mesh::stencil(node.saturating_sub(back), points, if smooth { last + points } else { last });
         let place = mesh.node(node);
         // At the contact edge itself the slope of the map is zero, and nothing asks for a derivative there.
         let scale = if node == last { 0.0 } else { place.value / place.slope };

@@ -1,5 +1,6 @@
 //! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
+use super::moving::follows_held_force;
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -9,6 +10,9 @@ use crate::numerics::roots::bracketed;
 /// Radius, over that of the contact, of the core that stays unworn in gross slip, since the mesh needs a smallest radius: 1e-3 takes 60 springs,
 /// 1e-4 would take 120.
 const CORE: f64 = 1e-3;
+
+/// The same where the mesh follows an edge of stick that recedes until none is left: stick is lost within 1e-3 of the time when it is as small as that.
+const LAST_CORE: f64 = 0.02;
 
 /// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact slides as a whole: the
 /// slip depth, of which wear is the growth, keeps its digits next to the core, however flat the profile is there.
@@ -74,7 +78,8 @@ impl Schedule {
                 ),
             });
         }
-        if slides && core_share(grading) > LARGEST_CORE_SHARE {
+        let follows = follows_held_force(self);
+        if slides && !follows && core_share(grading) > LARGEST_CORE_SHARE {
             return Err(Error::Inconsistent {
                 what: "loading.amplitude",
                 why: format!(
@@ -89,7 +94,8 @@ impl Schedule {
             return Ok(Envelope { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
         }
         let held = self.conditions().tangential_control != TangentialControl::Displacement;
-        let contact = contact.with_core(depth, CORE * radius)?;
+        let core = if follows { LAST_CORE } else { CORE };
+        let contact = contact.with_core(depth, core * radius)?;
         let at_core = contact.slip_compression();
         let surplus = (compression - at_core).clamp(LEAST_SURPLUS * at_core, LARGEST_SURPLUS * at_core);
         // Under a held tangential force the core gives way only in the end, and all slip is counted from there.

@@ -39,6 +39,9 @@ const STATIONS: usize = 24;
 /// Indentation over the first one up to which a contact that slides under a held force is followed.
 const FARTHEST: f64 = 5.0;
 
+/// Area of stick, over that of the core of the mesh, below which it is taken for lost.
+const LOST: f64 = 4.0;
+
 /// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
 
@@ -106,7 +109,7 @@ impl MovingStick {
         if *schedule.friction_along_energy() != History::Constant {
             check_along_energy(schedule, slides)?;
         }
-        if slides {
+        if slides && !follows_held_force(schedule) {
             let sliding = conditions.holds_normal_force && conditions.blocks.is_empty();
             let cause = Cause::Sliding(contact.normal_force());
             return Ok(sliding.then_some(Self { cause, outwards: false, jumps: false, span: [0.0; 2] }));
@@ -164,7 +167,7 @@ impl MovingStick {
                 return Ok(None);
             }
             Cause::Friction => rises,
-            Cause::Tangential if rises || !conditions.blocks.is_empty() => return Ok(None),
+            Cause::Tangential if !follows_held_force(schedule) => return Ok(None),
             Cause::Tangential => false,
         };
         Ok(Some(Self { cause, outwards, jumps: false, span: [0.0; 2] }))
@@ -191,8 +194,8 @@ impl MovingStick {
     pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
         match self.cause {
             _ if self.rests() => asked,
-            _ if self.outwards => Clustering::CreepingStick,
-            _ => Clustering::MovingStick,
+            _ if self.recedes() => Clustering::RecedingStick,
+            _ => Clustering::CreepingStick,
         }
     }
 
@@ -298,6 +301,13 @@ impl MovingStick {
     }
 }
 
+/// Whether the edge of stick is followed under a balance of tangential forces: it only ever moves inwards.
+pub(super) fn follows_held_force(schedule: &Schedule) -> bool {
+    let conditions = schedule.conditions();
+    let [_, rises] = directions(schedule.friction_change());
+    conditions.tangential_control != TangentialControl::Displacement && !rises && conditions.blocks.is_empty()
+}
+
 /// Refuses an edge of stick that comes to rest on worn ground within the mesh: errors of the springs next to it grow with slip and move it inwards.
 /// Worn volumes were 0.4 to 8 % off with any number of springs.
 fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
@@ -377,6 +387,13 @@ impl Model {
     /// How the edge of stick moves, if it does.
     pub fn moving(&self) -> Option<&MovingStick> {
         self.moving.as_ref()
+    }
+
+    /// Whether a stick zone that shrinks has come to the core of the mesh.
+    pub fn loses_stick(&self, state: &State) -> bool {
+        let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
+        let core = self.stick_zone.stick_area;
+        self.slides && tangential && state.stick.as_ref().is_some_and(|stick| stick.area < LOST * core)
     }
 
     /// Where the mesh begins, with the edge of stick of a state.

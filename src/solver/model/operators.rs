@@ -14,6 +14,8 @@ use crate::numerics::linear::{Factors, dot};
 pub(super) struct Operators {
     pub abel: AbelOperators,
     pub derivative: Vec<Stencil>,
+    /// For ground that moves outwards; none on smooth meshes, where none does.
+    pub derivative_inwards: Vec<Stencil>,
     inverse: Inverse,
 }
 
@@ -212,7 +214,12 @@ impl Operators {
                 Inverse::Hierarchical { compressed: Compressed::new(&abel), factors: Mutex::default() }
             }
         };
-        Ok(Self { derivative: derivative_stencils(abel.mesh()), abel, inverse })
+        let mesh = abel.mesh();
+        let derivative_inwards = match clustering {
+            Clustering::Smooth => vec![],
+            _ => derivative_stencils(mesh, 1),
+        };
+        Ok(Self { derivative: derivative_stencils(mesh, 0), derivative_inwards, abel, inverse })
     }
 }
 

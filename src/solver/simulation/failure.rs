@@ -29,6 +29,21 @@ pub(super) fn nothing_wears(model: &Model, finite: bool) -> Error {
 }
 
 impl Simulation {
+    /// The moment at which no stick is left under a force that is held, which the contact then no longer bears.
+    pub(super) fn slides_off(&self) -> Error {
+        let (model, state) = (&self.model, &self.state);
+        let left = state.stick.as_ref().map_or(0.0, |stick| stick.area / -stick.rates[0]);
+        let cycles = state.cycles + left;
+        let tau = cycles * model.contact().tau_per_cycle();
+        Error::NotConverged {
+            what: STEPPING,
+            why: format!(
+                "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}): from there the contact slides as a whole and no longer bears the \
+                 tangential force that is asked for; end before (loading.tau), or ask for a smaller amplitude"
+            ),
+        }
+    }
+
     /// The moment at which a run cannot go on, and what can be done.
     pub(super) fn stuck(&self, why: &str) -> Error {
         let (model, cycles) = (&self.model, self.state.cycles);

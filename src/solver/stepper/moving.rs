@@ -11,6 +11,9 @@ const MOST_LEFT: f64 = 1e-8;
 /// Corrections of the edge of stick, relative, that are round-off of the balance that decides it.
 const STICK_ROUND_OFF: f64 = 1e-11;
 
+/// Roundings of an edge of stick that recedes that no correction of the springs is below.
+const ROUNDINGS: f64 = 4.0;
+
 /// What may be left of a balance of forces, relative.
 const BALANCED: f64 = 1e-12;
 
@@ -20,13 +23,16 @@ pub(super) struct MovingStage<'a> {
     /// What Newton's method may leave.
     tolerance: f64,
     held: f64,
+    /// Corrections of the springs, relative to `q_c`, that come of the rounding of the edge of stick.
+    round_off: f64,
     trial: &'a mut StickTrial,
 }
 
 impl<'a> MovingStage<'a> {
     pub fn new(stage: StickStage<'a>, tolerance: f64, model: &Model, trial: &'a mut StickTrial) -> Self {
         let tolerance = newton_tolerance(tolerance).min(MOST_LEFT);
-        Self { stage, tolerance, held: model.contact().indentation(), trial }
+        let round_off = ROUNDINGS * stage.rounding();
+        Self { stage, tolerance, held: model.contact().indentation(), round_off, trial }
     }
 
     /// Newton's method from a guess; where the compression at the edge of stick is known, with that one: next to the edge slip is the small
@@ -68,7 +74,7 @@ impl Equations for MovingStage<'_> {
     }
 
     fn is_last(&self, correction: &Correction) -> bool {
-        correction.springs <= self.tolerance * correction.compression + 10.0 * ROUND_OFF
+        correction.springs <= self.tolerance * correction.compression + 10.0 * ROUND_OFF + self.round_off
             && correction.stick <= STICK_ROUND_OFF
             && self.trial.residual.last().is_some_and(|it| it.abs() <= BALANCED)
     }

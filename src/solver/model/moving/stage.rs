@@ -7,8 +7,10 @@ use crate::numerics::grid::lagrange;
 use crate::solver::model::schedule::CycleLoading;
 use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
 
-/// Change of slip area, stick area or depth, relative, by which slopes are found.
+/// Change of slip area, stick area or depth, relative, by which slopes are found; where the edge recedes no more than this part of the first spring's
+/// `ξ`, for a change as large as that one takes all slip there away.
 const DIFFERENCE: f64 = 1e-7;
+const OF_FIRST_SPRING: f64 = 1e-4;
 
 /// What a stage with an edge of stick that moves starts from.
 #[derive(Debug, Clone)]
@@ -72,6 +74,13 @@ impl StickStage<'_> {
         (self.moving.cause == Cause::Friction && !self.moving.jumps).then(|| self.driven_slip_compression())
     }
 
+    /// Rounding of an edge of stick that recedes, over the distance of the first spring from it: slip there is known no better.
+    pub fn rounding(&self) -> f64 {
+        let target = &self.target;
+        let first = target.springs.slip_area * self.model.operators.abel.nodes()[1];
+        if self.moving.recedes() { f64::EPSILON * target.stick.area / first } else { 0.0 }
+    }
+
     /// Recomputes everything that follows from the unknowns; whether they are those of a contact.
     pub fn evaluate(&self, at: &Unknowns, trial: &mut StickTrial) -> bool {
         let model = self.model;
@@ -104,13 +113,13 @@ impl StickStage<'_> {
         let n = self.model.springs();
         let mut matrix = Mat::zeros(n + 2, n + 2);
         self.fill_by_compressions(at, trial, &mut matrix);
-        let step = DIFFERENCE * at.slip_area;
+        let step = self.difference() * at.slip_area;
         let moved = Unknowns { slip_area: at.slip_area + step, ..at.clone() };
         self.fill_by_difference(n - 1, step, &moved, trial, &mut matrix)?;
         if self.moving.rests() {
             matrix[(n, n)] = self.target.stick.area.recip();
         } else {
-            let step = DIFFERENCE * at.stick_area;
+            let step = self.difference() * at.stick_area;
             let moved = Unknowns { stick_area: at.stick_area + step, ..at.clone() };
             self.fill_by_difference(n, step, &moved, trial, &mut matrix)?;
         }
@@ -118,7 +127,7 @@ impl StickStage<'_> {
             Cause::Sliding(force) => self.fill_by_sliding_depth(force, at, trial, &mut matrix),
             _ if self.moving.jumps => matrix[(n + 1, n + 1)] = trial.stick_zone.slip_compression.recip(),
             _ => {
-                let step = DIFFERENCE * trial.stick_zone.slip_compression;
+                let step = self.difference() * trial.stick_zone.slip_compression;
                 let moved = Unknowns { stick_depth: at.stick_depth + step, ..at.clone() };
                 self.fill_by_difference(n + 1, step, &moved, trial, &mut matrix)?;
             }
@@ -201,7 +210,10 @@ impl StickStage<'_> {
         };
         let radius = at.stick_area.sqrt();
         let slope = self.model.contact.equivalent_profile().derivative(radius);
-        Passed { area, risen, unworn_rise: 0.5 * slope / radius * area }
+        let unworn_rise = 0.5 * slope / radius * area;
+        // Inwards the profile met is the unworn one; next to the edge any difference would count by the inverse of the distance.
+        let risen = if self.moving.recedes() { unworn_rise } else { risen };
+        Passed { area, risen, unworn_rise }
     }
 
     /// Where the mesh begins: the load grows by that of the ground passed, and with `q_c` on all of the stick zone where a normal force is held.
@@ -229,7 +241,8 @@ impl StickStage<'_> {
     fn push_on_springs(&self, at: &Unknowns, passed: &Passed, trial: &mut StickTrial) {
         let StickTrial { fields, cycle, residual, .. } = trial;
         let target = &self.target.springs;
-        let along = self.along_annulus(&fields.log_slip);
+        let motion = self.motion(at, passed);
+        let along = self.along_annulus(&fields.log_slip, &motion);
         for i in 0..at.compression.len() {
             let singular =
                 per_slip(fields, i) * (passed.unworn_rise - passed.risen * (-fields.log_slip[i]).exp());
@@ -238,20 +251,35 @@ impl StickStage<'_> {
                     - target.log_slip[i]
                     - target.step * cycle.growth[i]
                     - singular
-                    - self.carried(at, passed, &along, i),
+                    - self.carried(at, &motion, &along, i),
             );
         }
     }
 
     /// What the motion of spring `i` makes of a quantity whose `ξ ∂/∂ξ` is given.
-    fn carried(&self, at: &Unknowns, passed: &Passed, along: &[f64], i: usize) -> f64 {
+    fn carried(&self, at: &Unknowns, motion: &[f64], along: &[f64], i: usize) -> f64 {
         let node = self.model.operators.abel.nodes()[i + 1];
-        along[i] / node * self.motion(at, passed, node) / at.slip_area
+        along[i] / node * motion[i] / at.slip_area
     }
 
-    /// By how much ground has passed the node `ξ` in the stage, m².
-    fn motion(&self, at: &Unknowns, passed: &Passed, node: f64) -> f64 {
-        passed.area + node * (at.slip_area - self.target.springs.slip_area)
+    /// By how much ground has passed the inner springs inwards in the stage, m².
+    fn motion(&self, at: &Unknowns, passed: &Passed) -> Vec<f64> {
+        let grown = at.slip_area - self.target.springs.slip_area;
+        let inner = &self.model.operators.abel.nodes()[1..=at.compression.len()];
+        inner.iter().map(|node| passed.area + node * grown).collect()
+    }
+
+    /// `ξ ∂/∂ξ` at the inner springs. Where an edge recedes, leaning to where the ground comes from: else what springs next to it are off by grows.
+    fn along_annulus(&self, values: &[f64], motion: &[f64]) -> Vec<f64> {
+        if !self.moving.recedes() {
+            return self.model.along_annulus(values);
+        }
+        let operators = &self.model.operators;
+        let stencil = |(i, motion): (usize, &f64)| {
+            let leaning = if *motion < 0.0 { &operators.derivative_inwards } else { &operators.derivative };
+            leaning[i].apply(values)
+        };
+        motion.iter().enumerate().map(stencil).collect()
     }
 
     /// `ln((S - K)/S_0)` at the contact edge; not a number where less slipped than was left behind.
@@ -312,19 +340,6 @@ impl StickStage<'_> {
         weights.iter().enumerate().map(|(i, weight)| weight * value(i)).sum()
     }
 
-    /// `ξ ∂/∂ξ`, leaning to where the ground comes from: outwards, or inwards next to an edge of stick that recedes.
-    fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
-        let mut along = self.model.along_annulus(values);
-        if !self.moving.outwards && !self.moving.deepens() {
-            let nodes = self.model.operators.abel.nodes();
-            for (i, slope) in along.iter_mut().enumerate().take(values.len() / 2) {
-                let before = if i == 0 { 0.0 } else { values[i - 1] };
-                *slope = nodes[i + 1] * (values[i] - before) / (nodes[i + 1] - nodes[i]);
-            }
-        }
-        along
-    }
-
     fn fill_by_compressions(&self, at: &Unknowns, trial: &StickTrial, matrix: &mut Mat<f64>) {
         let (model, fields) = (self.model, &trial.fields);
         let (n, inner) = (model.springs(), model.springs() - 1);
@@ -334,19 +349,18 @@ impl StickStage<'_> {
         model.add_growth_slopes(&loading, &at.compression, fields, &trial.cycle, -step, &mut growth);
         let scale = fields.slip_area.powf(model.mu());
         let behind = fields.slip_depth[inner] - fields.unworn[inner].slip * trial.residual[inner].exp();
-        let nodes = &model.operators.abel.nodes()[1..];
         let singular = |i| 1.0 - per_slip(fields, i) * passed.risen * (-fields.log_slip[i]).exp();
         let singular: Vec<f64> = (0..inner).map(singular).collect();
-        let motion: Vec<f64> = nodes[..inner].iter().map(|node| self.motion(at, &passed, *node)).collect();
+        let motion = self.motion(at, &passed);
         let mut slopes = vec![0.0; n];
         for j in 0..inner {
             for (i, slope) in slopes.iter_mut().enumerate() {
                 *slope = -scale * model.elastic_depth_by_compression(fields, i, j) / fields.slip_depth[i];
             }
-            let along = self.along_annulus(&slopes);
+            let along = self.along_annulus(&slopes, &motion);
             for i in 0..inner {
-                let carried = along[i] / nodes[i] * motion[i] / at.slip_area;
-                matrix[(i, j)] = growth[(i, j)] + slopes[i] * singular[i] - carried;
+                matrix[(i, j)] =
+                    growth[(i, j)] + slopes[i] * singular[i] - self.carried(at, &motion, &along, i);
             }
             matrix[(inner, j)] =
                 slopes[inner] * fields.slip_depth[inner] / (fields.slip_depth[inner] - behind);
@@ -387,6 +401,11 @@ impl StickStage<'_> {
         }
     }
 
+    fn difference(&self) -> f64 {
+        let most = if self.moving.recedes() { OF_FIRST_SPRING } else { f64::INFINITY };
+        DIFFERENCE.min(most * self.model.operators.abel.nodes()[1])
+    }
+
     fn fill_by_difference(
         &self,
         column: usize,
@@ -411,7 +430,7 @@ impl StickStage<'_> {
         let (n, inner) = (model.springs(), model.springs() - 1);
         let target = &self.target.springs;
         let slopes: Vec<f64> = (0..n).map(|i| model.uniform_slip(fields, i) / fields.slip_depth[i]).collect();
-        let along = self.along_annulus(&slopes);
+        let along = self.model.along_annulus(&slopes);
         for i in 0..inner {
             let moved = along[i] * (at.slip_area - target.slip_area) / at.slip_area;
             matrix[(i, n + 1)] = slopes[i] * (1.0 + target.step * trial.cycle.growth[i]) - moved;
