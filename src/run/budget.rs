@@ -6,7 +6,7 @@
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::Clustering;
-use crate::solver::model::Schedule;
+use crate::solver::model::{Gross, Schedule};
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
 pub(in crate::run) const MOST_RAISED: usize = 600;
@@ -68,6 +68,10 @@ pub(in crate::run) fn springs_for(
     schedule: &Schedule,
     accuracy: f64,
 ) -> usize {
+    if Gross::follows(contact, schedule) {
+        let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
+        return (springs * (at / accuracy).powf(power)).clamp(FEWEST, MOST_REFINED as f64).ceil() as usize;
+    }
     if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip {
         let [springs, at] = SPRINGS_UNDER_FORCE;
         return (springs * (at / accuracy).sqrt()).clamp(FEWEST_BELOW_A_HUNDREDTH, MOST_REFINED as f64).ceil()
@@ -124,6 +128,10 @@ pub(in crate::run) fn tolerance_for(accuracy: f64) -> f64 {
 /// Springs with which a held normal force is followed to an accuracy: the edge of stick creeps over worn ground, to second order
 /// (docs/accuracy.md).
 const SPRINGS_UNDER_FORCE: [f64; 2] = [200.0, 1e-4];
+
+/// Springs with which gross slip is followed to an accuracy, and the power with which they grow: polynomials over the whole contact
+/// (docs/numerics.md).
+const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [21.0, 1e-4, 0.12];
 
 /// Substeps of a period that is sampled: the fewest and the most, the accuracy up to which the fewest serve, and the power with which they
 /// grow beyond: four times as many for a tenth of the error.

@@ -40,6 +40,9 @@ const ORDER: f64 = 2.0;
 const ORDER_INWARDS: f64 = 1.0;
 const LEAST_ORDER: f64 = 0.5;
 
+/// Least order that was seen in gross slip, with a mesh over the whole contact.
+const ORDER_IN_GROSS_SLIP: f64 = 3.0;
+
 /// Steps after which a companion is lost, with a known order and without: at the round-off of a coarse mesh a rate of nearly nothing may never be
 /// reached.
 const MOST_STEPS: [u64; 2] = [2000, 4000];
@@ -52,6 +55,8 @@ pub(in crate::run) struct Companions {
     smooth: bool,
     /// The largest order believed, where it is not known.
     order: f64,
+    /// Whether the contact is in gross slip, where the order is known and one companion serves.
+    gross: bool,
     /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
     every: usize,
     /// Those radii over the contact radius, where the edge of stick moves.
@@ -97,10 +102,11 @@ impl Companions {
             })
         };
         let first = coarser(1);
-        let second = (first.is_some() && !smooth).then(|| coarser(2)).flatten();
+        let gross = model.gross().is_some();
+        let second = (first.is_some() && !smooth && !gross).then(|| coarser(2)).flatten();
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
-        let radii = model.moving().map(|_| shown.map(|r| r / radius).collect());
+        let radii = (model.moving().is_some() || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
         let inwards = held || model.slides() || model.moving().is_some_and(MovingStick::recedes);
         let unseen = || model.unseen_depth().unwrap_or(0.0);
@@ -108,6 +114,7 @@ impl Companions {
             springs: model.springs(),
             smooth,
             order: if inwards { ORDER_INWARDS } else { ORDER },
+            gross,
             every,
             radii,
             limit: (limited || smooth).then(|| [model.limit_volume(), model.depth_scale()]),
@@ -146,6 +153,16 @@ impl Companions {
         let finite = |value: f64| if value.is_finite() { value } else { UNKNOWN };
         if self.smooth {
             return by_known_order(simulation, ratio, nearest);
+        }
+        if self.gross {
+            let by_rate = simulation.state().volume_by_rate;
+            let balance = (simulation.model().wear_volume(simulation.fields()) - by_rate).abs() / scale[0];
+            let springs = (nearest / (ratio.powf(ORDER_IN_GROSS_SLIP) - 1.0)).max(balance);
+            return Some(Shares {
+                springs: finite(springs),
+                order: ORDER_IN_GROSS_SLIP,
+                ..Shares::default()
+            });
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
         let substeps = first.unsampled.as_ref().map_or(0.0, |it| it.error(scale));
