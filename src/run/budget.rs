@@ -70,7 +70,7 @@ pub(in crate::run) fn springs_for(
 ) -> usize {
     if Gross::follows(contact, schedule) {
         let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
-        return (springs * (at / accuracy).powf(power)).clamp(FEWEST, MOST_REFINED as f64).ceil() as usize;
+        return (springs * (at / accuracy).powf(power)).clamp(FEWEST, MOST_IN_GROSS_SLIP).ceil() as usize;
     }
     if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip {
         let [springs, at] = SPRINGS_UNDER_FORCE;
@@ -120,6 +120,11 @@ impl Falling {
     }
 }
 
+/// The same in gross slip, where the errors of all steps add up in the worn volume, and steps cost nearly nothing.
+pub(in crate::run) fn tolerance_in_gross_slip(accuracy: f64) -> f64 {
+    OF_STEPS * tolerance_for(accuracy)
+}
+
 /// Tolerance of the time stepping, whose error is about as large, that leaves most of `accuracy` to the springs.
 pub(in crate::run) fn tolerance_for(accuracy: f64) -> f64 {
     OF_TIME * accuracy
@@ -131,7 +136,13 @@ const SPRINGS_UNDER_FORCE: [f64; 2] = [200.0, 1e-4];
 
 /// Springs with which gross slip is followed to an accuracy, and the power with which they grow: polynomials over the whole contact
 /// (docs/numerics.md).
-const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [21.0, 1e-4, 0.12];
+const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [17.0, 1e-4, 0.12];
+
+/// Most springs that are asked for there.
+const MOST_IN_GROSS_SLIP: f64 = 60.0;
+
+/// Part of the tolerance elsewhere that is that of gross slip.
+const OF_STEPS: f64 = 1e-2;
 
 /// Substeps of a period that is sampled: the fewest and the most, the accuracy up to which the fewest serve, and the power with which they
 /// grow beyond: four times as many for a tenth of the error.

@@ -62,7 +62,11 @@ impl Parts {
         let unlimited = model.slides() || path_dependent || by_energy;
         let limit = if unlimited { None } else { LimitingShape::under(model.contact(), conditions)? };
         check_stepper(numerics.stepper, &model)?;
-        let tolerance = numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy));
+        let chosen = match model.gross() {
+            Some(_) => budget::tolerance_in_gross_slip(numerics.accuracy),
+            None => budget::tolerance_for(numerics.accuracy),
+        };
+        let tolerance = numerics.tolerance.unwrap_or(chosen);
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
             StepperChoice::Implicit if model.gross().is_some() => Box::new(GrossSdirk::new(tolerance)),
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),

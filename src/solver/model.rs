@@ -63,6 +63,9 @@ const HIERARCHICAL: usize = 1000;
 /// Fewest springs on which the local polynomials fit.
 pub const FEWEST_SPRINGS: usize = 8;
 
+/// Most springs in gross slip: polynomials over the whole contact have no use for more.
+const MOST_IN_GROSS_SLIP: usize = 160;
+
 /// What a restart needs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
@@ -275,6 +278,12 @@ impl Model {
         store: &OperatorStore,
     ) -> Result<Self> {
         check_springs(springs)?;
+        if springs > MOST_IN_GROSS_SLIP {
+            let why = format!(
+                "{springs} springs are more than the {MOST_IN_GROSS_SLIP} that gross slip is followed with; 17 are its default"
+            );
+            return Err(Error::Inconsistent { what: "numerics.springs", why });
+        }
         let gross = Gross::new(contact, &schedule, springs)?;
         let half = contact.equivalent_profile().value(0.5 * contact.contact_radius());
         let unused = contact.at(contact.indentation(), contact.indentation() - half)?;

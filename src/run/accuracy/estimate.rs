@@ -43,6 +43,9 @@ const LEAST_ORDER: f64 = 0.5;
 /// Least order that was seen in gross slip, with a mesh over the whole contact.
 const ORDER_IN_GROSS_SLIP: f64 = 3.0;
 
+/// Error of the worn volume over the part of the stick radius that is lost again: 1.3 was seen.
+const SHARE_OF_STICK: f64 = 2.0;
+
 /// Steps after which a companion is lost, with a known order and without: at the round-off of a coarse mesh a rate of nearly nothing may never be
 /// reached.
 const MOST_STEPS: [u64; 2] = [2000, 4000];
@@ -155,14 +158,7 @@ impl Companions {
             return by_known_order(simulation, ratio, nearest);
         }
         if self.gross {
-            let by_rate = simulation.state().volume_by_rate;
-            let balance = (simulation.model().wear_volume(simulation.fields()) - by_rate).abs() / scale[0];
-            let springs = (nearest / (ratio.powf(ORDER_IN_GROSS_SLIP) - 1.0)).max(balance);
-            return Some(Shares {
-                springs: finite(springs),
-                order: ORDER_IN_GROSS_SLIP,
-                ..Shares::default()
-            });
+            return Some(in_gross_slip(simulation, snapshots, nearest, ratio, scale));
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
         let substeps = first.unsampled.as_ref().map_or(0.0, |it| it.error(scale));
@@ -226,6 +222,30 @@ fn by_known_order(simulation: &Simulation, ratio: f64, difference: f64) -> Optio
     let least = LEAST_OF_TIME * simulation.tolerance();
     let springs = (factor * difference / (ratio.powf(order) - 1.0)).max(least);
     Some(Shares { springs, order: CAUTIOUS_ORDER, ..Shares::default() })
+}
+
+/// The error in gross slip: by the companion, or what energy and profile disagree by.
+///
+/// Where springs came to stick again next to the axis, ever more springs do not help: the kink there is not resolved. That shows in a stick radius that
+/// falls, which under a held force it never does.
+fn in_gross_slip(
+    simulation: &Simulation,
+    snapshots: &[Snapshot],
+    difference: f64,
+    ratio: f64,
+    scale: [f64; 2],
+) -> Shares {
+    let (model, state) = (simulation.model(), simulation.state());
+    let balance = (model.wear_volume(simulation.fields()) - state.volume_by_rate).abs() / scale[0];
+    let error = (difference / (ratio.powf(ORDER_IN_GROSS_SLIP) - 1.0)).max(balance);
+    let error = if error.is_finite() { error } else { UNKNOWN };
+    let shares = Shares { order: ORDER_IN_GROSS_SLIP, ..Shares::default() };
+    let most = snapshots.iter().map(|it| it.stick_radius).fold(0.0, f64::max);
+    if most > 0.0 {
+        let lost = SHARE_OF_STICK * (1.0 - simulation.cycle().stick_radius / most).max(0.0);
+        return Shares { left_out: (difference.max(balance) + lost).min(UNKNOWN), ..shares };
+    }
+    Shares { springs: error, ..shares }
 }
 
 /// Distance of the origin from a straight line between two points, by the larger of the coordinates.

@@ -172,7 +172,9 @@ impl Model {
         let scale = half_space.normal_stiffness() * area.powf(nu - 1.0);
         let pressure = mesh.pressure(compression).into_iter().map(|p| scale * p).collect();
         let level = self.contact.slip_compression();
-        let stick = mesh.last_above(compression, level).and_then(|end| {
+        // At held indentation compressions only fall.
+        let pressed = gross.holds_force().then(|| mesh.last_above(compression, level)).flatten();
+        let stick = pressed.and_then(|end| {
             let within = mesh.up_to(end, compression).ok()?;
             Some(Stick { fraction: mesh.fraction(end), within })
         });
