@@ -70,7 +70,8 @@ pub(in crate::run) fn springs_for(
 ) -> usize {
     if Gross::follows(contact, schedule) {
         let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
-        return (springs * (at / accuracy).powf(power)).clamp(FEWEST, MOST_IN_GROSS_SLIP).ceil() as usize;
+        let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
+        return (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize;
     }
     if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip {
         let [springs, at] = SPRINGS_UNDER_FORCE;
@@ -140,6 +141,10 @@ const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [17.0, 1e-4, 0.12];
 
 /// Most springs that are asked for there.
 const MOST_IN_GROSS_SLIP: f64 = 60.0;
+
+/// The same below a grading at which more make the pressure at the edge grow.
+const SOFT: f64 = -0.6;
+const MOST_AT_SOFT_TOP: f64 = 13.0;
 
 /// Part of the tolerance elsewhere that is that of gross slip.
 const OF_STEPS: f64 = 1e-2;

@@ -330,6 +330,11 @@ impl Model {
             .map_or_else(CycleFields::default, |whole| self.gross_wear(gross, loading, compression, &whole).1)
     }
 
+    pub(super) fn gross_depth_at(&self, gross: &Gross, fields: &Fields, squared: f64) -> f64 {
+        let fraction = squared / fields.slip_area;
+        if fraction < 1.0 { gross.mesh.value(&fields.wear_depth, gross.mesh.place(fraction)) } else { 0.0 }
+    }
+
     pub(super) fn gross_volume(&self, gross: &Gross, fields: &Fields) -> f64 {
         PI * fields.slip_area * gross.mesh.area(&fields.wear_depth)
     }

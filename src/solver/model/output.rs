@@ -187,6 +187,9 @@ impl Model {
 
     /// Wear depth, m, at any `offset = r² - c²`, m², where the edge of stick left no worn ground behind.
     pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
+        if let Some(gross) = &self.gross {
+            return self.gross_depth_at(gross, fields, offset);
+        }
         let annulus = Annulus::new(self, state, fields);
         annulus.point(offset, &self.unworn.at(offset)).map_or(0.0, |point| point.grown())
     }

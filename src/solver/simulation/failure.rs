@@ -57,7 +57,7 @@ impl Simulation {
             why: format!(
                 "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}; \
                  ask for {} springs (numerics.springs; there were {springs}), {cure}",
-                2 * springs
+                if model.gross().is_some() { 3 * springs / 4 } else { 2 * springs }
             ),
         }
     }
