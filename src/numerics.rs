@@ -6,3 +6,4 @@ pub mod grid;
 pub mod linear;
 pub mod quadrature;
 pub mod roots;
+pub mod whole_contact;

@@ -1,10 +1,11 @@
-//! Contacts that slide as a whole: the closed form of the first rate, and runs for every indenter, grading and amplitude that is not refused.
+//! Gross slip: tables of a second code, the balance of energy, late laws in closed form, every indenter, grading and amplitude, and the transition.
 
 mod support;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use fretwear::Scene;
 use fretwear::contact::InitialContact;
 use fretwear::contact::half_space::HalfSpace;
 use fretwear::contact::indenter::{Indenter, power_law_factor};
@@ -12,18 +13,22 @@ use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::Coulomb;
 use fretwear::laws::loading::{Amplitude, Duration, Load, Loading};
 use fretwear::laws::motion::NormalOscillation;
-use fretwear::laws::wear::Archard;
+use fretwear::laws::wear::{Archard, PowerLaw};
 use fretwear::numerics::grid::Clustering;
+use fretwear::run::Results;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Outcome, Plan, Simulation};
-use fretwear::solver::stepper::{CycleJump, Sdirk};
+use fretwear::solver::stepper::{GrossSdirk, Sdirk};
+use support::Record;
 use support::laws::plain;
-use support::{Record, distance};
+use support::reference::Table;
 
 const EXPONENTS: [f64; 5] = [0.5, 1.0, 2.0, 4.0, 10.0];
 
+const GRADINGS: [f64; 6] = [-0.9, -0.5, -0.2, 0.0, 0.4, 0.9];
+
 /// Amplitudes over the one from which on the whole contact slides.
-const AMPLITUDES: [f64; 4] = [1.0001, 1.35, 3.0, 10.0];
+const AMPLITUDES: [f64; 3] = [2.0, 3.0, 10.0];
 
 /// The indenter `r^n` on a contact of radius one, stiffnesses and friction one, moved by `over` times the amplitude of full sliding; one cycle
 /// lasts `τ = 1`.
@@ -57,64 +62,235 @@ fn first_rate(contact: &InitialContact, exponent: f64, grading: f64) -> f64 {
     4.0 * contact.wear().coefficient * (force * contact.amplitude() - squares)
 }
 
+/// The tables' contact: first radius, indentation, stiffnesses and friction one, one cycle lasts `τ = 1`.
+fn scene(grading: f64, exponent: f64, amplitude: f64, tau: f64, load: &str) -> Scene {
+    let coefficient = power_law_factor(exponent, grading).recip();
+    let force = 2.0 * ((1.0 + grading).recip() - (exponent + 1.0 + grading).recip());
+    let text = format!(
+        "[indenter.power-law]\ncoefficient = {coefficient:e}\nexponent = {exponent:e}\n[half_space]\ngrading = {grading:e}\n\
+         normal_stiffness = 1.0\nstiffness_ratio = 1.0\n[friction.coulomb]\ncoefficient = 1.0\n[wear.archard]\ncoefficient = 0.25\n\
+         [loading]\n{load} = {force:e}\namplitude = {amplitude:e}\ncycles = {tau:e}\n[output]\nsnapshots = 3\n"
+    );
+    text.parse().unwrap()
+}
+
+fn last(values: Vec<f64>) -> f64 {
+    values[values.len() - 1]
+}
+
+fn run_of_table(table: &Table, row: &[String], load: &str) -> Results {
+    let [k, n, tau] = ["k", "n", "tau"].map(|name| table.number(row, name));
+    // The first table writes the definition into the name.
+    let amplitude: f64 = row[2].parse().unwrap();
+    scene(k, n, amplitude, tau, load).simulate().unwrap()
+}
+
+#[test]
+fn gross_slip_under_a_held_force_is_that_of_the_table() {
+    let table = Table::read("gross_slip_held_force.csv");
+    for row in &table.rows {
+        let run = run_of_table(&table, row, "normal_force");
+        let compare = |name: &str, value: f64| (value / table.number(row, name) - 1.0).abs();
+        let off = [
+            compare("V/(a0^2 d0)", last(run.worn_volume())),
+            compare("a/a0", last(run.contact_radius())),
+            compare("d/d0", last(run.indentation())),
+        ];
+        println!("{:?}: V, a, d off by {off:?}, estimate {:?}", &row[..4], run.error_estimate());
+        // Measured: 1.1e-5, 1.8e-5 and 5.5e-6, of which the table's own errors are up to 3e-5, 2e-6 and 2e-6.
+        assert!(off[0] < 3e-5 && off[1] < 4e-5 && off[2] < 2e-5, "{row:?}: {off:?}");
+        let by_energy = 0.25 * last(run.dissipated_energy()) / last(run.worn_volume()) - 1.0;
+        assert!(by_energy.abs() < 3e-5, "{row:?}: V by energy off by {by_energy:e}");
+        assert!(run.error_estimate().unwrap() < 2e-4);
+        assert!((last(run.normal_force()) / run.normal_force()[0] - 1.0).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn gross_slip_at_held_indentation_is_that_of_the_table() {
+    let table = Table::read("gross_slip_held_indentation.csv");
+    for row in &table.rows {
+        let run = run_of_table(&table, row, "initial_force");
+        let volume = last(run.worn_volume()) / table.number(row, "V/(a0^2 d0)") - 1.0;
+        let radius = last(run.contact_radius()) / table.number(row, "a/a0") - 1.0;
+        let force = last(run.normal_force()) - table.number(row, "F/(c_N d0 a0^(1+k))");
+        println!("{:?}: V, a off by {volume:.1e}, {radius:.1e}, force by {force:.1e}", &row[..4]);
+        // Measured: 5.1e-6, 5.1e-6 and 5.5e-6.
+        assert!(volume.abs() < 2e-5 && radius.abs() < 2e-5 && force.abs() < 2e-5, "{row:?}");
+    }
+}
+
+/// A ball of steel 52100 under a dead weight. All that is wanted of it late is known in closed form.
+#[test]
+fn a_ball_wears_by_energy_and_ends_on_the_law_of_uniform_pressure() {
+    const RATIO: f64 = 2.0 * (1.0 - 0.3) / (2.0 - 0.3);
+    let text = "[indenter.paraboloid]\nradius = \"6.35 mm\"\n[half_space]\ngrading = 0.0\nmodulus = \"210 GPa\"\npoisson_ratio = 0.3\n\
+                [counter_body]\ngrading = 0.0\nmodulus = \"210 GPa\"\npoisson_ratio = 0.3\n[friction.coulomb]\ncoefficient = 0.7\n\
+                [wear.dissipated-energy]\ncoefficient = \"4.23e-5 mm^3/J\"\n[loading]\nnormal_force = \"10 N\"\namplitude = \"25 um\"\n\
+                cycles = 1e7\n[output]\nat_cycles = [1000.0, 5000.0, 15432.8, 1e5, 1e6, 2e6]\n";
+    let run = text.parse::<Scene>().unwrap().simulate().unwrap();
+    let (volume, radius, energy) = (run.worn_volume(), run.contact_radius(), run.dissipated_energy());
+    let stiffness = 210e9 / (2.0 * 0.91);
+    let (ball, force, first) = (6.35e-3, 10.0, radius[0]);
+    for i in 1..volume.len() {
+        let balance = volume[i] / (4.23e-14 * energy[i]) - 1.0;
+        let (a, unworn) = (radius[i], radius[i] * radius[i] / (2.0 * ball));
+        let late = PI * a.powi(4) / (4.0 * ball) - 4.0 * force * a / (3.0 * PI * stiffness);
+        let law = volume[i] / late - 1.0;
+        // p(0) over the mean one: the first order in slip and in quasi-static wear, both by the displacement under uniform pressure.
+        let mean = force / (PI * a * a);
+        let centre = 2.0 * mean * a / stiffness;
+        let [edge, average] = [centre * 2.0 / PI, centre * 8.0 / (3.0 * PI)];
+        let by_slip = 0.7 / (RATIO * 25e-6) * (centre - average);
+        let by_wear = ((centre - average) - 2.0 * (edge - average)) / (2.0 * unworn);
+        let pressure = run.pressure()[i][0] / mean - 1.0;
+        println!(
+            "N {}: a/a0 {:.2}, balance {balance:.1e}, late law {law:.1e}, p(0) {pressure:.3e} of {:.3e}",
+            run.cycles()[i],
+            a / first,
+            by_slip + by_wear
+        );
+        // Measured: 1.6e-6 at most; from a million cycles on 7e-7, 7e-7 of the late law, and 0.2 % of the excess of the pressure.
+        assert!(balance.abs() < 4e-6, "{balance:e}");
+        if a > 9.0 * first {
+            assert!(balance.abs() < 1e-6 && law.abs() < 5e-6, "{balance:e} {law:e}");
+            assert!((pressure / (by_slip + by_wear) - 1.0).abs() < 0.01, "{pressure:e}");
+        }
+    }
+    assert!(radius[radius.len() - 1] > 15.0 * first && run.error_estimate().unwrap() < 1e-4);
+}
+
 #[test]
 fn the_first_rate_of_gross_slip_is_that_of_the_closed_form() {
-    for grading in [-0.2, 0.0, 0.4, 0.9] {
+    for grading in GRADINGS {
         for exponent in EXPONENTS {
             for over in AMPLITUDES {
                 let contact = contact(exponent, grading, over);
-                let model = model(&contact, &plain(&contact), 60).unwrap();
-                assert!(model.slides());
+                let model = model(&contact, &plain(&contact), 17).unwrap();
+                assert!(model.slides() && model.gross().is_some());
                 let state = model.initial_state().unwrap();
                 let fields = model.fields(&state);
                 let cycle = model.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields);
-                let expected = first_rate(&contact, exponent, grading);
-                let of_surface: f64 = model
-                    .operators()
-                    .depth_sum()
-                    .iter()
-                    .zip(cycle.growth.iter().zip(&fields.slip_depth))
-                    .map(|(weight, (growth, depth))| PI * fields.slip_area * weight * growth * depth)
-                    .sum();
-                let off = [cycle.volume, of_surface].map(|rate| (rate / expected - 1.0).abs());
-                println!("k {grading} n {exponent} U {over}: energy and surface off by {off:?}");
-                let unworn = fields.log_slip.iter().fold(0.0, |m: f64, value| m.max(value.abs()));
-                assert!(unworn < 2e-12, "k {grading} n {exponent} U {over}: slip {unworn:e}");
-                // Measured on so few springs: 1.2e-2 at k = -0.2, 6.7e-3 at 0, 2.0e-3 at 0.4 and 4e-4 at 0.9, where the core bears 4e-3, 1e-3, 6e-5
-                // and 2e-6 of the load.
-                let allowed = 5.0 * model.core_uncertainty() + 2.5e-3;
-                assert!(off.iter().all(|off| *off < allowed), "k {grading} n {exponent} U {over}: {off:?}");
+                let off = cycle.volume / first_rate(&contact, exponent, grading) - 1.0;
+                let unworn = model.wear_volume(&fields) / contact.indentation();
+                println!(
+                    "k {grading} n {exponent} U {over}: rate off by {off:.1e}, unworn volume {unworn:.1e}"
+                );
+                // Measured: 2e-2 and 2e-3 at k = -0.9, where a polynomial holds the first profile least; 3e-7 and 6e-6 at -0.5, 1e-9 from 0 on.
+                let allowed = if grading < -0.6 { 3e-2 } else { 2e-5 };
+                assert!(
+                    off.abs() < allowed && unworn.abs() < allowed,
+                    "k {grading} n {exponent} U {over}: {off:e} {unworn:e}"
+                );
             }
         }
     }
 }
 
+/// For `k < 0` nothing but this and the balance of energy judges: no second code was run there.
 #[test]
-fn gross_slip_runs_for_every_indenter_and_amplitude() {
-    for grading in [-0.2, 0.0, 0.4, 0.9] {
+fn gross_slip_runs_for_every_indenter_grading_and_amplitude() {
+    // At k = -0.9 pressure at the edge grows in some of them, and the run ends with that error.
+    for grading in &GRADINGS[1..] {
+        let grading = *grading;
         for exponent in EXPONENTS {
             for over in AMPLITUDES {
                 let contact = contact(exponent, grading, over);
-                let at = |springs: usize| {
-                    let model = model(&contact, &plain(&contact), springs).unwrap();
-                    let plan = Plan { outputs: vec![0.01, 0.1, 1.0], end: End::Cycles(1.0) };
-                    let mut seen = Record::default();
-                    let mut simulation =
-                        Simulation::new(model, Box::new(Sdirk::new(1e-3)), 1e-3, plan).unwrap();
-                    let outcome = simulation.run(&mut [&mut seen]);
-                    let place = format!("k {grading} n {exponent} U {over} on {springs} springs");
-                    let outcome = outcome.unwrap_or_else(|error| panic!("{place}: {error}"));
-                    assert_eq!(outcome, Outcome::End);
-                    seen.0.iter().map(|seen| seen.wear_volume).collect::<Vec<_>>()
-                };
-                let [few, many] = [at(60), at(90)];
-                let last = many[many.len() - 1];
-                let off = distance(&few, &many) / last;
-                println!("k {grading} n {exponent} U {over}: {many:?}, fewer springs off by {off:.1e}");
-                assert!(off < 1e-2, "k {grading} n {exponent} U {over}: {few:?} {many:?}");
-                assert!(many.windows(2).all(|pair| pair[1] >= pair[0]), "{many:?}");
+                for holds_normal_force in [true, false] {
+                    let conditions = Conditions { holds_normal_force, ..plain(&contact) };
+                    let at = |springs: usize| {
+                        let model = model(&contact, &conditions, springs).unwrap();
+                        let plan = Plan { outputs: vec![0.01, 0.1, 1.0], end: End::Cycles(1.0) };
+                        let mut seen = Record::default();
+                        let mut simulation =
+                            Simulation::new(model, Box::new(GrossSdirk::new(1e-6)), 1e-6, plan).unwrap();
+                        let outcome = simulation.run(&mut [&mut seen]);
+                        let place = format!("k {grading} n {exponent} U {over} on {springs} springs");
+                        let outcome = outcome.unwrap_or_else(|error| panic!("{place}: {error}"));
+                        assert_eq!(outcome, Outcome::End);
+                        let by_rate = simulation.state().volume_by_rate;
+                        let volumes = seen.0.iter().map(|seen| seen.wear_volume).collect::<Vec<_>>();
+                        let balance = volumes[volumes.len() - 1] / by_rate - 1.0;
+                        (volumes, balance)
+                    };
+                    let [(few, _), (many, balance)] = [12, 17].map(at);
+                    let off = many[many.len() - 1] / few[few.len() - 1] - 1.0;
+                    println!(
+                        "k {grading} n {exponent} U {over} force {holds_normal_force}: fewer springs off by {off:.1e}, balance {balance:.1e}"
+                    );
+                    assert!(off.abs() < 1e-3 && balance.abs() < 5e-4, "{few:?} {many:?} {balance:e}");
+                    assert!(many.windows(2).all(|pair| pair[1] >= pair[0]), "{many:?}");
+                }
             }
         }
+    }
+}
+
+/// Laws other than Archard's have no balance between springs and surface; there are coarser springs.
+#[test]
+fn gross_slip_wears_by_any_local_law() {
+    let contact = contact(2.0, 0.0, 3.0);
+    for [pressure_exponent, slip_exponent] in [[1.0, 0.5], [1.5, 1.0], [0.5, 1.0]] {
+        let wear = PowerLaw { coefficient: 0.1, pressure_exponent, slip_exponent };
+        let conditions = Conditions { wear: Arc::new(wear), holds_normal_force: true, ..plain(&contact) };
+        let volumes = [12, 17, 21].map(|springs| {
+            let model = model(&contact, &conditions, springs).unwrap();
+            let plan = Plan { outputs: vec![10.0], end: End::Cycles(10.0) };
+            let mut simulation = Simulation::new(model, Box::new(GrossSdirk::new(1e-6)), 1e-6, plan).unwrap();
+            simulation.run(&mut []).unwrap();
+            let volume = simulation.model().wear_volume(simulation.fields());
+            [volume, volume / simulation.state().volume_by_rate - 1.0]
+        });
+        println!("p^{pressure_exponent} s^{slip_exponent}: {volumes:?}");
+        let off = [volumes[0], volumes[1]].map(|it| (it[0] / volumes[2][0] - 1.0).abs());
+        assert!(off[0] < 5e-3 && off[1] < 1e-3 && volumes[1][1].abs() < 1e-3, "{volumes:?}");
+    }
+}
+
+/// On either side of the transition another mesh and another stepper are at work.
+#[test]
+fn worn_volumes_are_continuous_at_the_transition() {
+    for (load, tau) in [("initial_force", 1.0), ("normal_force", 0.3)] {
+        let [below, at, above] = [0.999, 1.0, 1.001].map(|amplitude| {
+            let run = scene(0.0, 2.0, amplitude, tau, load).simulate().unwrap();
+            last(run.worn_volume())
+        });
+        let [first, second] = [at - below, above - at];
+        println!("{load}: {below} {at} {above}, steps {first:.2e} {second:.2e}");
+        // In a thousandth of the amplitude the volume grows by half a percent; what one step differs from the other by: 3.6e-4 at most.
+        assert!(first > 0.0 && second > 0.0 && (first - second).abs() < 1e-3 * at, "{below} {at} {above}");
+    }
+}
+
+#[test]
+fn gross_slip_that_is_interrupted_goes_on_as_if_it_had_not_been() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(0.0, 2.0, 2.0, 10.0, "normal_force");
+    let (run, [whole, parts], interruptions) =
+        support::resume::whole_and_in_parts(&scene, folder.path(), 100);
+    println!("{interruptions} interruptions, {} steps", run.checkpoint().progress.steps);
+    assert!(interruptions >= 2 && whole == parts);
+}
+
+#[test]
+fn a_sphere_in_gross_slip_stops_at_its_equator_with_a_reason() {
+    let text = "[indenter.sphere]\nradius = 1.0\n[half_space]\ngrading = 0.0\nnormal_stiffness = 1.0\nstiffness_ratio = 1.0\n\
+                [friction.coulomb]\ncoefficient = 1.0\n[wear.archard]\ncoefficient = 1.0\n[loading]\nnormal_force = 1e-3\n\
+                amplitude = 1.0\ncycles = 1e6\n";
+    let error = text.parse::<Scene>().unwrap().simulate().unwrap_err().to_string();
+    println!("{error}");
+    assert!(error.contains("profile of the indenter ends"), "{error}");
+}
+
+#[test]
+fn explicit_steps_are_refused_in_gross_slip() {
+    for stepper in ["every-cycle", "cycle-jump"] {
+        let text = format!(
+            "{}[numerics]\nstepper = \"{stepper}\"\n",
+            scene(0.0, 2.0, 2.0, 1.0, "normal_force").text()
+        );
+        let error = text.parse::<Scene>().unwrap().simulate().unwrap_err().to_string();
+        assert!(error.contains("does not follow gross slip"), "{error}");
     }
 }
 
@@ -145,35 +321,4 @@ fn gross_slip_under_normal_oscillation_wears_from_the_first_cycle() {
         );
         assert!(volume > 0.0 && (volume / state.volume_by_rate - 1.0).abs() < 2e-2, "{volume}");
     }
-}
-
-/// Beside Runge-Kutta's explicit steps, and with a held force.
-#[test]
-fn explicit_steps_and_a_held_force_serve_gross_slip_on_a_flat_indenter() {
-    let contact = contact(4.0, 0.0, 1.35);
-    let plan = Plan { outputs: vec![0.1], end: End::Cycles(0.1) };
-    let at = |implicit: bool| {
-        let model = model(&contact, &plain(&contact), 60).unwrap();
-        let mut simulation = if implicit {
-            Simulation::new(model, Box::new(Sdirk::new(1e-4)), 1e-4, plan.clone()).unwrap()
-        } else {
-            Simulation::new(model, Box::new(CycleJump::default()), 1e-4, plan.clone()).unwrap()
-        };
-        simulation.run(&mut []).unwrap();
-        simulation.model().wear_volume(simulation.fields())
-    };
-    let [implicit, explicit] = [at(true), at(false)];
-    println!("implicit {implicit}, explicit {explicit}");
-    assert!((implicit / explicit - 1.0).abs() < 1e-3, "{implicit} {explicit}");
-    let held = Conditions { holds_normal_force: true, ..plain(&contact) };
-    let model = model(&contact, &held, 60).unwrap();
-    let stepper = Box::new(Sdirk::new(1e-4));
-    let mut simulation = Simulation::new(model, stepper, 1e-4, plan.clone()).unwrap();
-    simulation.run(&mut []).unwrap();
-    let volume = simulation.model().wear_volume(simulation.fields());
-    let force = simulation.model().normal_force(simulation.fields());
-    println!("held force {volume} {force}");
-    assert!((force / contact.normal_force() - 1.0).abs() < 1e-9, "{force}");
-    let by_rate = simulation.state().volume_by_rate;
-    assert!((volume / by_rate - 1.0).abs() < 1e-2, "{volume} {by_rate}");
 }

@@ -6,7 +6,7 @@
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::Clustering;
-use crate::solver::model::{Model, MovingStick, Schedule};
+use crate::solver::model::{Gross, Model, MovingStick, Schedule};
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
 pub(in crate::run) const MOST_RAISED: usize = 600;
@@ -70,6 +70,11 @@ pub(in crate::run) fn springs_for(
     schedule: &Schedule,
     accuracy: f64,
 ) -> usize {
+    if Gross::follows(contact, schedule) {
+        let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
+        let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
+        return (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize;
+    }
     if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip {
         let [springs, at] = SPRINGS_UNDER_FORCE;
         return (springs * (at / accuracy).sqrt()).clamp(FEWEST_BELOW_A_HUNDREDTH, MOST_REFINED as f64).ceil()
@@ -119,14 +124,35 @@ impl Falling {
 }
 
 /// Tolerance of the time stepping, whose error is about as large, that leaves most of `accuracy` to the springs.
+///
+/// In gross slip the errors of all steps add up in the worn volume, and steps cost nearly nothing.
 pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
     let loses_stick = model.slides() && model.moving().is_some_and(MovingStick::recedes);
-    accuracy * if loses_stick { OF_TIME_LOSING_STICK } else { OF_TIME }
+    accuracy
+        * match model.gross() {
+            Some(_) => OF_STEPS * OF_TIME,
+            None if loses_stick => OF_TIME_LOSING_STICK,
+            None => OF_TIME,
+        }
 }
 
 /// Springs with which a held normal force is followed to an accuracy: the edge of stick creeps over worn ground, to second order
 /// (docs/accuracy.md).
 const SPRINGS_UNDER_FORCE: [f64; 2] = [200.0, 1e-4];
+
+/// Springs with which gross slip is followed to an accuracy, and the power with which they grow: polynomials over the whole contact
+/// (docs/numerics.md).
+const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [17.0, 1e-4, 0.12];
+
+/// Most springs that are asked for there.
+const MOST_IN_GROSS_SLIP: f64 = 60.0;
+
+/// The same below a grading at which more make the pressure at the edge grow.
+const SOFT: f64 = -0.6;
+const MOST_AT_SOFT_TOP: f64 = 13.0;
+
+/// Part of the tolerance elsewhere that is that of gross slip.
+const OF_STEPS: f64 = 1e-2;
 
 /// Substeps of a period that is sampled: the fewest and the most, the accuracy up to which the fewest serve, and the power with which they
 /// grow beyond: four times as many for a tenth of the error.

@@ -90,6 +90,9 @@ pub(super) fn model(
         let mut found = None;
         for clustering in clusterings {
             let model = Model::under(contact, schedule.clone(), springs, *clustering, store)?;
+            if model.gross().is_some() {
+                return Ok(model);
+            }
             if raises && model.slides() && springs < SPRINGS_TO_SLIDE {
                 springs = SPRINGS_TO_SLIDE;
                 continue 'springs;

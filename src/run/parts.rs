@@ -7,10 +7,15 @@ use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
+use crate::numerics::grid::Clustering;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
 use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
-use crate::solver::simulation::Plan;
-use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, Sdirk, Stepper};
+use crate::solver::simulation::{Plan, Simulation};
+use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossSdirk, Sdirk, Stepper};
+
+/// Springs and tolerance of the run that tells how far a contact in gross slip comes to reach, and what is added to that.
+const COARSE: (usize, f64) = (12, 1e-3);
+const MARGIN: f64 = 1.02;
 
 /// Everything that follows from a scene alone.
 pub(super) struct Parts {
@@ -31,8 +36,12 @@ impl Parts {
         wanted: Option<usize>,
         store: &OperatorStore,
     ) -> Result<Self> {
-        let parts = Self::on_any(scene, numerics, wanted, store)?;
+        let mut parts = Self::on_any(scene, numerics, wanted, store)?;
         check_sliding(&parts.model)?;
+        if parts.model.gross().is_some() {
+            let offsets = parts.model.gross_offsets(MARGIN * farthest_radius(&parts, store)?);
+            parts.model = parts.model.shown_at(offsets);
+        }
         Ok(parts)
     }
 
@@ -56,6 +65,7 @@ impl Parts {
         let tolerance =
             numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy, &model));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
+            StepperChoice::Implicit if model.gross().is_some() => Box::new(GrossSdirk::new(tolerance)),
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
             StepperChoice::Implicit if model.wears_smoothly() => Box::new(Bdf::new(tolerance)),
@@ -66,6 +76,20 @@ impl Parts {
             super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
         Ok(Self { model, stepper, tolerance, plan, limit })
     }
+}
+
+/// Contact radius, m, to which gross slip leads, by a coarse run.
+fn farthest_radius(parts: &Parts, store: &OperatorStore) -> Result<f64> {
+    let (springs, tolerance) = COARSE;
+    let (contact, schedule) = (parts.model.contact(), parts.model.schedule().clone());
+    let model = Model::under(contact, schedule, springs, Clustering::Cubic, store)?;
+    let plan = Plan { outputs: vec![], end: parts.plan.end };
+    let mut coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
+    coarse.run(&mut []).map_err(|error| match error {
+        Error::NotConverged { why, .. } => Error::Inconsistent { what: "loading", why },
+        other => other,
+    })?;
+    Ok(coarse.model().contact_radius(coarse.state()))
 }
 
 /// Refuses contacts in which nothing slips and so nothing wears, where the first cycle tells.
@@ -81,7 +105,7 @@ fn check_regime(scene: &Scene, contact: &InitialContact) -> Result<()> {
 /// Refuses too few springs for a mesh that reaches nearly to the axis.
 fn check_sliding(model: &Model) -> Result<()> {
     let springs = model.springs();
-    if !model.slides() || springs >= SPRINGS_TO_SLIDE {
+    if !model.slides() || model.gross().is_some() || springs >= SPRINGS_TO_SLIDE {
         return Ok(());
     }
     let why = format!(
@@ -92,7 +116,15 @@ fn check_sliding(model: &Model) -> Result<()> {
 
 /// Refuses explicit steps where the edge of stick moves.
 fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
-    if model.moving().is_none() || stepper == StepperChoice::Implicit {
+    if stepper == StepperChoice::Implicit {
+        return Ok(());
+    }
+    if model.gross().is_some() {
+        let why =
+            format!("{:?} does not follow gross slip; leave it out or write \"implicit\"", stepper.name());
+        return Err(Error::Inconsistent { what: "numerics.stepper", why });
+    }
+    if model.moving().is_none() {
         return Ok(());
     }
     Err(Error::Inconsistent {

@@ -204,6 +204,7 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
         return None;
     }
     let by_depth = model.wear_volume(simulation.fields());
-    let by_rate = (state.volume_by_rate - by_depth).abs() / model.limit_volume();
+    let whole = if model.gross().is_some() { by_depth } else { model.limit_volume() };
+    let by_rate = (state.volume_by_rate - by_depth).abs() / whole;
     Some(by_rate.max(model.core_uncertainty()).max(model.unseen_depth().unwrap_or(0.0)))
 }

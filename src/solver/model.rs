@@ -14,6 +14,7 @@ mod cycle;
 mod derivatives;
 mod envelope;
 mod first_force;
+mod gross;
 mod jacobian;
 mod loops;
 mod motion;
@@ -40,6 +41,7 @@ use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
 pub use cycle::CycleFields;
 use envelope::Envelope;
+pub use gross::{Gross, GrossRates};
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
 pub use moving::{MovingStick, StickEdge, StickStage, StickTarget, StickTrial};
@@ -60,6 +62,9 @@ const HIERARCHICAL: usize = 1000;
 
 /// Fewest springs on which the local polynomials fit.
 pub const FEWEST_SPRINGS: usize = 8;
+
+/// Most springs in gross slip: polynomials over the whole contact have no use for more.
+const MOST_IN_GROSS_SLIP: usize = 160;
 
 /// What a restart needs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -147,6 +152,7 @@ pub struct Model {
     moving: Option<MovingStick>,
     depth_scale: f64,
     slides: bool,
+    gross: Option<Gross>,
 }
 
 impl Model {
@@ -182,6 +188,9 @@ impl Model {
         clustering: Clustering,
         store: &OperatorStore,
     ) -> Result<Self> {
+        if Gross::follows(contact, &schedule) {
+            return Self::in_gross_slip(contact, schedule, springs, store);
+        }
         let backend = Self::backend(contact, &schedule, springs);
         let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
         let Envelope { contact, slides, surplus } = if uniform {
@@ -198,13 +207,7 @@ impl Model {
                 contact.amplitude()
             ),
         })?;
-        if springs < FEWEST_SPRINGS {
-            return Err(Error::OutOfRange {
-                name: "numerics.springs",
-                value: springs as f64,
-                range: "[8, inf)",
-            });
-        }
+        check_springs(springs)?;
         let profile = contact.equivalent_profile();
         let grading = profile.grading();
         let moving = MovingStick::new(&schedule, contact, slides)?;
@@ -261,7 +264,37 @@ impl Model {
             moving,
             depth_scale,
             slides,
+            gross: None,
         })
+    }
+
+    /// A contact in gross slip, on a mesh of its own.
+    ///
+    /// That of the slip annulus is the smallest there is, for a contact in partial slip; nothing uses it.
+    fn in_gross_slip(
+        contact: &InitialContact,
+        schedule: Schedule,
+        springs: usize,
+        store: &OperatorStore,
+    ) -> Result<Self> {
+        check_springs(springs)?;
+        if springs > MOST_IN_GROSS_SLIP {
+            let why = format!(
+                "{springs} springs are more than the {MOST_IN_GROSS_SLIP} that gross slip is followed with; 17 are its default"
+            );
+            return Err(Error::Inconsistent { what: "numerics.springs", why });
+        }
+        let gross = Gross::new(contact, &schedule, springs)?;
+        let half = contact.equivalent_profile().value(0.5 * contact.contact_radius());
+        let unused = contact.at(contact.indentation(), contact.indentation() - half)?;
+        let plain = Conditions::plain(*contact.friction(), *contact.wear());
+        let unused_schedule = Schedule::new(&unused, &plain, Resolution::default())?;
+        let mut model = Self::under(&unused, unused_schedule, FEWEST_SPRINGS, Clustering::Cubic, store)?;
+        let zone = StickZone { slip_compression: contact.slip_compression(), ..StickZone::default() };
+        (model.contact, model.schedule, model.stick_zone) = (contact.clone(), schedule, zone);
+        (model.slides, model.depth_scale, model.gross) = (true, contact.indentation(), Some(gross));
+        let offsets = model.gross_offsets(contact.contact_radius());
+        Ok(model.shown_at(offsets))
     }
 
     /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
@@ -286,13 +319,16 @@ impl Model {
         self.schedule.wears_smoothly() && self.moving.is_none() && !self.slides
     }
 
+    /// Whether wear goes on as long as the contact is moved: in gross slip under a held normal force.
+    pub fn wears_without_end(&self) -> bool {
+        self.moving.as_ref().is_some_and(MovingStick::slides)
+            || self.gross.as_ref().is_some_and(Gross::holds_force)
+    }
+
     /// Relative uncertainty of the worn volume by the core that stays unworn in gross slip; zero where a stick zone is left.
     pub fn core_uncertainty(&self) -> f64 {
-        if self.slides && self.moving.as_ref().is_none_or(MovingStick::slides) {
-            envelope::core_share(self.contact.half_space().grading())
-        } else {
-            0.0
-        }
+        let core = self.gross.is_none() && self.moving.as_ref().is_none_or(MovingStick::slides);
+        if self.slides && core { envelope::core_share(self.contact.half_space().grading()) } else { 0.0 }
     }
 
     /// What acts when.
@@ -322,7 +358,7 @@ impl Model {
 
     /// Number of springs, the contact edge included.
     pub fn springs(&self) -> usize {
-        self.operators.abel.len()
+        self.gross.as_ref().map_or(self.operators.abel.len(), Gross::springs)
     }
 
     /// Largest depth of the limit on the springs, m: what tolerances are relative to.
@@ -345,6 +381,9 @@ impl Model {
     /// # Errors
     /// [`Error::NotConverged`] if no edge is found.
     pub fn initial_state(&self) -> Result<State> {
+        if let Some(gross) = &self.gross {
+            return Ok(self.gross_initial_state(gross));
+        }
         let stick = self.moving.as_ref().map(|moving| moving.start(self)).transpose()?;
         let stick_zone = self.stick_zone_in(stick.as_ref(), &self.schedule.loading(0.0, 0.0));
         let guess = self.contact.contact_radius().powi(2) - stick_zone.stick_area;
@@ -484,6 +523,9 @@ impl Model {
 
     /// The fields of a state.
     pub fn fields(&self, state: &State) -> Fields {
+        if let Some(gross) = &self.gross {
+            return self.gross_fields(gross, state);
+        }
         let mut fields = Fields::default();
         let loading = self.schedule.loading(state.cycles, state.cycles);
         let stick_zone = self.stick_zone_in(state.stick.as_ref(), &loading);
@@ -534,4 +576,9 @@ impl Model {
     fn density_ratio(&self, values: &UnwornValues) -> f64 {
         (-self.mu() * values.logarithm).exp()
     }
+}
+
+fn check_springs(springs: usize) -> Result<()> {
+    let (name, value, range) = ("numerics.springs", springs as f64, "[8, inf)");
+    if springs < FEWEST_SPRINGS { Err(Error::OutOfRange { name, value, range }) } else { Ok(()) }
 }

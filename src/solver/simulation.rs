@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::error::{Error, Result};
 use crate::laws::loading::has_come;
 use crate::numerics::grid::Clustering;
-use crate::solver::model::{CycleFields, Fields, Model, MovingStick, RadialFields, State};
+use crate::solver::model::{CycleFields, Fields, Model, RadialFields, State};
 use crate::solver::stepper::{self, Stepper};
 
 mod failure;
@@ -173,7 +173,7 @@ impl Simulation {
     /// [`Error::Inconsistent`] if the method of stepping does not follow the edge of stick of the model as it moves or stays; those of
     /// [`Model::initial_state`].
     pub fn new(model: Model, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Result<Self> {
-        stepper::check_stick(&*stepper, model.moving().is_some())?;
+        stepper::check_model(&*stepper, &model)?;
         let state = model.initial_state()?;
         let fields = model.fields(&state);
         let mut first_rate = 0.0_f64;
@@ -356,7 +356,7 @@ impl Simulation {
     pub fn outcome(&self) -> Option<Outcome> {
         match self.plan.end {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
-            End::Rate(_) if self.model.moving().is_some_and(MovingStick::slides) => {
+            End::Rate(_) if self.model.wears_without_end() => {
                 let tau = self.state.cycles * self.model.contact().tau_per_cycle();
                 (tau >= SHOWN_UNENDING).then_some(Outcome::Unending)
             }
@@ -490,9 +490,11 @@ impl Simulation {
             _ => KINKED_INTERPOLATION,
         };
         let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
+        let gross = self.model.gross().is_some();
         let mut pairs = depth.iter().zip(&self.depth);
         let grew = pairs.all(|(now, before)| *now >= before - allowed);
-        if !(grew && fields.are_physical() && self.compressions_are_possible(&state)) {
+        let possible = gross || (fields.are_physical() && self.compressions_are_possible(&state));
+        if !(grew && possible) {
             self.healed_at =
                 depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed).map(|at| {
                     let stick = self.model.contact().stick_radius().unwrap_or_default();
@@ -551,6 +553,9 @@ impl Simulation {
 
 /// Worn volume per cycle, m³, at least what is certainly worn.
 fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
+    if model.gross().is_some() {
+        return cycle.volume;
+    }
     let nodes = model.operators().nodes();
     let wear = |i: usize| (cycle.growth[i] * fields.slip_depth[i]).max(0.0);
     let last = cycle.growth.len().min(fields.slip_depth.len());

@@ -4,6 +4,7 @@ mod bdf;
 mod contact;
 mod cycle_jump;
 mod every_cycle;
+mod gross;
 mod mixing;
 mod moving;
 mod newton;
@@ -14,6 +15,7 @@ mod tableau;
 pub use bdf::Bdf;
 pub use cycle_jump::CycleJump;
 pub use every_cycle::EveryCycle;
+pub use gross::GrossSdirk;
 pub use sdirk::Sdirk;
 
 use crate::error::{Error, Result};
@@ -60,6 +62,11 @@ pub trait Stepper {
         false
     }
 
+    /// Whether it steps contacts on the mesh of gross slip, and no others.
+    fn steps_gross_slip(&self) -> bool {
+        false
+    }
+
     /// Whether states within a step are known as well as that at its end, see [`Stepper::between`]; else steps have to land where they are wanted.
     fn interpolates(&self) -> bool {
         false
@@ -77,9 +84,15 @@ pub trait Stepper {
     }
 }
 
-/// Refuses a method that does not follow the edge of stick of a model that moves.
-pub(crate) fn check_stick(stepper: &dyn Stepper, moves: bool) -> Result<()> {
-    if stepper.follows_stick() || !moves {
+/// Refuses a method that does not follow the edge of stick of a model that moves, or is not that of its mesh.
+pub(crate) fn check_model(stepper: &dyn Stepper, model: &Model) -> Result<()> {
+    if stepper.steps_gross_slip() != model.gross().is_some() {
+        let why =
+            "does not step the mesh of this contact; GrossSdirk steps those in gross slip, and no others"
+                .into();
+        return Err(Error::Inconsistent { what: "numerics.stepper", why });
+    }
+    if stepper.follows_stick() || model.moving().is_none() {
         return Ok(());
     }
     Err(Error::Inconsistent {

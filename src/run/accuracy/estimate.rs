@@ -41,6 +41,12 @@ const ORDER_RECEDING: f64 = 3.0;
 const ORDER_INWARDS: f64 = 1.0;
 const LEAST_ORDER: f64 = 0.5;
 
+/// Least order that was seen in gross slip, with a mesh over the whole contact.
+const ORDER_IN_GROSS_SLIP: f64 = 3.0;
+
+/// Error of the worn volume over the part of the stick radius that is lost again: 1.3 was seen.
+const SHARE_OF_STICK: f64 = 2.0;
+
 /// Steps after which a companion is lost, with a known order and without: at the round-off of a coarse mesh a rate of nearly nothing may never be
 /// reached.
 const MOST_STEPS: [u64; 2] = [2000, 4000];
@@ -53,6 +59,8 @@ pub(in crate::run) struct Companions {
     smooth: bool,
     /// The largest order believed, where it is not known.
     order: f64,
+    /// Whether the contact is in gross slip, where the order is known and one companion serves.
+    gross: bool,
     /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
     every: usize,
     /// Those radii over the contact radius, where the edge of stick moves.
@@ -98,10 +106,11 @@ impl Companions {
             })
         };
         let first = coarser(1);
-        let second = (first.is_some() && !smooth).then(|| coarser(2)).flatten();
+        let gross = model.gross().is_some();
+        let second = (first.is_some() && !smooth && !gross).then(|| coarser(2)).flatten();
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
-        let radii = model.moving().map(|_| shown.map(|r| r / radius).collect());
+        let radii = (model.moving().is_some() || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
         let recedes = model.moving().is_some_and(MovingStick::recedes);
         let order = match held || model.slides() {
@@ -114,6 +123,7 @@ impl Companions {
             springs: model.springs(),
             smooth,
             order,
+            gross,
             every,
             radii,
             limit: (limited || smooth).then(|| [model.limit_volume(), model.depth_scale()]),
@@ -152,6 +162,9 @@ impl Companions {
         let finite = |value: f64| if value.is_finite() { value } else { UNKNOWN };
         if self.smooth {
             return by_known_order(simulation, ratio, nearest);
+        }
+        if self.gross {
+            return Some(in_gross_slip(simulation, snapshots, nearest, ratio, scale));
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
         let substeps = first.unsampled.as_ref().map_or(0.0, |it| it.error(scale));
@@ -215,6 +228,30 @@ fn by_known_order(simulation: &Simulation, ratio: f64, difference: f64) -> Optio
     let least = LEAST_OF_TIME * simulation.tolerance();
     let springs = (factor * difference / (ratio.powf(order) - 1.0)).max(least);
     Some(Shares { springs, order: CAUTIOUS_ORDER, ..Shares::default() })
+}
+
+/// The error in gross slip: by the companion, or what energy and profile disagree by.
+///
+/// Where springs came to stick again next to the axis, ever more springs do not help: the kink there is not resolved. That shows in a stick radius that
+/// falls, which under a held force it never does.
+fn in_gross_slip(
+    simulation: &Simulation,
+    snapshots: &[Snapshot],
+    difference: f64,
+    ratio: f64,
+    scale: [f64; 2],
+) -> Shares {
+    let (model, state) = (simulation.model(), simulation.state());
+    let balance = (model.wear_volume(simulation.fields()) - state.volume_by_rate).abs() / scale[0];
+    let error = (difference / (ratio.powf(ORDER_IN_GROSS_SLIP) - 1.0)).max(balance);
+    let error = if error.is_finite() { error } else { UNKNOWN };
+    let shares = Shares { order: ORDER_IN_GROSS_SLIP, ..Shares::default() };
+    let most = snapshots.iter().map(|it| it.stick_radius).fold(0.0, f64::max);
+    if most > 0.0 {
+        let lost = SHARE_OF_STICK * (1.0 - simulation.cycle().stick_radius / most).max(0.0);
+        return Shares { left_out: (difference.max(balance) + lost).min(UNKNOWN), ..shares };
+    }
+    Shares { springs: error, ..shares }
 }
 
 /// Distance of the origin from a straight line between two points, by the larger of the coordinates.

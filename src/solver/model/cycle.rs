@@ -76,6 +76,9 @@ struct Surface {
 impl Model {
     /// What a cycle does to the contact whose fields are given.
     pub fn cycle(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> CycleFields {
+        if let Some(gross) = &self.gross {
+            return self.gross_cycle(gross, loading, compression);
+        }
         let mut cycle = self.local_cycle(loading, compression, fields);
         if let Some(factor) = self.factor_at_contact(loading, fields, &cycle) {
             cycle.growth.iter_mut().for_each(|growth| *growth *= factor);

@@ -450,6 +450,9 @@ impl Model {
 
     /// Indentation in a state, m.
     pub fn indentation(&self, state: &State) -> f64 {
+        if let Some(gross) = &self.gross {
+            return self.gross_indentation(gross, state);
+        }
         match (&self.moving, &state.stick) {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
                 let loading = self.schedule.loading(state.cycles, state.cycles);

@@ -39,6 +39,10 @@ pub struct RadialFields {
 impl Model {
     /// The same contact on the same springs, with the radii of the output at `r² - c²`, m², increasing, instead of its own.
     pub(crate) fn shown_at(mut self, offsets: Vec<f64>) -> Self {
+        if self.gross.is_some() {
+            self.output = OutputRadii { unworn: vec![], offsets };
+            return self;
+        }
         self.output =
             OutputRadii { unworn: offsets.iter().map(|offset| self.unworn.at(*offset)).collect(), offsets };
         self
@@ -46,6 +50,9 @@ impl Model {
 
     /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
     pub fn wear_volume(&self, fields: &Fields) -> f64 {
+        if let Some(gross) = &self.gross {
+            return self.gross_volume(gross, fields);
+        }
         self.volume(fields.slip_area, &fields.wear_depth)
     }
 
@@ -67,7 +74,7 @@ impl Model {
     /// indenter is not a table, or the edge of stick moves.
     pub fn unseen_depth(&self) -> Option<f64> {
         self.contact.equivalent_profile().end_of_table()?;
-        if self.moving.is_some() {
+        if self.moving.is_some() || self.gross.is_some() {
             return None;
         }
         let (mesh, count) = (self.operators.abel.mesh(), self.springs());
@@ -87,6 +94,9 @@ impl Model {
 
     /// Normal force, N [S, Eq. (22)].
     pub fn normal_force(&self, fields: &Fields) -> f64 {
+        if let Some(gross) = &self.gross {
+            return self.gross_normal_force(gross, fields);
+        }
         let slipping = fields.slip_area
             * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density);
         self.contact.half_space().normal_stiffness() * (2.0 * fields.stick_zone.stick_load + slipping)
@@ -122,6 +132,12 @@ impl Model {
         let half_space = self.contact.half_space();
         let q = 1.0 + half_space.grading();
         let limit = self.contact.friction().coefficient / half_space.stiffness_ratio();
+        if let Some(gross) = &self.gross {
+            let moved: Vec<f64> = compression.iter().map(|q| displacement.min(limit * q)).collect();
+            return half_space.stiffness_ratio()
+                * half_space.normal_stiffness()
+                * self.gross_sum(gross, fields, &moved);
+        }
         let stuck = 2.0 * displacement * fields.stick_zone.stick_area.powf(0.5 * q) / q;
         let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
         let moved: f64 =
@@ -165,11 +181,15 @@ impl Model {
     }
 
     fn reaches_the_middle(&self, stick_radius: f64) -> bool {
-        self.slides && stick_radius < MIDDLE * self.stick_zone.stick_area.sqrt()
+        self.gross.is_some() && stick_radius == 0.0
+            || self.slides && stick_radius < MIDDLE * self.stick_zone.stick_area.sqrt()
     }
 
     /// Wear depth, m, at any `offset = r² - c²`, m², where the edge of stick left no worn ground behind.
     pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
+        if let Some(gross) = &self.gross {
+            return self.gross_depth_at(gross, fields, offset);
+        }
         let annulus = Annulus::new(self, state, fields);
         annulus.point(offset, &self.unworn.at(offset)).map_or(0.0, |point| point.grown())
     }
@@ -177,6 +197,9 @@ impl Model {
     /// Wear depth, m, by which a step is accepted: at the output where the edge of stick leaves worn ground behind, else at the springs of the limit
     /// that are not hidden, or at one in several where they are many; at least zero.
     pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
+        if self.gross.is_some() {
+            return vec![];
+        }
         if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
             return self.radial_wear_depth(state, fields);
         }
@@ -192,6 +215,9 @@ impl Model {
 
     /// Wear depth at [`Model::radii`], m.
     pub fn radial_wear_depth(&self, state: &State, fields: &Fields) -> Vec<f64> {
+        if let Some(gross) = &self.gross {
+            return self.gross_radial_fields(gross, state).wear_depth;
+        }
         let annulus = Annulus::new(self, state, fields);
         let depth =
             |(i, (offset, unworn))| annulus.wear_depth(i, offset, annulus.point(offset, unworn).as_ref());
@@ -200,6 +226,9 @@ impl Model {
 
     /// The fields at [`Model::radii`], by the local polynomials between the springs.
     pub fn radial_fields(&self, state: &State, fields: &Fields, cycle: &CycleFields) -> RadialFields {
+        if let Some(gross) = &self.gross {
+            return self.gross_radial_fields(gross, state);
+        }
         let mesh = self.operators.abel.mesh();
         let nu = 1.0 - self.mu();
         // Slip over slip depth is smooth along the annulus.

@@ -7,6 +7,9 @@ use crate::solver::model::Model;
 /// What of a run does not converge.
 pub(super) const STEPPING: &str = "time stepping";
 
+/// Contact radius, over the present one, that is about to be reached.
+const AHEAD: f64 = 1.02;
+
 /// Why a run cannot begin.
 pub(super) fn nothing_wears(model: &Model, finite: bool) -> Error {
     let contact = model.contact();
@@ -53,6 +56,12 @@ impl Simulation {
             format!(", for at the radius {radius:.4e} m wear depth would become less")
         });
         let springs = model.springs();
+        let why = match model.contact().indenter().profile(AHEAD * edge) {
+            height if model.gross().is_some() && !height.is_finite() => {
+                "the profile of the indenter ends there"
+            }
+            _ => why,
+        };
         let cure = if cycles > 0.0 {
             format!("or end before (loading.tau = {tau:.3e})")
         } else {
@@ -63,7 +72,7 @@ impl Simulation {
             why: format!(
                 "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}; \
                  ask for {} springs (numerics.springs; there were {springs}), {cure}",
-                2 * springs
+                if model.gross().is_some() { 3 * springs / 4 } else { 2 * springs }
             ),
         }
     }

@@ -1,0 +1,373 @@
+//! Gross slip: every spring slips, from the axis to the contact edge, on a mesh fitted to that edge and moving with it.
+//!
+//! With the compressions `q` at fixed fractions `ξ` of the contact's area `A = a²`, the displacement of the surface `u = F q` and its profile
+//! `f = d - u` depend on `ξ` alone. At a fixed radius `∂f/∂N` is the depth `W` worn in a cycle, so that on the moving mesh
+//!
+//! ```text
+//! d' - F q' + (A'/A) ξ ∂u/∂ξ = W(p, s),     s = (μ_f/M) (q_c - u),     q_c = M U/μ_f
+//! d - u(a) = f_0(a),     F_N = c_N A^ν ∫_0^1 ξ^(ν-1) q dξ  or  d held
+//! ```
+//!
+//! The last two give `A` and `d` by the compressions, and their rates with those of the compressions: an ordinary differential equation.
+//!
+//! Under a held force next to the transition the axis may be pressed so hard, as the ground around it wears, that springs stick there again. Then
+//! `q_c - u` is the transform of `(q_c - q)₊`, zero within the stick radius.
+
+use std::f64::consts::PI;
+
+use super::schedule::{CycleLoading, Schedule};
+use super::{CycleFields, Fields, Model, RadialFields, State, StickZone};
+use crate::contact::InitialContact;
+use crate::contact::stick_slip::Regime;
+use crate::error::{Error, Result};
+use crate::laws::wear::Rubbing;
+use crate::numerics::linear::dot;
+use crate::numerics::whole_contact::{Place, WholeContact};
+
+/// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
+const SHOWN: [usize; 2] = [64, 128];
+
+/// The mesh of a contact in gross slip.
+#[derive(Debug, Clone)]
+pub struct Gross {
+    mesh: WholeContact,
+    /// `A^ν ∫ ξ^(ν-1) q dξ`, m^(2+k), of the first contact, where the force is held.
+    held_load: Option<f64>,
+    /// The same of the first contact in any case.
+    first_load: f64,
+    /// `F⁻¹ 1` at the inner nodes.
+    lifted: Vec<f64>,
+}
+
+/// A contact in gross slip.
+#[derive(Debug, Clone)]
+struct Whole {
+    area: f64,
+    indentation: f64,
+    /// `F q`, m, at all nodes.
+    elastic: Vec<f64>,
+    /// Pressure, Pa, at the inner nodes.
+    pressure: Vec<f64>,
+    /// `q_c - u`, m, at the inner nodes.
+    slip_depth: Vec<f64>,
+    stick: Option<Stick>,
+}
+
+/// Springs next to the axis that stick.
+#[derive(Debug, Clone)]
+struct Stick {
+    /// `c²/a²`.
+    fraction: f64,
+    /// `ξ`, weight of `∫ ξ^(ν-1) dξ`, and `q`.
+    within: Vec<[f64; 3]>,
+}
+
+/// Rates per cycle of a contact in gross slip.
+#[derive(Debug)]
+pub struct GrossRates {
+    /// Of the compressions, m, shape `(springs - 1,)`.
+    pub compression: Vec<f64>,
+    /// Energy that friction dissipates, J.
+    pub dissipation: f64,
+    /// Worn volume, m³.
+    pub volume: f64,
+    /// Radius within which springs stick, m.
+    pub stick_radius: f64,
+}
+
+impl Gross {
+    /// Whether a contact is in gross slip from the first cycle on, to and fro at one amplitude under Coulomb's friction, and wears by a local law.
+    pub fn follows(contact: &InitialContact, schedule: &Schedule) -> bool {
+        contact.regime() == Regime::FullSliding
+            && schedule.is_uniform()
+            && !schedule.resolves()
+            && schedule.conditions().wear.spreading().is_none()
+    }
+
+    pub(super) fn new(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Result<Self> {
+        let grading = contact.half_space().grading();
+        let mesh = WholeContact::new(grading, springs - 1)?;
+        let first = unworn_compression(contact, &mesh);
+        let first_load = contact.contact_radius().powf(1.0 + grading) * mesh.load(&first);
+        let mut lifted = vec![1.0; mesh.inner()];
+        mesh.solve_profile(&mut lifted);
+        let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
+        Ok(Self { mesh, held_load, first_load, lifted })
+    }
+
+    pub(super) fn springs(&self) -> usize {
+        self.mesh.inner() + 1
+    }
+
+    /// Whether the normal force is held, so that wear never ends.
+    pub fn holds_force(&self) -> bool {
+        self.held_load.is_some()
+    }
+}
+
+/// `q_0 = d - g_0` inside the first contact, m.
+fn unworn_compression(contact: &InitialContact, mesh: &WholeContact) -> Vec<f64> {
+    let inner = &mesh.fractions()[..mesh.inner()];
+    let profile = contact.equivalent_profile();
+    inner.iter().map(|x| contact.indentation() - profile.value(contact.contact_radius() * x.sqrt())).collect()
+}
+
+impl Stick {
+    /// `(sin πν/π) ∫_0^(c²) s^(ν-1) (q - q_c) (t-s)^(-ν) ds` at a fraction `ξ` outside.
+    fn missing(&self, nu: f64, slip_compression: f64, fraction: f64) -> f64 {
+        let parts = self
+            .within
+            .iter()
+            .map(|[x, weight, q]| weight * (q - slip_compression) * (fraction - x).powf(-nu));
+        (PI * nu).sin() / PI * parts.sum::<f64>()
+    }
+}
+
+impl Model {
+    /// The mesh of gross slip, where the contact is in gross slip and that is followed on a mesh of its own.
+    pub fn gross(&self) -> Option<&Gross> {
+        self.gross.as_ref()
+    }
+
+    /// Radii of the output, m², squared, of a contact that grows to a radius, m.
+    pub fn gross_offsets(&self, last: f64) -> Vec<f64> {
+        let [within, beyond] = SHOWN;
+        let first = self.contact.contact_radius();
+        let ratio = (last / first).max(1.0).ln() / beyond as f64;
+        let inside = (1..=within).map(|i| first * i as f64 / within as f64);
+        let outside = (1..=beyond).map(|i| first * (ratio * i as f64).exp());
+        inside.chain(outside.filter(|r| *r > first)).map(|r| r * r).collect()
+    }
+
+    pub(super) fn gross_initial_state(&self, gross: &Gross) -> State {
+        let compression = unworn_compression(&self.contact, &gross.mesh);
+        State {
+            slip_area: self.contact.contact_radius().powi(2),
+            compression_rate: vec![0.0; compression.len()],
+            compression,
+            least_stick_radius: f64::INFINITY,
+            ..State::default()
+        }
+    }
+
+    /// Everything that follows from the compressions; none where no contact has them.
+    fn whole(&self, gross: &Gross, compression: &[f64]) -> Option<Whole> {
+        let (half_space, indenter, mesh) = (self.contact.half_space(), self.contact.indenter(), &gross.mesh);
+        let nu = 0.5 * (1.0 + half_space.grading());
+        let elastic = mesh.profile(compression);
+        let at_edge = elastic[mesh.inner()];
+        let (area, indentation) = match gross.held_load {
+            Some(load) => {
+                let area = (load / mesh.load(compression)).powf(nu.recip());
+                (area, indenter.profile(area.sqrt()) + at_edge)
+            }
+            None => {
+                let held = self.contact.indentation();
+                (indenter.radius_at_height(held - at_edge).powi(2), held)
+            }
+        };
+        if !(area > 0.0 && area.is_finite() && indentation.is_finite()) {
+            return None;
+        }
+        let scale = half_space.normal_stiffness() * area.powf(nu - 1.0);
+        let pressure = mesh.pressure(compression).into_iter().map(|p| scale * p).collect();
+        let level = self.contact.slip_compression();
+        // At held indentation compressions only fall.
+        let pressed = gross.holds_force().then(|| mesh.last_above(compression, level)).flatten();
+        let stick = pressed.and_then(|end| {
+            let within = mesh.up_to(end, compression).ok()?;
+            Some(Stick { fraction: mesh.fraction(end), within })
+        });
+        let slip_depth = elastic.iter().zip(mesh.fractions()).take(mesh.inner());
+        let slip_depth = slip_depth.map(|(u, x)| self.slip_depth_at(stick.as_ref(), *u, *x)).collect();
+        Some(Whole { area, indentation, elastic, pressure, slip_depth, stick })
+    }
+
+    fn slip_depth_at(&self, stick: Option<&Stick>, elastic: f64, fraction: f64) -> f64 {
+        let level = self.contact.slip_compression();
+        match stick {
+            Some(stick) if fraction <= stick.fraction => 0.0,
+            Some(stick) => level - elastic + stick.missing(1.0 - self.mu(), level, fraction),
+            None => level - elastic,
+        }
+    }
+
+    /// What a cycle does, with the depth worn at the inner nodes, m.
+    fn gross_wear(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        compression: &[f64],
+        whole: &Whole,
+    ) -> (Vec<f64>, CycleFields) {
+        let (half_space, mesh) = (self.contact.half_space(), &gross.mesh);
+        let friction = self.contact.friction().coefficient;
+        let per_depth = friction / half_space.stiffness_ratio();
+        let level = self.contact.slip_compression();
+        let inner = compression.iter().zip(mesh.load_weights());
+        let stuck = whole.stick.iter().flat_map(|stick| &stick.within);
+        let squares: f64 = inner.map(|(q, weight)| weight * q * (level - q)).sum::<f64>()
+            + stuck.map(|[_, weight, q]| weight * q * (q - level)).sum::<f64>();
+        let energy_scale = 4.0 * friction * per_depth * half_space.normal_stiffness();
+        let dissipation = energy_scale * whole.area.powf(1.0 - self.mu()) * squares;
+        let law = &*loading.wear;
+        let mean_pressure = self.contact.mean_pressure();
+        let at_contact = law.at_contact(dissipation / (PI * whole.area)).unwrap_or(1.0);
+        let pressed = if law.takes_traction() { friction } else { 1.0 };
+        let depth = whole.pressure.iter().zip(&whole.slip_depth).map(|(pressure, slip)| {
+            let path = 4.0 * per_depth * slip.max(0.0);
+            let rate = law.rate(&Rubbing { pressure: pressed * pressure, path, mean_pressure });
+            let depth = rate.depth * path;
+            at_contact * law.of_cycle(depth).map_or(depth, |[depth, _]| depth)
+        });
+        let depth: Vec<f64> = depth.collect();
+        let volume = match law.volume_per_energy(loading.friction.coefficient()) {
+            Some(factor) => at_contact * factor * dissipation,
+            None => {
+                // At the edge the polynomial through the other nodes.
+                let mut all = depth.clone();
+                all.push(mesh.value_inside(&depth, mesh.place(1.0)));
+                PI * whole.area * mesh.area(&all)
+            }
+        };
+        let cycle = CycleFields {
+            growth: depth.iter().map(|depth| depth / self.contact.indentation()).collect(),
+            slip: whole.slip_depth.iter().map(|depth| per_depth * depth).collect(),
+            dissipation,
+            jump_loss: 0.0,
+            work: dissipation,
+            volume,
+            amplitude: loading.amplitude,
+            stick_radius: whole.stick.as_ref().map_or(0.0, |stick| (stick.fraction * whole.area).sqrt()),
+        };
+        (depth, cycle)
+    }
+
+    /// Rates of the compressions, and what a cycle does; none where no contact has them.
+    pub fn gross_rates(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        compression: &[f64],
+    ) -> Option<GrossRates> {
+        let mesh = &gross.mesh;
+        let whole = self.whole(gross, compression)?;
+        let (depth, cycle) = self.gross_wear(gross, loading, compression, &whole);
+        // q' = d' F⁻¹ 1 + (A'/A) F⁻¹ ξ ∂u/∂ξ - F⁻¹ W, with A'/A and d' from the edge and the force.
+        let mut carried = mesh.dilation(&whole.elastic);
+        mesh.solve_profile(&mut carried);
+        let mut worn = depth;
+        mesh.solve_profile(&mut worn);
+        let radius = whole.area.sqrt();
+        let rise = 0.5 * radius * self.contact.indenter().profile_derivative(radius);
+        let edge = [&gross.lifted, &carried, &worn].map(|part| mesh.profile_at_edge(part));
+        let (growth, sinking) = match gross.held_load {
+            Some(_) => {
+                let loads = [&gross.lifted, &carried, &worn].map(|part| mesh.load(part));
+                let nu = 1.0 - self.mu();
+                let matrix =
+                    [[-rise - edge[1], 1.0 - edge[0]], [loads[1] + nu * mesh.load(compression), loads[0]]];
+                let determinant = matrix[0][0] * matrix[1][1] - matrix[0][1] * matrix[1][0];
+                let [first, second] = [-edge[2], loads[2]];
+                (
+                    (first * matrix[1][1] - matrix[0][1] * second) / determinant,
+                    (matrix[0][0] * second - matrix[1][0] * first) / determinant,
+                )
+            }
+            None => (edge[2] / (rise + edge[1]), 0.0),
+        };
+        let parts = gross.lifted.iter().zip(&carried).zip(&worn);
+        let rates: Vec<f64> =
+            parts.map(|((lifted, carried), worn)| sinking * lifted + growth * carried - worn).collect();
+        rates.iter().all(|rate| rate.is_finite()).then_some(GrossRates {
+            compression: rates,
+            dissipation: cycle.dissipation,
+            volume: cycle.volume,
+            stick_radius: cycle.stick_radius,
+        })
+    }
+
+    /// Squared contact radius, m², of compressions, m.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where the profile ends before.
+    pub fn gross_area(&self, gross: &Gross, compression: &[f64]) -> Result<f64> {
+        self.whole(gross, compression).map(|whole| whole.area).ok_or_else(|| Error::NotConverged {
+            what: "contact edge",
+            why: "the contact has grown to where the profile of the indenter ends".into(),
+        })
+    }
+
+    pub(super) fn gross_fields(&self, gross: &Gross, state: &State) -> Fields {
+        let Some(whole) = self.whole(gross, &state.compression) else { return Fields::default() };
+        let mesh = &gross.mesh;
+        let depth =
+            whole.elastic.iter().zip(mesh.fractions()).map(|(u, x)| {
+                whole.indentation - u - self.contact.indenter().profile((whole.area * x).sqrt())
+            });
+        Fields {
+            stick_zone: StickZone {
+                slip_compression: self.contact.slip_compression(),
+                ..StickZone::default()
+            },
+            slip_area: whole.area,
+            wear_depth: depth.collect(),
+            elastic_depth: whole.elastic,
+            slip_depth: whole.slip_depth,
+            pressure: whole.pressure,
+            density: state.compression.clone(),
+            ..Fields::default()
+        }
+    }
+
+    pub(super) fn gross_cycle(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        compression: &[f64],
+    ) -> CycleFields {
+        self.whole(gross, compression)
+            .map_or_else(CycleFields::default, |whole| self.gross_wear(gross, loading, compression, &whole).1)
+    }
+
+    pub(super) fn gross_depth_at(&self, gross: &Gross, fields: &Fields, squared: f64) -> f64 {
+        let fraction = squared / fields.slip_area;
+        if fraction < 1.0 { gross.mesh.value(&fields.wear_depth, gross.mesh.place(fraction)) } else { 0.0 }
+    }
+
+    pub(super) fn gross_volume(&self, gross: &Gross, fields: &Fields) -> f64 {
+        PI * fields.slip_area * gross.mesh.area(&fields.wear_depth)
+    }
+
+    pub(super) fn gross_normal_force(&self, gross: &Gross, fields: &Fields) -> f64 {
+        self.contact.normal_force() * self.gross_sum(gross, fields, &fields.density) / gross.first_load
+    }
+
+    pub(super) fn gross_indentation(&self, gross: &Gross, state: &State) -> f64 {
+        self.whole(gross, &state.compression).map_or(f64::NAN, |whole| whole.indentation)
+    }
+
+    /// Sum of something over the springs, `2 ∫_0^a x^k value(q) dx`.
+    pub(super) fn gross_sum(&self, gross: &Gross, fields: &Fields, values: &[f64]) -> f64 {
+        fields.slip_area.powf(1.0 - self.mu()) * dot(gross.mesh.load_weights(), values)
+    }
+
+    pub(super) fn gross_radial_fields(&self, gross: &Gross, state: &State) -> RadialFields {
+        let offsets = self.output.offsets();
+        let [mut wear_depth, mut pressure, mut slip] = [(); 3].map(|()| vec![0.0; offsets.len()]);
+        if let Some(whole) = self.whole(gross, &state.compression) {
+            let mesh = &gross.mesh;
+            let per_depth = self.contact.friction().coefficient / self.contact.half_space().stiffness_ratio();
+            for (i, squared) in offsets.iter().enumerate().take_while(|(_, squared)| **squared < whole.area) {
+                let fraction = squared / whole.area;
+                let place: Place = mesh.place(fraction);
+                let elastic = mesh.value(&whole.elastic, place);
+                let unworn = self.contact.indenter().profile(squared.sqrt());
+                wear_depth[i] = (whole.indentation - elastic - unworn).max(0.0);
+                pressure[i] = mesh.value_inside(&whole.pressure, place);
+                slip[i] = per_depth * self.slip_depth_at(whole.stick.as_ref(), elastic, fraction).max(0.0);
+            }
+        }
+        RadialFields { wear_depth, pressure, slip }
+    }
+}
