@@ -98,6 +98,9 @@ fn transients_are_those_of_another_code() {
         // Neither force nor edge of stick have moved.
         assert!(relative(last.normal_force, contact.normal_force()) < 1e-10, "{row:?}");
         assert!(relative(last.stick_radius, contact.stick_radius().unwrap()) < 1e-12, "{row:?}");
+        let forces = results.tangential_force();
+        let steady = forces.iter().map(|force| relative(*force, forces[0])).fold(0.0, f64::max);
+        assert!(steady < 1e-4, "{row:?}: the tangential force changes by {steady:e}");
         let energy = last.wear_volume / (1.667e-13 / 0.5 * last.dissipated_energy);
         assert!((energy - 1.0).abs() < 5e-5, "{row:?}: {energy}");
     }

@@ -226,7 +226,7 @@ impl WholeContact {
     pub fn up_to(&self, end: Place, inside: &[f64]) -> Result<Vec<[f64; 3]>> {
         let mut values = inside.to_vec();
         values.push(0.0);
-        let panel = self.from_axis(end, self.nu)?;
+        let panel = self.panel_at_axis(end, self.nu)?;
         Ok(panel
             .into_iter()
             .map(|(place, weight)| [self.fraction(place), weight, self.value(&values, place)])
@@ -285,7 +285,7 @@ impl WholeContact {
     }
 
     /// Places and weights of `∫_0^ξ(end) ξ^(exponent-1) ... dξ`.
-    fn from_axis(&self, end: Place, exponent: f64) -> Result<Vec<(Place, f64)>> {
+    fn panel_at_axis(&self, end: Place, exponent: f64) -> Result<Vec<(Place, f64)>> {
         let lower = 4.0 * exponent - 1.0;
         let rule = Rule::jacobi(self.rule_size(), 0.0, lower)?;
         let scale = end.y.powf(4.0 * exponent) / exponent * self.power;
@@ -315,7 +315,7 @@ impl WholeContact {
                     *sum += prefactor * weight * value;
                 }
             };
-            for (place, weight) in self.from_axis(Place::inwards(end, half), nu)? {
+            for (place, weight) in self.panel_at_axis(Place::inwards(end, half), nu)? {
                 add(place, weight * self.rise(end, place, end.y - place.y).powf(-nu));
             }
             // Near the node, at a distance below that of the edge first: 1 - √√ξ is a power of the distance from there.

@@ -126,10 +126,11 @@ impl Model {
         let core = 2.0 * half_space.normal_stiffness() * fields.stick_zone.stick_area.powf(0.5 * exponent)
             / exponent;
         let (profile, radius) = (self.contact.equivalent_profile(), fields.stick_zone.stick_area.sqrt());
+        let depth = self.depth_over_core(&fields.stick_zone);
         let rule = Rule::legendre(CORE_NODES).expect("a rule of few nodes");
         for (part, weight) in rule.nodes.iter().zip(&rule.weights) {
             let x = radius * part.powf(exponent.recip());
-            add(core * weight, self.contact.indentation() - profile.value(x));
+            add(core * weight, depth - profile.value(x));
         }
         let annulus = half_space.normal_stiffness() * fields.slip_area;
         let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());

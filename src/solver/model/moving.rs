@@ -407,6 +407,18 @@ impl Model {
         StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
     }
 
+    /// Indentation, m, from which the compressions of the core within a stick zone are seen: unworn ground there sticks, and comes to lie deeper
+    /// where a normal force is held.
+    pub(super) fn depth_over_core(&self, stick_zone: &StickZone) -> f64 {
+        match self.moving.as_ref().map(|moving| moving.cause) {
+            Some(Cause::NormalForce(_) | Cause::BothForces(_)) => {
+                let height = self.contact.equivalent_profile().value(stick_zone.stick_area.sqrt());
+                stick_zone.slip_compression + height
+            }
+            _ => self.contact.indentation(),
+        }
+    }
+
     /// Adds the part of a held force that the quadrature over the springs misses in the first cycle to the load of the stick zone.
     pub(super) fn close_force(&self, mut state: State) -> State {
         let cause = self.moving.as_ref().map(|moving| moving.cause);

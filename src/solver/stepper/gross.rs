@@ -111,7 +111,7 @@ fn step(
                 found = Some(there);
                 break;
             }
-            if !(size < 2.0 * before) {
+            if size.is_nan() || size >= 2.0 * before {
                 return None;
             }
             before = size;
