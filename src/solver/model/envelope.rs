@@ -1,6 +1,6 @@
 //! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
-use super::moving::follows_held_force;
+use super::moving::{LAST_CORE, follows_held_force, slides_at_once};
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -10,9 +10,6 @@ use crate::numerics::roots::bracketed;
 /// Radius, over that of the contact, of the core that stays unworn in gross slip, since the mesh needs a smallest radius: 1e-3 takes 60 springs,
 /// 1e-4 would take 120.
 const CORE: f64 = 1e-3;
-
-/// The same where the mesh follows an edge of stick that recedes until none is left: stick is lost within 1e-3 of the time when it is as small as that.
-const LAST_CORE: f64 = 0.02;
 
 /// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact slides as a whole: the
 /// slip depth, of which wear is the growth, keeps its digits next to the core, however flat the profile is there.
@@ -68,17 +65,22 @@ impl Schedule {
         let largest = depth - profile.value(CORE * radius);
         let grading = contact.half_space().grading();
         let slides = compression > largest;
-        if slides && self.conditions().holds_both_forces() {
+        let accelerates = match self.conditions().tangential_control {
+            TangentialControl::Force if self.conditions().holds_both_forces() => slides,
+            TangentialControl::Force => slides_at_once(self, contact)?,
+            _ => false,
+        };
+        if accelerates {
             return Err(Error::Inconsistent {
                 what: "loading.amplitude",
                 why: format!(
-                    "at an amplitude of {:e} m the contact slides as a whole, and a tangential force that is held would accelerate it; reduce \
+                    "at an amplitude of {:e} m the contact slides as a whole, or nearly, and a tangential force that is held would accelerate it; reduce \
                      it, or hold the amplitude: leave out loading.tangential_control",
                     contact.amplitude()
                 ),
             });
         }
-        let follows = follows_held_force(self);
+        let follows = follows_held_force(self, contact)?;
         if slides && !follows && core_share(grading) > LARGEST_CORE_SHARE {
             return Err(Error::Inconsistent {
                 what: "loading.amplitude",

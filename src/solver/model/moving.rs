@@ -42,6 +42,9 @@ const FARTHEST: f64 = 5.0;
 /// Area of stick, over that of the core of the mesh, below which it is taken for lost.
 const LOST: f64 = 4.0;
 
+/// Radius, over that of the contact, of the core of a mesh that follows an edge of stick that recedes until none is left: stick is lost within 1e-3 of the time when it is as small as that.
+pub(super) const LAST_CORE: f64 = 0.02;
+
 /// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
 
@@ -109,7 +112,8 @@ impl MovingStick {
         if *schedule.friction_along_energy() != History::Constant {
             check_along_energy(schedule, slides)?;
         }
-        if slides && !follows_held_force(schedule) {
+        let follows = follows_held_force(schedule, contact)?;
+        if slides && !follows {
             let sliding = conditions.holds_normal_force && conditions.blocks.is_empty();
             let cause = Cause::Sliding(contact.normal_force());
             return Ok(sliding.then_some(Self { cause, outwards: false, jumps: false, span: [0.0; 2] }));
@@ -167,7 +171,7 @@ impl MovingStick {
                 return Ok(None);
             }
             Cause::Friction => rises,
-            Cause::Tangential if !follows_held_force(schedule) => return Ok(None),
+            Cause::Tangential if !follows => return Ok(None),
             Cause::Tangential => false,
         };
         Ok(Some(Self { cause, outwards, jumps: false, span: [0.0; 2] }))
@@ -301,11 +305,36 @@ impl MovingStick {
     }
 }
 
-/// Whether the edge of stick is followed under a balance of tangential forces: it only ever moves inwards.
-pub(super) fn follows_held_force(schedule: &Schedule) -> bool {
+/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and it only ever moves inwards.
+///
+/// # Errors
+/// As [`slides_at_once`].
+pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
     let [_, rises] = directions(schedule.friction_change());
-    conditions.tangential_control != TangentialControl::Displacement && !rises && conditions.blocks.is_empty()
+    let inwards = !rises && conditions.blocks.is_empty();
+    Ok(conditions.tangential_control != TangentialControl::Displacement
+        && inwards
+        && !slides_at_once(schedule, contact)?)
+}
+
+/// Whether a balance of tangential forces leaves no more stick in the first cycle than the core up to which the edge is followed.
+///
+/// # Errors
+/// As [`EquivalentProfile::radius_at`].
+pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
+    let (loading, depth) = (schedule.loading(0.0, 0.0), contact.indentation());
+    let ratio = contact.half_space().stiffness_ratio();
+    let at_core = depth - contact.equivalent_profile().value(LAST_CORE * contact.contact_radius());
+    Ok(match loading.control {
+        AmplitudeControl::Displacement => false,
+        AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
+        AmplitudeControl::Rig(_) => {
+            let amplitude = loading.friction.static_strength(at_core) / ratio;
+            let force = super::first_force::first_force(contact, &*loading.friction, amplitude, depth)?;
+            loading.excess(force, amplitude) <= 0.0
+        }
+    })
 }
 
 /// Refuses an edge of stick that comes to rest on worn ground within the mesh: errors of the springs next to it grow with slip and move it inwards.
