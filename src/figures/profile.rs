@@ -33,8 +33,10 @@ pub(super) fn rows(results: &RunResults) -> Vec<Row> {
     mark_stick(&mut ring, stick, false);
     ring.bar.clone_from(&bar);
     let mut depth = curves.depths(results);
+    // Without stick the ring is the whole contact.
+    let panels = if stick > 0.0 { vec![whole, ring] } else { vec![Panel { bar: bar.clone(), ..whole }] };
     depth.bar = bar;
-    vec![Row { height: 235.0, panels: vec![whole, ring] }, Row { height: 190.0, panels: vec![depth] }]
+    vec![Row { height: 235.0, panels }, Row { height: 190.0, panels: vec![depth] }]
 }
 
 /// Wear depths as curves, radius and depth in m.
@@ -125,9 +127,11 @@ impl Curves {
     }
 }
 
-/// A curve from the axis to beyond the nodes: nothing is worn in the stuck region and beyond the reach of wear.
+/// A curve from the axis to beyond the nodes: nothing is worn in the stuck region and beyond the reach of wear. In gross slip the axis is as worn as the
+/// ground next to it.
 fn extended(stick: f64, radius: &[f64], depths: &[f64], outer: f64) -> Vec<[f64; 2]> {
-    let inside = (0..=STUCK_POINTS).map(|i| [stick * i as f64 / STUCK_POINTS as f64, 0.0]);
+    let at_axis = if stick > 0.0 { 0.0 } else { depths.first().copied().unwrap_or(0.0) };
+    let inside = (0..=STUCK_POINTS).map(|i| [stick * i as f64 / STUCK_POINTS as f64, at_axis]);
     let first = radius.first().copied().unwrap_or(0.0);
     let mut points: Vec<[f64; 2]> = inside.filter(|[r, _]| *r < first).collect();
     points.extend(Curve::new(radius, depths).points(PARTS));
