@@ -119,7 +119,7 @@ fn the_studies_of_the_data_folder_can_be_read() {
             study_scene(&study, &case.name, text);
         }
     }
-    let theorem = UniversalityStudy::read(&folder.join("held_forces.toml")).unwrap();
+    let theorem = UniversalityStudy::read(&folder.join("universality_held_forces.toml")).unwrap();
     assert_eq!(theorem.cases().len(), 60, "six laws in ten media");
     for case in theorem.cases() {
         assert_eq!(case.predicted, Prediction::Within);
