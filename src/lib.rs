@@ -45,7 +45,7 @@
 //! | (19) | equivalent profile g(x): power laws, spheres, tables; any profile | [`EquivalentProfile`], [`Transforms::equivalent_profile`] |
 //! | (20) | springs to profile, slip to surface: on a mesh; any profile | `numerics::abel::AbelOperators::profile`, [`Transforms::profile`] |
 //! | (21), corrected | springs to pressure: on a mesh; any profile | `numerics::abel::AbelOperators::pressure`, [`Transforms::pressure`] |
-//! | (22) | normal force | [`EquivalentProfile::load_integral`], [`Transforms::load`], `solver::model::Model::normal_force` |
+//! | (22) | normal force | `EquivalentProfile::load_integral`, [`Transforms::load`], `solver::model::Model::normal_force` |
 //!
 //! Equation (21) as printed has a factor `x^k` too many, with which forces do not balance; the library uses it without and takes pressure
 //! as positive.

@@ -23,7 +23,7 @@
 //! | (15) | worn volume at small amplitudes | [`small_amplitude_wear_volume`] |
 //! | (16)–(18) | paraboloid | [`paraboloid_contact_radius`], [`paraboloid_stick_radius`], [`paraboloid_relative_slip_width`], [`paraboloid_small_amplitude_wear_volume`] |
 //! | (19) | equivalent profile `g` | [`Indenter::equivalent_profile`](crate::contact::indenter::Indenter::equivalent_profile) |
-//! | (22) | normal force | [`EquivalentProfile::load_integral`](crate::contact::indenter::EquivalentProfile::load_integral), [`paraboloid_normal_force`] |
+//! | (22) | normal force | `EquivalentProfile::load_integral`, [`paraboloid_normal_force`] |
 //!
 //! Equations (19)–(22) for any profile are in [`transforms`](crate::contact::transforms).
 

@@ -3,7 +3,7 @@
 use crate::contact::indenter::Indenter;
 use crate::error::Result;
 
-/// Profile of a power law, m [S, Eq. (5)]; [`Indenter::profile`] with the parameters as arguments.
+/// Profile of a power law, m [S, Eq. (5)]; `Indenter::profile` with the parameters as arguments.
 ///
 /// ```text
 /// f(r) = A r^n
