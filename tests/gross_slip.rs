@@ -322,3 +322,32 @@ fn gross_slip_under_normal_oscillation_wears_from_the_first_cycle() {
         assert!(volume > 0.0 && (volume / state.volume_by_rate - 1.0).abs() < 2e-2, "{volume}");
     }
 }
+
+/// A contact that grows nearly to the end of a measured profile or of a sphere shows no radius beyond it.
+#[test]
+fn the_output_ends_where_the_profile_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let rows: String =
+        (0..60).map(|i| 2e-6 * f64::from(i)).map(|r| format!("{r:e},{:e}\n", 50.0 * r * r)).collect();
+    std::fs::write(folder.path().join("rows.csv"), format!("r,z\n{rows}")).expect("the rows");
+    for force in [12, 15] {
+        let text = format!(
+            "[indenter.table]\nfile = \"rows.csv\"\nradius_unit = \"m\"\nprofile_unit = \"m\"\n\
+             [half_space]\ngrading = 0\nnormal_stiffness = 2e11\nstiffness_ratio = 0.8\n[friction.coulomb]\ncoefficient = 0.5\n\
+             [wear.archard]\ncoefficient = 1e-14\n[loading]\ninitial_force = {force}\namplitude_ratio = 2.5\ncycles = 1e7\n"
+        );
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, text).expect("the scene");
+        let scene = fretwear::scene::Scene::from_path(&path).expect("a scene");
+        let results = fretwear::Simulation::new(&scene).expect("it runs").run().expect("to the end");
+        // Of 118 µm.
+        assert!(results.last().contact_radius > 1.08e-4);
+        for snapshot in results.snapshots() {
+            assert!(
+                snapshot.profile.iter().all(|height| height.is_finite()),
+                "{cycles} cycles, τ = {}",
+                snapshot.tau
+            );
+        }
+    }
+}

@@ -39,7 +39,9 @@ impl Parts {
         let mut parts = Self::on_any(scene, numerics, wanted, store)?;
         check_sliding(&parts.model)?;
         if parts.model.gross().is_some() {
-            let offsets = parts.model.gross_offsets(MARGIN * farthest_radius(&parts, store)?);
+            // Beyond its end nothing is known of a profile.
+            let end = parts.model.contact().equivalent_profile().largest_radius();
+            let offsets = parts.model.gross_offsets((MARGIN * farthest_radius(&parts, store)?).min(end));
             parts.model = parts.model.shown_at(offsets);
         }
         Ok(parts)

@@ -325,7 +325,8 @@ pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) 
 pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let (loading, depth) = (schedule.loading(0.0, 0.0), contact.indentation());
     let ratio = contact.half_space().stiffness_ratio();
-    let at_core = depth - contact.equivalent_profile().value(LAST_CORE * contact.contact_radius());
+    let core = LOST.sqrt() * LAST_CORE * contact.contact_radius();
+    let at_core = depth - contact.equivalent_profile().value(core);
     Ok(match loading.control {
         AmplitudeControl::Displacement => false,
         AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
