@@ -345,7 +345,7 @@ fn the_output_ends_where_the_profile_does() {
         for snapshot in results.snapshots() {
             assert!(
                 snapshot.profile.iter().all(|height| height.is_finite()),
-                "{cycles} cycles, τ = {}",
+                "{force} N, τ = {}",
                 snapshot.tau
             );
         }

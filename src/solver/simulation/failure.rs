@@ -39,10 +39,11 @@ impl Simulation {
         let left = shrinking.map_or(0.0, |stick| stick.area / -stick.rates[0]);
         let cycles = state.cycles + left;
         let tau = cycles * model.contact().tau_per_cycle();
+        let radius = self.cycle.stick_radius;
         Error::NotConverged {
             what: STEPPING,
             why: format!(
-                "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}): from there the contact slides as a whole and no longer bears the \
+                "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}), at last within the radius {radius:.4e} m: from there the contact slides as a whole and no longer bears the \
                  tangential force that is asked for; end before (loading.tau), or ask for a smaller amplitude"
             ),
         }
