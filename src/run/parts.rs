@@ -16,6 +16,7 @@ use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossSdirk, Sdirk, Step
 /// Springs and tolerance of the run that tells how far a contact in gross slip comes to reach, and what is added to that.
 const COARSE: (usize, f64) = (12, 1e-3);
 const MARGIN: f64 = 1.02;
+const WITHIN_END: f64 = 1.0 - 1e-12;
 
 /// Everything that follows from a scene alone.
 pub(super) struct Parts {
@@ -39,8 +40,8 @@ impl Parts {
         let mut parts = Self::on_any(scene, numerics, wanted, store)?;
         check_sliding(&parts.model)?;
         if parts.model.gross().is_some() {
-            // Beyond its end nothing is known of a profile.
-            let end = parts.model.contact().equivalent_profile().largest_radius();
+            // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
+            let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
             let offsets = parts.model.gross_offsets((MARGIN * farthest_radius(&parts, store)?).min(end));
             parts.model = parts.model.shown_at(offsets);
         }
