@@ -52,8 +52,15 @@ END
 cp data/studies/friction.toml "$work/curves.toml"
 cp data/studies/scatter.toml "$work/bands.toml"
 sed -i "s|\.\./scenes|$PWD/data/scenes|" "$work"/{curves,bands}.toml
-for name in one curves map bands; do
+cp data/studies/fretting_map.toml "$work/regimes.toml"
+cp data/studies/fouvry2007.toml "$work/validation.toml"
+sed -i "s|\.\./scenes|$PWD/data/scenes|" "$work"/{regimes,validation}.toml
+for name in one curves map bands regimes validation; do
     "$fretwear" sweep "$work/$name.toml" -o "$work/sweep_$name" --quiet
     "$fretwear" merge "$work/sweep_$name" -o "$work/sweep_$name.h5" >/dev/null
-    draw "$work/sweep_$name.h5" "sweep_$name"
+    [[ $name == regimes || $name == validation ]] || draw "$work/sweep_$name.h5" "sweep_$name"
 done
+draw "$work/sweep_regimes.h5" regimes regimes
+draw "$work/sweep_validation.h5" validation_volume
+"$fretwear" run data/scenes/fouvry2007.toml -o "$work/fouvry.h5" --quiet
+draw "$work/fouvry.h5" validation_history history

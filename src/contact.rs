@@ -4,6 +4,7 @@ pub mod closed_form;
 pub mod half_space;
 pub mod indenter;
 mod initial;
+mod loop_ratios;
 pub mod slip_depth;
 pub mod spring;
 pub mod stick_slip;

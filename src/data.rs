@@ -72,7 +72,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::contact::indenter::TabulatedProfile;
-use crate::contact::stick_slip::Regime;
+use crate::contact::stick_slip::{FrettingRegime, Regime};
 use crate::laws::motion::RecordedPath;
 use crate::solver::model::State;
 use crate::solver::simulation::Progress;
@@ -180,6 +180,10 @@ pub struct Snapshot {
     pub cycle_energy: f64,
     /// Largest tangential force along the fretting loop, N.
     pub tangential_force: f64,
+    /// Energy ratio `A = W/(4 Q* δ*)` of the fretting loop; not a number where the indenter leaves the x axis.
+    pub energy_ratio: f64,
+    /// Sliding ratio of the loop, its width at no force over the stroke; not a number where the indenter leaves the x axis.
+    pub sliding_ratio: f64,
     /// Tangential displacement along one period, m, shape `(point,)`; the last point is the first.
     pub loop_displacement: Vec<f64>,
     /// Tangential force along one period, N, shape `(point,)`.
@@ -196,6 +200,16 @@ pub struct Snapshot {
     pub pressure: Vec<f64>,
     /// Slip amplitude, m, shape `(node,)`.
     pub slip: Vec<f64>,
+}
+
+/// Fretting regime of a run up to each of its snapshots, as these show it.
+pub fn fretting_regimes(snapshots: &[Snapshot]) -> Vec<FrettingRegime> {
+    let mut before = None;
+    let after = snapshots.iter().map(|it| {
+        let now = FrettingRegime::after(before, it.regime, it.permanent_stick_radius == 0.0);
+        *before.insert(now)
+    });
+    after.collect()
 }
 
 /// What a restart needs besides the header and the snapshots; every value survives the file bit for bit.

@@ -33,6 +33,7 @@ mod output;
 pub mod page;
 mod pressure;
 mod profile;
+mod regimes;
 mod rings;
 mod run;
 mod sweep;
@@ -72,11 +73,13 @@ pub enum Kind {
     Tradeoff,
     /// A result of a sweep over what is varied.
     Sweep,
+    /// Fretting regimes over cycles and what a sweep varies.
+    Regimes,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Profile,
         Self::Pressure,
         Self::History,
@@ -88,6 +91,7 @@ impl Kind {
         Self::Universality,
         Self::Tradeoff,
         Self::Sweep,
+        Self::Regimes,
     ];
 
     /// Name on the command line.
@@ -104,6 +108,7 @@ impl Kind {
             Self::Universality => "universality",
             Self::Tradeoff => "tradeoff",
             Self::Sweep => "sweep",
+            Self::Regimes => "regimes",
         }
     }
 }
@@ -145,6 +150,7 @@ impl Results {
     pub fn kinds(&self) -> Vec<Kind> {
         match self {
             Self::Run(run) => run.kinds(),
+            Self::Sweep(file) if regimes::fits(file) => vec![Kind::Sweep, Kind::Regimes],
             Self::Sweep(_) => vec![Kind::Sweep],
             Self::Map(_) => vec![Kind::Map, Kind::WornProfiles, Kind::Optimum],
             Self::Universality(_) => vec![Kind::Universality],
@@ -181,6 +187,7 @@ impl Results {
         }
         let mut figure = match self {
             Self::Run(run) => of_run(run, kind),
+            Self::Sweep(file) if kind == Kind::Regimes => regimes::figure(file),
             Self::Sweep(file) => sweep::figure(file, quantity),
             Self::Map(file) if kind == Kind::WornProfiles => worn_profiles::figure(file),
             Self::Map(file) if kind == Kind::Optimum => optimum::figure(file),
@@ -212,6 +219,9 @@ impl Results {
             }
             (Self::Run(_), Kind::Loops) => " that stores no fretting loops",
             (Self::Run(_), Kind::History | Kind::Pressure | Kind::Profile) => " with too few snapshots",
+            (Self::Sweep(_), Kind::Regimes) => {
+                " that varies not exactly one number, or keeps no snapshots (output.snapshots = \"all\")"
+            }
             _ => "",
         }
     }

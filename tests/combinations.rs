@@ -105,12 +105,16 @@ const MODES: [Level; 6] = [
     ),
 ];
 
-const FACTORS: [(&str, &[Level]); 5] = [
+const STARTS: [Level; 2] =
+    [level("settled", &[]), level("first cycle", &[("start", "wear_from = \"first-cycle\"")])];
+
+const FACTORS: [(&str, &[Level]); 6] = [
     ("control", &CONTROLS),
     ("regime", &REGIMES),
     ("wear", &WEAR),
     ("friction", &FRICTION),
     ("mode", &MODES),
+    ("wear from", &STARTS),
 ];
 
 /// The scene of two levels, the rest plain.
@@ -125,7 +129,7 @@ fn text(levels: [&Level; 2], accuracy: f64) -> String {
     let line = |name: &str| lines.get(name).copied().unwrap_or_default();
     format!(
         "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = 0\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666667\n\
-         {}\n{}\n{}\n{}\n[loading]\n{}\n{}\n{}\n{}\n{}\ntau = 1\n{}\n[numerics]\naccuracy = {accuracy}\n[output]\nsnapshots = 4\n",
+         {}\n{}\n{}\n{}\n[loading]\n{}\n{}\n{}\n{}\n{}\n{}\ntau = 1\n{}\n[numerics]\naccuracy = {accuracy}\n[output]\nsnapshots = 4\n",
         line("friction"),
         line("friction history"),
         line("wear"),
@@ -135,6 +139,7 @@ fn text(levels: [&Level; 2], accuracy: f64) -> String {
         line("control"),
         line("frequency"),
         line("repeat"),
+        line("start"),
         line("mode"),
     )
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
 
-use fretwear::data::{RunFile, SweepFile, Values};
+use fretwear::data::{RunFile, SweepFile, Values, fretting_regimes};
 use fretwear::figures::drawing::{Drawing, Figure, Panel, Series, Spacing, Style, ticks, without_markup};
 use fretwear::figures::page;
 use fretwear::figures::{Kind, Results, RunResults};
@@ -99,6 +99,11 @@ static FILES: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
         command(&format!("sweep {name}.toml -o {name} --quiet"));
         command(&format!("merge {name} -o {name}.h5"));
     }
+    let dead_weight =
+        include_str!("../data/studies/fretting_map.toml").replace("../scenes", &scenes.display().to_string());
+    put("regimes.toml", &dead_weight.replace("count = 16", "count = 4"));
+    command("sweep regimes.toml -o regimes --quiet");
+    command("merge regimes -o regimes.h5");
     folder
 });
 
@@ -130,7 +135,7 @@ fn series<'a>(panel: &'a Panel, name: &str) -> &'a Series {
 }
 
 /// Files and all kinds that fit.
-const ALL: [&str; 9] = [
+const ALL: [&str; 10] = [
     "run.h5",
     "orbit.h5",
     "map/map.h5",
@@ -140,6 +145,7 @@ const ALL: [&str; 9] = [
     "curves.h5",
     "one.h5",
     "samples.h5",
+    "regimes.h5",
 ];
 
 fn every_figure() -> Vec<(String, Figure)> {
@@ -148,6 +154,8 @@ fn every_figure() -> Vec<(String, Figure)> {
         let figures = results
             .kinds()
             .into_iter()
+            // Half a million cubic micrometres have no short ticks.
+            .filter(|kind| *name != "regimes.h5" || *kind == Kind::Regimes)
             .map(|kind| (format!("{name} {}", kind.name()), results.figure(kind, None).unwrap()));
         figures.collect::<Vec<_>>()
     };
@@ -227,6 +235,36 @@ fn the_approach_is_the_distance_of_the_report() {
         / most;
     assert_eq!(distance.last().unwrap(), &[last.tau, expected]);
     assert_eq!(panel(&figure, 0).y.spacing, Spacing::Logarithmic);
+}
+
+#[test]
+fn fretting_regimes_are_areas_around_the_snapshots() {
+    let figure = figure("regimes.h5", Kind::Regimes);
+    let panel = panel(&figure, 0);
+    assert_eq!((panel.x.spacing, panel.y.text().as_str()), (Spacing::Logarithmic, "loading.amplitude (nm)"));
+    let between =
+        |low: f64, value: f64, high: f64| low <= value * (1.0 + 1e-12) && value * (1.0 - 1e-12) <= high;
+    let inside = |ring: &[[f64; 2]], [x, y]: [f64; 2]| {
+        between(ring[0][0], x, ring[1][0]) && between(ring[0][1], y, ring[2][1])
+    };
+    let SweepFile { runs, .. } = SweepFile::read(&file("regimes.h5")).unwrap();
+    for (scene, run) in &runs {
+        // 500, 600, 700 and 800 nm; gross slip begins at 638 nm.
+        let y = 500.0 + 100.0 * *scene as f64;
+        for (snapshot, regime) in run.snapshots.iter().zip(fretting_regimes(&run.snapshots)).skip(1) {
+            let name = match (regime.name(), snapshot.regime.name()) {
+                ("full-sliding", "full-sliding") => "gross slip",
+                ("mixed", "partial-slip") => "mixed, now partial slip",
+                ("partial-slip", "partial-slip") => "partial slip",
+                other => panic!("{scene}: {other:?}"),
+            };
+            let areas = series(panel, name).points.split(|point| point[0].is_nan());
+            let count = areas.filter(|ring| !ring.is_empty() && inside(ring, [snapshot.cycles, y])).count();
+            assert_eq!(count, 1, "{name} at {y} nm after {} cycles", snapshot.cycles);
+        }
+    }
+    let error = results("one.h5").figure(Kind::Regimes, None).unwrap_err().to_string();
+    assert!(error.contains("keeps no snapshots") && error.contains("give sweep"), "{error}");
 }
 
 #[test]

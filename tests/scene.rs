@@ -575,7 +575,6 @@ fn every_alternative_is_read() {
     assert_eq!(numerics("cycle = \"closed-form\"").cycle, Some(Cycle::ClosedForm));
     assert_eq!(numerics("cycle = \"resolved\"\nsubsteps = 200").cycle, Some(Cycle::Resolved));
     assert_eq!(numerics("cycle = \"resolved\"\nsubsteps = 200").substeps, Some(200));
-    assert_eq!(numerics("wear_from = \"shakedown\""), numerics(""));
     assert_eq!(
         numerics("cycle = \"closed-form\"\ncheckpoint_interval = \"1 min\"").checkpoint_interval,
         60.0

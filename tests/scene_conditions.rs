@@ -489,7 +489,8 @@ fn bad_loading_and_what_does_not_go_together_are_refused_at_their_line() {
         (numerics("cycle = \"closed-form\"", &fast("2")), "closed-form", &["holds for tangential oscillation alone"]),
         (numerics("substeps = 1", ""), "substeps", &["numerics.substeps = 1 is outside 2 to 100000"]),
         (numerics("substeps = 100001", ""), "substeps", &["is outside 2 to 100000"]),
-        (numerics("wear_from = \"start\"", ""), "wear_from", &["shakedown"]),
+        ("wear_from = \"shakedown\"\n".into(), "wear_from", &["settled", "first-cycle"]),
+        (format!("wear_from = \"first-cycle\"\n{orbit}"), "orbit", &["settles over several cycles", "loading.wear_from"]),
     ];
     for (loading, shown, words) in &cases {
         refused(&scene(FRICTION, WEAR, &format!("{LOADING}{loading}")), shown, words);
@@ -640,7 +641,7 @@ fn rich() -> String {
         &format!(
             "{LOADING}repeat = true\n[loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = \"3/2\"\nphase = \"35 deg\"\n\
              [[loading.blocks]]\ncycles = 100\namplitude_factor = 0.5\nindentation_factor = 1.2\n[[loading.blocks]]\ncycles = 1e3\n\
-             [numerics]\ncycle = \"resolved\"\nsubsteps = 100\nwear_from = \"shakedown\""
+             [numerics]\ncycle = \"resolved\"\nsubsteps = 100"
         ),
     )
 }

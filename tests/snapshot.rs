@@ -74,6 +74,8 @@ fn snapshot(nodes: usize, seed: usize) -> Snapshot {
         dissipated_energy: awkward(seed + 6),
         cycle_energy: awkward(seed + 7),
         tangential_force: awkward(seed + 8),
+        energy_ratio: awkward(seed + 10),
+        sliding_ratio: awkward(seed + 11),
         loop_displacement: curve(POINTS, seed + 6),
         loop_force: curve(POINTS, seed + 4),
         loop_displacement_y: curve(POINTS, seed + 7),
@@ -164,6 +166,8 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
         dissipated_energy,
         cycle_energy,
         tangential_force,
+        energy_ratio,
+        sliding_ratio,
         loop_displacement,
         loop_force,
         loop_displacement_y,
@@ -185,6 +189,8 @@ fn bits(snapshot: &Snapshot) -> Vec<u64> {
         dissipated_energy,
         cycle_energy,
         tangential_force,
+        energy_ratio,
+        sliding_ratio,
     ];
     scalars
         .into_iter()
@@ -381,7 +387,10 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
         ("indentation", time, Some("cycles tau"), "m"),
         ("normal_force", time, Some("cycles tau"), "N"),
         ("dissipated_energy", time, Some("cycles tau"), "J"),
+        ("energy_ratio", time, Some("cycles tau"), "1"),
+        ("sliding_ratio", time, Some("cycles tau"), "1"),
         ("regime", time, Some("cycles tau"), "1"),
+        ("fretting_regime", time, Some("cycles tau"), "1"),
         ("radius", node, None, "m"),
         ("path_x", &["path_row"], None, "m"),
         ("path_y", &["path_row"], None, "m"),
@@ -435,7 +444,7 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
     assert_eq!(regime.read_raw::<i32>().expect("numbers")[..4], [0, 1, 2, 0]);
     assert_eq!(text(&file.dataset("path_x").expect("a path"), "source").as_deref(), Some("path, µm.csv"));
     assert_eq!(text(&file, "format").as_deref(), Some("fretwear-run"));
-    assert_eq!(file.attr("format_version").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 3);
+    assert_eq!(file.attr("format_version").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 4);
     assert_eq!(file.attr("complete").and_then(|it| it.read_scalar::<i32>()).expect("a number"), 1);
 }
 
@@ -590,10 +599,10 @@ fn edited_files_are_refused_by_the_name_of_what_is_wrong() {
     }
     type Edit = fn(&hdf5::File) -> hdf5::Result<()>;
     let edits: [(&str, Edit); 28] = [
-        ("format_version 2, this program reads 3; use the fretwear", |file| {
-            put_integer(file, "format_version", 2)
+        ("format_version 3, this program reads 4; use the fretwear", |file| {
+            put_integer(file, "format_version", 3)
         }),
-        ("attribute format_version", |file| put_text(file, "format_version", "3")),
+        ("attribute format_version", |file| put_text(file, "format_version", "4")),
         ("no attribute format", |file| put_text(file, "format", "netcdf")),
         ("attribute scene", |file| file.delete_attr("scene")),
         ("attribute scene: is not UTF-8 text", |file| put_integer(file, "scene", 1)),

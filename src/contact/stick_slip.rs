@@ -45,6 +45,50 @@ impl Regime {
     }
 }
 
+/// Fretting regime of a run: which of the conditions of [`Regime`] its cycles have been in so far [Zhou, Vincent, Wear 181-183 (1995) 531].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrettingRegime {
+    /// No spring has slipped.
+    Stick,
+    /// No cycle has slid as a whole.
+    PartialSlip,
+    /// Some cycles have slid as a whole, and some have not.
+    Mixed,
+    /// All cycles have slid as a whole.
+    FullSliding,
+}
+
+impl FrettingRegime {
+    /// All of them, by growing slip; each at the place of its own number.
+    pub const ALL: [Self; 4] = [Self::Stick, Self::PartialSlip, Self::Mixed, Self::FullSliding];
+
+    /// After one more cycle.
+    ///
+    /// # Arguments
+    /// * `before` -- up to then; none before the first cycle
+    /// * `cycle` -- what this cycle does
+    /// * `slid` -- whether a cycle so far slid as a whole
+    pub fn after(before: Option<Self>, cycle: Regime, slid: bool) -> Self {
+        match (cycle, before) {
+            (Regime::FullSliding, None | Some(Self::FullSliding)) => Self::FullSliding,
+            (Regime::FullSliding, _) | (_, Some(Self::Mixed | Self::FullSliding)) => Self::Mixed,
+            _ if slid => Self::Mixed,
+            (Regime::Stick, None | Some(Self::Stick)) => Self::Stick,
+            _ => Self::PartialSlip,
+        }
+    }
+
+    /// Name in files and JSON: `stick`, `partial-slip`, `mixed` or `full-sliding`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stick => Regime::Stick.name(),
+            Self::PartialSlip => Regime::PartialSlip.name(),
+            Self::Mixed => "mixed",
+            Self::FullSliding => Regime::FullSliding.name(),
+        }
+    }
+}
+
 /// Compression `q_c` of the springs at the edge of stick, m [S, Eq. (11)].
 ///
 /// ```text

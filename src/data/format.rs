@@ -1,7 +1,7 @@
 //! The kinds of files of this program.
 
 /// Value of the root attribute `format_version` of a run that this program writes and reads.
-pub const FORMAT_VERSION: i32 = 3;
+pub const FORMAT_VERSION: i32 = 4;
 
 /// What a file is of; its root attribute `format` tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

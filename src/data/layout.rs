@@ -22,6 +22,13 @@ pub const POINT: Quantity<'static> = quantity("point", "1", "index along one fre
 pub const SPRING: Quantity = quantity("spring", "1", "index of the spring");
 /// What the oscillation does to the contact, a place in [`Regime::ALL`](crate::contact::stick_slip::Regime::ALL), shape `(time,)`.
 pub const REGIME: Quantity = quantity("regime", "1", "what the oscillation does to the contact");
+/// Regime of the run so far, a place in [`FrettingRegime::ALL`](crate::contact::stick_slip::FrettingRegime::ALL), shape `(time,)`; follows from the
+/// conditions of the cycles.
+pub const FRETTING_REGIME: Quantity = quantity(
+    "fretting_regime",
+    "1",
+    "fretting regime of the run so far: mixed where some cycles have slid as a whole and some have not",
+);
 /// Attribute of the regimes: the numbers there are.
 pub const FLAG_VALUES: &str = "flag_values";
 /// Attribute of the regimes: what the numbers mean, one word each.
@@ -119,7 +126,7 @@ const fn field<Record, Value>(
 }
 
 /// Shape `(time,)`.
-pub(super) const SERIES: [Field<Snapshot, f64>; 11] = [
+pub(super) const SERIES: [Field<Snapshot, f64>; 13] = [
     field(quantity("cycles", "1", "number of fretting cycles"), |it| &it.cycles, |it| &mut it.cycles),
     field(quantity("tau", "1", "dimensionless time"), |it| &it.tau, |it| &mut it.tau),
     field(quantity("wear_volume", "m3", "worn volume"), |it| &it.wear_volume, |it| &mut it.wear_volume),
@@ -163,6 +170,16 @@ pub(super) const SERIES: [Field<Snapshot, f64>; 11] = [
         |it| &it.tangential_force,
         |it| &mut it.tangential_force,
     ),
+    field(
+        quantity("energy_ratio", "1", "energy of the fretting loop over 4 Q* δ*"),
+        |it| &it.energy_ratio,
+        |it| &mut it.energy_ratio,
+    ),
+    field(
+        quantity("sliding_ratio", "1", "width of the fretting loop at no force over the stroke"),
+        |it| &it.sliding_ratio,
+        |it| &mut it.sliding_ratio,
+    ),
 ];
 
 /// Shape `(time, node)`.
@@ -173,12 +190,17 @@ pub(super) const CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
     field(quantity("slip", "m", "slip amplitude"), |it| &it.slip, |it| &mut it.slip),
 ];
 
-/// Those of the curves that are not known everywhere, and where they are not.
-pub(super) const UNKNOWN: [(&str, &str); 1] = [(
-    "pressure",
-    "Not a number at radii within the stick zone, where the method does not give the pressure: these slipped until the edge of stick passed them. \
-     Zero outside the contact.",
-)];
+/// Those of the series and curves that are not known everywhere, and where they are not.
+pub(super) const UNKNOWN: [(&str, &str); 3] = [
+    ("energy_ratio", OFF_AXIS),
+    ("sliding_ratio", OFF_AXIS),
+    (
+        "pressure",
+        "Not a number at radii within the stick zone, where the method does not give the pressure: these slipped until the edge of stick passed them. \
+         Zero outside the contact.",
+    ),
+];
+const OFF_AXIS: &str = "Not a number where the indenter leaves the x axis or is not moved.";
 
 /// Shape `(time, point)`, in the group of the loops; those along y only where the indenter leaves the x axis.
 pub(super) const LOOP_CURVES: [Field<Snapshot, Vec<f64>>; 4] = [

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use hdf5::Group;
 
-use super::dataset::{Attribute, Dataset, Number, Variable, WRITE_AGAIN, text};
+use super::dataset::{Attribute, Dataset, Number, Quantity, Variable, WRITE_AGAIN, text};
 use super::layout::*;
 use super::reader::{OpenFile, Wanted};
 use super::save::Save;
 use super::seal::ResultPath;
-use super::{Checkpoint, Format, LimitCurves, RunHeader, Snapshot, StopReason};
+use super::{Checkpoint, Format, LimitCurves, RunHeader, Snapshot, StopReason, fretting_regimes};
 use crate::contact::indenter::TabulatedProfile;
-use crate::contact::stick_slip::Regime;
+use crate::contact::stick_slip::{FrettingRegime, Regime};
 use crate::error::Result;
 use crate::laws::motion::RecordedPath;
 use crate::solver::model::{Linearised, Past, PastPoint, StickEdge};
@@ -110,18 +110,14 @@ impl Save<'_> {
         run.index(NODE, node.1);
         for field in &SERIES {
             let values: Vec<f64> = self.snapshots.iter().map(field.of).copied().collect();
-            let variable = Variable::new(field.quantity, &[time], values);
+            let variable = missing_told(Variable::new(field.quantity, &[time], values));
             let is_coordinate = ["cycles", "tau"].contains(&field.quantity.name);
             run.add(if is_coordinate { variable } else { variable.with_coordinates("cycles tau") });
         }
-        let regimes: Vec<i32> = self.snapshots.iter().map(|it| it.regime as i32).collect();
-        let flags = Attribute::Integers(Regime::ALL.map(|regime| regime as i32).to_vec());
-        run.add(
-            Variable::new(REGIME, &[time], regimes)
-                .with_coordinates("cycles tau")
-                .with(FLAG_VALUES, flags)
-                .with(FLAG_MEANINGS, text(Regime::ALL.map(Regime::name).join(" "))),
-        );
+        let regimes = self.snapshots.iter().map(|it| it.regime as i32).collect();
+        run.add(flags(REGIME, regimes, &Regime::ALL.map(Regime::name)));
+        let regimes = fretting_regimes(self.snapshots).into_iter().map(|it| it as i32).collect();
+        run.add(flags(FRETTING_REGIME, regimes, &FrettingRegime::ALL.map(FrettingRegime::name)));
         run.add(Variable::new(RADIUS, &[node], self.header.radius.clone()));
         if let Some(limit) = &self.header.limit {
             for (quantity, values) in [(LIMIT_PROFILE, &limit.profile), (LIMIT_WEAR_DEPTH, &limit.wear_depth)]
@@ -133,13 +129,7 @@ impl Save<'_> {
             let values: Vec<f64> = self.snapshots.iter().flat_map(field.of).copied().collect();
             let curve =
                 Variable::new(field.quantity, &[time, node], values).with_coordinates("cycles tau radius");
-            run.add(match UNKNOWN.iter().find(|(name, _)| *name == field.quantity.name) {
-                // What is not a number is missing, as the CF conventions say it.
-                Some((_, why)) => {
-                    curve.with("_FillValue", Attribute::Real(f64::NAN)).with("comment", text(*why))
-                }
-                None => curve,
-            });
+            run.add(missing_told(curve));
         }
     }
 
@@ -179,6 +169,22 @@ impl Save<'_> {
             loops.add(Variable::new(field.quantity, &dimensions, values).with_coordinates("cycles tau"));
         }
         loops
+    }
+}
+
+/// Numbers along time that stand for words.
+fn flags(quantity: Quantity, numbers: Vec<i32>, words: &[&str]) -> Variable {
+    Variable::new(quantity, &[(TIME.name, numbers.len())], numbers)
+        .with_coordinates("cycles tau")
+        .with(FLAG_VALUES, Attribute::Integers((0..).take(words.len()).collect()))
+        .with(FLAG_MEANINGS, text(words.join(" ")))
+}
+
+/// With what its numbers that are none mean: they are missing, as the CF conventions say it.
+fn missing_told(variable: Variable) -> Variable {
+    match UNKNOWN.iter().find(|(name, _)| *name == variable.name) {
+        Some((_, why)) => variable.with("_FillValue", Attribute::Real(f64::NAN)).with("comment", text(*why)),
+        None => variable,
     }
 }
 

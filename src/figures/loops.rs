@@ -40,7 +40,10 @@ pub(super) fn rows(results: &RunResults) -> Vec<Row> {
     second.bar = Ages::new(&shown).bar(&shown);
     vec![
         Row { height: 240.0, panels: vec![panel(results, &ALONG), second] },
-        Row { height: 140.0, panels: vec![energy(results)] },
+        Row {
+            height: 140.0,
+            panels: [Some(energy(results)), ratios(results)].into_iter().flatten().collect(),
+        },
     ]
 }
 
@@ -79,6 +82,27 @@ fn panel(results: &RunResults, direction: &Direction) -> Panel {
         });
     }
     panel
+}
+
+/// Energy ratio and sliding ratio; none of orbits.
+fn ratios(results: &RunResults) -> Option<Panel> {
+    let later = || results.snapshots().iter().filter(|it| it.cycles > 0.0);
+    let of: [(&str, fn(&Snapshot) -> f64); 2] =
+        [("energy ratio *A*", |it| it.energy_ratio), ("sliding ratio *D*", |it| it.sliding_ratio)];
+    let all = later().flat_map(|it| of.map(|(_, of)| of(it))).filter(|it| it.is_finite());
+    let all: Vec<f64> = all.collect();
+    if all.is_empty() {
+        return None;
+    }
+    let x = Measure::NUMBER.axis("cycles *N*", Spacing::Logarithmic, later().map(|it| it.cycles), 0.0);
+    let y = Measure::NUMBER.axis("ratio", Spacing::Linear, all.into_iter().chain([0.0]), 0.08);
+    let mut panel = Panel::new(x, y).titled("openness of the loops");
+    for (number, (name, of)) in of.into_iter().enumerate() {
+        let style = Style::Line { width: 1.8, dash: Dash::ALL[number] };
+        let points = later().map(|it| [it.cycles, of(it)]).collect();
+        panel.series.push(Series::new(name, style, DISTINCT[number], points).in_legend());
+    }
+    Some(panel)
 }
 
 fn energy(results: &RunResults) -> Panel {

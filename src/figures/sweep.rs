@@ -26,9 +26,9 @@ const MOST_DOTS: usize = 5000;
 const USUAL: [&str; 2] = ["wear_volume", "wear_volume_limit"];
 
 /// Something that is varied.
-struct Input<'a> {
+pub(super) struct Input<'a> {
     key: &'a str,
-    values: &'a [f64],
+    pub(super) values: &'a [f64],
     different: Vec<f64>,
     measure: Measure,
 }
@@ -119,7 +119,7 @@ fn no_quantity(file: &SweepFile, name: &str) -> Error {
 }
 
 /// What is varied and a number, the keys in the order of the file.
-fn inputs(file: &SweepFile) -> Vec<Input<'_>> {
+pub(super) fn inputs(file: &SweepFile) -> Vec<Input<'_>> {
     file.columns.iter().filter_map(input).collect()
 }
 
@@ -149,7 +149,7 @@ fn scale_of_key(key: &str) -> Option<Scale> {
 }
 
 impl Input<'_> {
-    fn at(&self, row: usize) -> f64 {
+    pub(super) fn at(&self, row: usize) -> f64 {
         self.measure.of(self.values[row])
     }
 
@@ -165,7 +165,7 @@ impl Input<'_> {
         format!("{} = {}", plain(self.key), value.trim_end())
     }
 
-    fn axis(&self, margin: f64) -> Axis {
+    pub(super) fn axis(&self, margin: f64) -> Axis {
         let values = self.different.iter().map(|value| self.measure.of(*value));
         self.measure.axis(&plain(self.key), self.spacing(), values, margin)
     }

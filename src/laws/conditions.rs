@@ -36,6 +36,9 @@ pub struct Conditions {
     pub tangential_control: TangentialControl,
     /// Whether the normal force is held instead of the indentation.
     pub holds_normal_force: bool,
+    /// Whether the first loading from rest wears too, instead of cycles after frictional shakedown alone.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub wears_from_rest: bool,
     /// Cycles per second, Hz, where the scene tells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency: Option<f64>,
@@ -59,6 +62,7 @@ impl PartialEq for Conditions {
             repeat,
             tangential_control,
             holds_normal_force,
+            wears_from_rest,
             frequency,
         } = self;
         **friction == *other.friction
@@ -71,6 +75,7 @@ impl PartialEq for Conditions {
             && *repeat == other.repeat
             && *tangential_control == other.tangential_control
             && *holds_normal_force == other.holds_normal_force
+            && *wears_from_rest == other.wears_from_rest
             && *frequency == other.frequency
     }
 }
@@ -92,6 +97,7 @@ impl Conditions {
             repeat: false,
             tangential_control: TangentialControl::default(),
             holds_normal_force: false,
+            wears_from_rest: false,
             frequency: None,
         }
     }

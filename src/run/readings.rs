@@ -4,12 +4,12 @@ use super::Results;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::data::quantity::{Reading, number, word};
-use crate::data::{LimitDistance, Value};
+use crate::data::{LimitDistance, Value, largest};
 use crate::error::Result;
 use crate::scene::Scene;
 
 /// The results of a run, in the order of the keys of the JSON.
-pub const RUN: [Reading<Results>; 18] = [
+pub const RUN: [Reading<Results>; 23] = [
     word("stop_reason", "why the run stopped", |it| it.stop_reason().name().into()),
     number(
         "error_estimate",
@@ -36,6 +36,7 @@ pub const RUN: [Reading<Results>; 18] = [
     number("contact_radius", "m", "contact radius", |it| it.last().contact_radius.into()),
     number("stick_radius", "m", "radius of the stick zone", |it| it.last().stick_radius.into()),
     number("wear_volume", "m3", "worn volume", |it| it.last().wear_volume.into()),
+    number("wear_depth_max", "m", "largest wear depth", |it| largest(&it.last().wear_depth).into()),
     number("wear_volume_limit", "m3", "worn volume in the limit of many cycles", |it| {
         it.limit().map(LimitingShape::wear_volume).into()
     }),
@@ -50,6 +51,18 @@ pub const RUN: [Reading<Results>; 18] = [
     }),
     number("dissipated_energy", "J", "energy dissipated by friction since the start", |it| {
         it.last().dissipated_energy.into()
+    }),
+    word("regime", "what the last cycle does to the contact", |it| it.last().regime.name().into()),
+    word(
+        "fretting_regime",
+        "fretting regime of the run: mixed where some cycles slid as a whole and some did not",
+        |it| it.fretting_regime().last().map(|it| it.name()).into(),
+    ),
+    number("energy_ratio", "1", "energy of the last fretting loop over 4 Q* δ*", |it| {
+        it.last().energy_ratio.into()
+    }),
+    number("sliding_ratio", "1", "width of the last fretting loop at no force over the stroke", |it| {
+        it.last().sliding_ratio.into()
     }),
 ];
 
@@ -96,7 +109,7 @@ const fn line(
 }
 
 /// The results of a closed form, in the order of the keys of the JSON.
-pub const LIMIT: [Reading<ClosedForm>; 18] = [
+pub const LIMIT: [Reading<ClosedForm>; 21] = [
     line("grading k", "grading", "1", "grading k of E = E0 (z/z0)^k", |it| {
         it.contact.half_space().grading().into()
     }),
@@ -132,6 +145,27 @@ pub const LIMIT: [Reading<ClosedForm>; 18] = [
     line("stick radius c", "stick_radius", "m", "radius of the stick zone", |it| {
         it.contact.stick_radius().into()
     }),
+    line(
+        "energy ratio A, unworn",
+        "energy_ratio",
+        "1",
+        "energy of the fretting loop over 4 Q* δ* before any wear",
+        |it| it.contact.energy_ratio().ok().into(),
+    ),
+    line(
+        "energy ratio of full sliding",
+        "energy_ratio_transition",
+        "1",
+        "the same where full sliding begins",
+        |it| it.contact.energy_ratio_transition().ok().into(),
+    ),
+    line(
+        "sliding ratio, unworn",
+        "sliding_ratio",
+        "1",
+        "width of the fretting loop at no force over the stroke before any wear",
+        |it| it.contact.sliding_ratio().ok().into(),
+    ),
     line(
         "contact radius a∞, limit",
         "contact_radius_limit",

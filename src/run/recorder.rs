@@ -27,6 +27,9 @@ pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
     let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
     let fretting_loop = fretting_loop(simulation);
     let tangential_force = fretting_loop.largest_force();
+    let share = model.schedule().loading(state.cycles, state.cycles).share;
+    let [energy_ratio, sliding_ratio] =
+        [fretting_loop.energy_ratio(cycle.work / share), fretting_loop.sliding_ratio()];
     let along_y = |values: Vec<f64>| if model.schedule().leaves_axis() { values } else { vec![] };
     let [loop_displacement, displacement_y] = fretting_loop.displacement;
     let [loop_force, force_y] = fretting_loop.force;
@@ -44,6 +47,8 @@ pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
         dissipated_energy: state.dissipated_energy,
         cycle_energy: cycle.dissipation,
         tangential_force,
+        energy_ratio,
+        sliding_ratio,
         loop_displacement,
         loop_force,
         loop_displacement_y,

@@ -2,8 +2,10 @@
 
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::indenter::Indenter;
-use crate::contact::stick_slip::Regime;
-use crate::data::{Checkpoint, LimitCurves, LimitDistance, RunHeader, Snapshot, StopReason};
+use crate::contact::stick_slip::{FrettingRegime, Regime};
+use crate::data::{
+    Checkpoint, LimitCurves, LimitDistance, RunHeader, Snapshot, StopReason, fretting_regimes,
+};
 
 /// What a run came to: snapshots from its start to its end, the limiting shape, the estimated error. SI units throughout.
 ///
@@ -81,6 +83,16 @@ impl Results {
         self.series(|it| it.tangential_force)
     }
 
+    /// Energy ratio `A = W/(4 Q* δ*)` of the fretting loop, shape `(time,)`.
+    pub fn energy_ratio(&self) -> Vec<f64> {
+        self.series(|it| it.energy_ratio)
+    }
+
+    /// Sliding ratio of the fretting loop, its width at no force over the stroke, shape `(time,)`.
+    pub fn sliding_ratio(&self) -> Vec<f64> {
+        self.series(|it| it.sliding_ratio)
+    }
+
     /// Energy dissipated by friction since the start, J, shape `(time,)`.
     pub fn dissipated_energy(&self) -> Vec<f64> {
         self.series(|it| it.dissipated_energy)
@@ -94,6 +106,11 @@ impl Results {
     /// What the oscillation does to the contact, shape `(time,)`.
     pub fn regime(&self) -> Vec<Regime> {
         self.snapshots.iter().map(|it| it.regime).collect()
+    }
+
+    /// Fretting regime of the run so far, shape `(time,)`.
+    pub fn fretting_regime(&self) -> Vec<FrettingRegime> {
+        fretting_regimes(&self.snapshots)
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Motion<'a> {
     pub control: TangentialControl,
     pub blocks: Vec<Block>,
     pub repeat: bool,
+    /// Whether the first loading wears too.
+    pub wears_from_rest: bool,
     /// Cycles per second, Hz.
     pub frequency: Option<f64>,
     mode: Option<Given<'a, dyn Mode>>,
@@ -78,7 +80,9 @@ pub(super) fn motion<'a>(section: &Section<'a>, rows: &Rows, clock: &mut OneCloc
     let blocks = blocks(section, clock)?;
     let repeat = section.read(&keys::REPEAT)?;
     let frequency = section.read_optional(&keys::FREQUENCY)?;
-    Ok(Motion { loading: Loading { load, amplitude, duration }, control, blocks, repeat, frequency, mode })
+    let from: usize = section.read(&keys::WEAR_FROM)?;
+    let loading = Loading { load, amplitude, duration };
+    Ok(Motion { loading, control, blocks, repeat, wears_from_rest: from == 1, frequency, mode })
 }
 
 /// The key that says what is held tangentially, if one does.
@@ -156,6 +160,12 @@ pub(super) fn check(
     friction: &dyn FrictionLaw,
 ) -> Result<()> {
     let of_mode = mode.entry().and_then(|mode| section.optional(mode.name));
+    if let (true, Some(entry)) = (motion.wears_from_rest, &of_mode) {
+        return Err(entry.misplaced(
+            "settles over several cycles, each with slip of its own, which loading.wear_from = \"first-cycle\" would have to follow one by one; \
+             leave that out (a loading to and fro at constant indentation is settled from its first reversal on)",
+        ));
+    }
     if motion.holds_normal_force() {
         let cure = "give loading.initial_force or loading.indentation instead";
         if let Some(entry) = of_mode.as_ref().filter(|_| mode.changes_indentation()) {

@@ -9,6 +9,7 @@ use super::{Cycle, MOST_SNAPSHOTS, Numerics, Output, Rows, Scene, Stepper, keys,
 use crate::contact::InitialContact;
 use crate::contact::half_space::{HalfSpace, Poisson, similar_stiffness_ratio};
 use crate::contact::indenter::{self, Indenter};
+use crate::contact::stick_slip::Regime;
 use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::entry as law;
@@ -37,7 +38,11 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
         }
         None => Numerics::default(),
     };
-    warnings.extend(warning_of_another_limit(&conditions));
+    let slides = || {
+        let contact = InitialContact::new(&indenter, &half_space, &friction, &wear, &loading);
+        contact.is_ok_and(|it| it.regime() == Regime::FullSliding)
+    };
+    warnings.extend(warning_of_another_limit(&conditions, slides));
     let output = match root.optional("output") {
         Some(entry) => output(&entry.section()?, Some(loading.duration))?,
         None => Output::default(),
@@ -112,6 +117,7 @@ fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &R
         clock: clock.clock(),
         mode,
         holds_normal_force: motion.holds_normal_force(),
+        wears_from_rest: motion.wears_from_rest,
         frequency: motion.frequency,
         blocks: motion.blocks,
         repeat: motion.repeat,
@@ -132,19 +138,22 @@ fn one_of<'a, L: ?Sized>(
 }
 
 /// The closed form knows nothing of what is not plain.
-fn warning_of_another_limit(conditions: &Conditions) -> Option<String> {
+fn warning_of_another_limit(conditions: &Conditions, slides: impl FnOnce() -> bool) -> Option<String> {
     let mut departures = conditions.departures();
     if conditions.holds_both_forces() {
         // That has a closed form of its own.
         departures.retain(|it| !Conditions::HELD_FORCES.contains(it));
     }
-    (!departures.is_empty()).then(|| {
-        format!(
-            "this scene has {}: limit takes its first cycle as plain tangential oscillation, run compares with the limit of the smallest \
-             stick radius and the largest indentation of the run; docs/universality.md tells when the final shape is another",
-            departures.join(", ")
-        )
-    })
+    if departures.is_empty() {
+        return None;
+    }
+    let says = if slides() {
+        "its first cycle slides as a whole, and no stick zone is left from which there would be a limit in closed form"
+    } else {
+        "limit takes its first cycle as plain tangential oscillation, run compares with the limit of the smallest stick radius and the \
+         largest indentation of the run; docs/universality.md tells when the final shape is another"
+    };
+    Some(format!("this scene has {}: {says}", departures.join(", ")))
 }
 
 fn table<'a>(root: &Section<'a>, table: &Table) -> Result<Section<'a>> {
@@ -232,7 +241,6 @@ fn warn_if_formal(section: &Section, poisson: Poisson, grading: f64, warnings: &
 
 pub(super) fn numerics(section: &Section) -> Result<Numerics> {
     section.check(&keys::NUMERICS)?;
-    section.read::<usize>(&keys::WEAR_FROM)?;
     Ok(Numerics {
         accuracy: section.read(&keys::ACCURACY)?,
         springs: section.read_optional(&keys::SPRINGS)?,

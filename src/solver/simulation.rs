@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::error::{Error, Result};
 use crate::laws::loading::has_come;
 use crate::numerics::grid::Clustering;
-use crate::solver::model::{CycleFields, Fields, Model, RadialFields, State};
+use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper};
 
 mod failure;
@@ -508,6 +508,11 @@ impl Simulation {
         self.healed_at = None;
         if let Some(target) = target {
             state.cycles = target;
+        }
+        let schedule = self.model.schedule();
+        if schedule.is_first(self.state.cycles) && !schedule.is_first(state.cycles) {
+            // Rates change by a jump, which no polynomial through the times before follows.
+            state.past = Past::default();
         }
         if let End::Rate(fraction) = self.plan.end
             && rate > fraction * self.progress.first_rate

@@ -137,6 +137,10 @@ impl Draw {
         text += &self.wear(&sizes, clock, end);
         text += &self.loading(&sizes, clock, end);
         text += &self.numerics(length);
+        if self.chance(0.05) {
+            let from = format!("[loading]\nwear_from = \"{}\"\n", self.one_of(&["settled", "first-cycle"]));
+            text = text.replacen("[loading]\n", &from, 1);
+        }
         text += &self.output(end, length);
         text
     }
@@ -496,9 +500,6 @@ impl Draw {
         if self.chance(0.2) || short {
             let most = if short { 16.0 } else { 200.0 };
             text += &format!("substeps = {}\n", self.scale(2.0, most) as usize);
-        }
-        if self.chance(0.05) {
-            text += &format!("wear_from = \"{}\"\n", self.one_of(&["shakedown", "shakedown"]));
         }
         if self.chance(0.1) {
             text += "checkpoint_interval = \"1 h\"\n";

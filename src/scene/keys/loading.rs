@@ -15,7 +15,7 @@ pub(in crate::scene) const LOADING: Table = Table::new(
 )
 .rules(&LOADING_RULES);
 
-const OWN_KEYS: [Key; 16] = [
+const OWN_KEYS: [Key; 17] = [
     INDENTATION,
     INITIAL_FORCE,
     NORMAL_FORCE,
@@ -38,6 +38,7 @@ const OWN_KEYS: [Key; 16] = [
     .optional(),
     REPEAT,
     FREQUENCY,
+    WEAR_FROM,
 ];
 
 const MODES: usize = motion::ENTRIES.len();
@@ -159,6 +160,13 @@ pub(in crate::scene) const FREQUENCY: Key = Key::quantity(
 .range(Range::POSITIVE)
 .example("10 Hz")
 .optional();
+
+pub(in crate::scene) const WEAR_FROM: Key = Key::new(
+    "wear_from",
+    Kind::Word(&["settled", "first-cycle"]),
+    "From when on wear counts: after frictional shakedown, or from the first loading on, which is a quarter of a cycle more.",
+)
+.default("settled");
 
 pub(in crate::scene) const BLOCK: Table = Table::new(
     "blocks",

@@ -7,7 +7,7 @@ use crate::units::{Dimension, Key, Kind, Range, Rule, Table};
 pub(in crate::scene) const NUMERICS: Table = Table::new(
     "numerics",
     "How it is computed; every key has a default that serves.",
-    &[ACCURACY, SPRINGS, STEPPER, TOLERANCE, CHECKPOINT_INTERVAL, CYCLE, SUBSTEPS, WEAR_FROM],
+    &[ACCURACY, SPRINGS, STEPPER, TOLERANCE, CHECKPOINT_INTERVAL, CYCLE, SUBSTEPS],
 );
 
 pub(in crate::scene) const ACCURACY: Key = Key::number(
@@ -45,13 +45,6 @@ pub(in crate::scene) const SUBSTEPS: Key =
         .range(Range::at_least(2.0).to(MOST_SUBSTEPS as f64))
         .example("192")
         .optional();
-/// There is nothing to choose yet: a key for scenes that say it.
-pub(in crate::scene) const WEAR_FROM: Key = Key::new(
-    "wear_from",
-    Kind::Word(&["shakedown"]),
-    "From when on a resolved cycle wears: from the periodic cycle into which stick and slip settle.",
-)
-.default("shakedown");
 
 pub(in crate::scene) const OUTPUT: Table = Table::new(
     "output",

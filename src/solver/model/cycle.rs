@@ -73,6 +73,19 @@ struct Surface {
     path: Mat<f64>,
 }
 
+impl CycleFields {
+    /// What so many of these cycles do together.
+    pub(super) fn lasting(mut self, cycles: f64) -> Self {
+        if cycles != 1.0 {
+            self.growth.iter_mut().for_each(|growth| *growth *= cycles);
+            for sum in [&mut self.dissipation, &mut self.jump_loss, &mut self.work, &mut self.volume] {
+                *sum *= cycles;
+            }
+        }
+        self
+    }
+}
+
 impl Model {
     /// What a cycle does to the contact whose fields are given.
     pub fn cycle(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> CycleFields {
@@ -80,16 +93,22 @@ impl Model {
             return self.gross_cycle(gross, loading, compression);
         }
         let mut cycle = self.local_cycle(loading, compression, fields);
-        if let Some(factor) = self.factor_at_contact(loading, fields, &cycle) {
+        if let Some(factor) = self.factor_at_contact(loading, fields, cycle.dissipation) {
             cycle.growth.iter_mut().for_each(|growth| *growth *= factor);
             cycle.volume *= factor;
         }
-        cycle
+        cycle.lasting(loading.share)
     }
 
     /// Factor on all wear of a law that goes by what the contact as a whole dissipates.
-    fn factor_at_contact(&self, loading: &CycleLoading, fields: &Fields, cycle: &CycleFields) -> Option<f64> {
-        loading.wear.at_contact(cycle.dissipation / (PI * (fields.stick_zone.stick_area + fields.slip_area)))
+    fn factor_at_contact(&self, loading: &CycleLoading, fields: &Fields, dissipation: f64) -> Option<f64> {
+        loading.wear.at_contact(dissipation / (PI * (fields.stick_zone.stick_area + fields.slip_area)))
+    }
+
+    /// That factor for the cycle that it was found in, with the settled cycles that this one wears as much as.
+    fn share_at_contact(&self, loading: &CycleLoading, fields: &Fields, cycle: &CycleFields) -> f64 {
+        let settled = cycle.dissipation / loading.share;
+        loading.share * self.factor_at_contact(loading, fields, settled).unwrap_or(1.0)
     }
 
     /// What a cycle does by what happens at each place.
@@ -286,9 +305,11 @@ impl Model {
         cycle: &CycleFields,
         factor: f64,
     ) -> Option<PlainSlopes> {
-        let at_contact = self.factor_at_contact(loading, fields, cycle).unwrap_or(1.0);
-        let per_pressure =
-            at_contact * factor * 4.0 * self.slip_per_depth(loading, fields)? * self.archard(loading)?;
+        let per_pressure = self.share_at_contact(loading, fields, cycle)
+            * factor
+            * 4.0
+            * self.slip_per_depth(loading, fields)?
+            * self.archard(loading)?;
         Some(PlainSlopes {
             by_pressure: per_pressure * self.pressure_scale(fields),
             by_slip_area: cycle
@@ -339,7 +360,7 @@ impl Model {
             Some(spread) => spread[(i, j)],
             None => self.operators.abel.pressure(i, j),
         };
-        let at_contact = self.factor_at_contact(loading, fields, cycle).unwrap_or(1.0);
+        let at_contact = self.share_at_contact(loading, fields, cycle);
         let per_cycle = at_contact * factor / loading.cycles_per_period;
         let scale = fields.slip_area.powf(self.mu());
         let profile = self.operators.abel.profile();

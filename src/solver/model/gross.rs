@@ -220,7 +220,7 @@ impl Model {
             let depth = rate.depth * path;
             at_contact * law.of_cycle(depth).map_or(depth, |[depth, _]| depth)
         });
-        let depth: Vec<f64> = depth.collect();
+        let mut depth: Vec<f64> = depth.collect();
         let volume = match law.volume_per_energy(loading.friction.coefficient()) {
             Some(factor) => at_contact * factor * dissipation,
             None => {
@@ -240,7 +240,8 @@ impl Model {
             amplitude: loading.amplitude,
             stick_radius: whole.stick.as_ref().map_or(0.0, |stick| (stick.fraction * whole.area).sqrt()),
         };
-        (depth, cycle)
+        depth.iter_mut().for_each(|depth| *depth *= loading.share);
+        (depth, cycle.lasting(loading.share))
     }
 
     /// Rates of the compressions, and what a cycle does; none where no contact has them.

@@ -7,6 +7,7 @@ use super::{CycleFields, Fields, Model};
 use crate::contact::spring::{Shakedown, SpringCycle, steady_cycle};
 use crate::laws::path::{Path, PathPoint};
 use crate::numerics::quadrature::Rule;
+use crate::numerics::roots::bracketed;
 
 /// Nodes of the quadrature over the core that no cycle reaches.
 const CORE_NODES: usize = 24;
@@ -21,6 +22,8 @@ pub struct FrettingLoop {
     /// Work of the tangential displacement in the period, J: energy that friction dissipates and what jumps from the static to the
     /// kinetic limit lose.
     pub work: f64,
+    /// Width at no force, m, of a loop along x; not a number where the indenter leaves the axis or is not moved.
+    pub width: f64,
 }
 
 impl FrettingLoop {
@@ -28,6 +31,31 @@ impl FrettingLoop {
     pub fn largest_force(&self) -> f64 {
         let [x, y] = &self.force;
         x.iter().zip(y).map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max)
+    }
+
+    /// Energy ratio `A = W/(4 Q* δ*)` of a loop along x, with half the ranges of force and displacement [Fouvry, Kapsa, Vincent, Wear 185 (1995) 35].
+    ///
+    /// # Arguments
+    /// * `work` -- `W` of a cycle, J
+    pub fn energy_ratio(&self, work: f64) -> f64 {
+        let ratio =
+            work / (range(self.force[0].iter().copied()) * range(self.displacement[0].iter().copied()));
+        if self.width.is_finite() && ratio.is_finite() { ratio } else { f64::NAN }
+    }
+
+    /// Sliding ratio of a loop along x: width at no force over the stroke.
+    pub fn sliding_ratio(&self) -> f64 {
+        self.width / range(self.displacement[0].iter().copied())
+    }
+
+    /// Width at no force, m, of the polygon through the points of a loop along x.
+    fn polygon_width(&self) -> f64 {
+        let ([u, across], force) = (&self.displacement, &self.force[0]);
+        if across.iter().any(|y| *y != 0.0) {
+            return f64::NAN;
+        }
+        let sides = u.windows(2).zip(force.windows(2)).filter(|(_, f)| (f[0] > 0.0) != (f[1] > 0.0));
+        range(sides.map(|(u, f)| u[0] + (u[1] - u[0]) * f[0] / (f[0] - f[1])))
     }
 
     /// Area of the loop by the trapezoidal rule, J: [`FrettingLoop::work`] to second order in the distance of the points.
@@ -77,10 +105,13 @@ impl Model {
             let displacement = to_and_fro(self.contact.amplitude(), steps);
             let force = self.fretting_loop(fields, compression, &displacement);
             let none = vec![0.0; displacement.len()];
+            let moved = |displacement: f64| self.tangential_force(fields, compression, displacement);
+            let (amplitude, largest) = (displacement[0], force[0]);
             return FrettingLoop {
                 displacement: [displacement, none.clone()],
                 force: [force, none],
-                work: cycle.dissipation,
+                work: cycle.dissipation / loading.share,
+                width: width(amplitude, |u| largest - 2.0 * moved(0.5 * (amplitude - u))),
             };
         }
         let tangential = self.schedule.conditions().mode.is_tangential();
@@ -92,7 +123,12 @@ impl Model {
                 let mut points: Vec<PathPoint> =
                     to_and_fro(cycle.amplitude, steps).into_iter().map(place).collect();
                 points.pop();
-                self.spring_loop(loading, &Path { points }, compression, fields)
+                let passing =
+                    |points: Vec<PathPoint>| self.spring_loop(loading, &Path { points }, compression, fields);
+                let found = passing(points);
+                let on_the_way =
+                    |u: f64| passing([cycle.amplitude, u, -cycle.amplitude].map(place).to_vec()).force[0][1];
+                FrettingLoop { width: width(cycle.amplitude, on_the_way), ..found }
             }
         }
     }
@@ -140,8 +176,20 @@ impl Model {
         for force in &mut force {
             force[0] = force[steps];
         }
-        FrettingLoop { displacement, force, work }
+        let found = FrettingLoop { displacement, force, work, width: f64::NAN };
+        FrettingLoop { width: found.polygon_width(), ..found }
     }
+}
+
+/// Largest value less the smallest; not a number where there is none.
+fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], it| [low.min(it), high.max(it)]);
+    if ends[0] <= ends[1] { ends[1] - ends[0] } else { f64::NAN }
+}
+
+/// Width at no force, m, of a loop whose way back is its way from `U` to `-U` turned about the origin; not a number where no force acts.
+fn width(amplitude: f64, force: impl FnMut(f64) -> f64) -> f64 {
+    bracketed(force, -amplitude, amplitude, 0.0).map_or(f64::NAN, |u| 2.0 * u.abs())
 }
 
 /// Displacements, m, from the amplitude to its negative and back, denser next to the reversals.

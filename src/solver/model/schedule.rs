@@ -55,7 +55,16 @@ pub struct CycleLoading {
     pub response: Option<Arc<Response>>,
     /// Cycles in that period.
     pub cycles_per_period: f64,
+    /// Settled cycles that this one wears as much as: see [`FROM_REST`].
+    pub share: f64,
 }
+
+/// Settled cycles that the first one from rest wears as much as. The first loading moves every spring as a quarter of a settled cycle does: it
+/// slips `σ` of `4 σ`, under the same load, in a quarter of the time, and is settled from the first reversal on.
+const FROM_REST: f64 = 1.25;
+
+/// End of the first cycle.
+const FIRST_END: f64 = 1.0;
 
 impl CycleLoading {
     /// What is asked: an amplitude of the displacement, m, or of the force, N.
@@ -148,6 +157,7 @@ impl Schedule {
                 path: None,
                 response: None,
                 cycles_per_period: 1.0,
+                share: 1.0,
             };
             let mut depth = indentation;
             if resolved {
@@ -190,6 +200,9 @@ impl Schedule {
     /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning.
     pub fn loading(&self, start: f64, cycles: f64) -> CycleLoading {
         let mut loading = self.loadings[self.block(start).1].clone();
+        if self.is_first(start) {
+            loading.share = FROM_REST;
+        }
         let factor = |history: &History| history.at(cycles * self.clock_rate);
         if self.conditions.friction_history != History::Constant {
             loading.friction = loading.friction.scaled(factor(&self.conditions.friction_history));
@@ -198,6 +211,11 @@ impl Schedule {
             loading.wear = loading.wear.scaled(factor(&self.conditions.wear_history));
         }
         loading
+    }
+
+    /// Whether a time, cycles, is within a first cycle that wears from rest.
+    pub fn is_first(&self, cycles: f64) -> bool {
+        self.conditions.wears_from_rest && !has_come(FIRST_END, cycles)
     }
 
     /// How friction changes along the cycles, or along the energy dissipated: never along both.
@@ -213,11 +231,11 @@ impl Schedule {
         &self.friction_along_energy
     }
 
-    /// The first cycle of each block, with the laws as they are at the start.
+    /// The first settled cycle of each block, with the laws as they are at the start.
     pub fn first_cycles(&self) -> impl Iterator<Item = CycleLoading> {
         let mut start = 0.0;
         self.loadings.iter().enumerate().map(move |(block, _)| {
-            let loading = self.loading(start, 0.0);
+            let loading = CycleLoading { share: 1.0, ..self.loading(start, 0.0) };
             start = self.ends.get(block).copied().unwrap_or_default();
             loading
         })
@@ -257,7 +275,12 @@ impl Schedule {
             let (pass, block) = self.block(cycles);
             self.end(pass, block)
         });
-        kinks.chain(block).filter(|time| !has_come(*time, cycles) && time.is_finite()).min_by(f64::total_cmp)
+        let first = self.conditions.wears_from_rest.then_some(FIRST_END);
+        kinks
+            .chain(block)
+            .chain(first)
+            .filter(|time| !has_come(*time, cycles) && time.is_finite())
+            .min_by(f64::total_cmp)
     }
 
     /// How many breaks there are up to a number of cycles.
@@ -269,7 +292,7 @@ impl Schedule {
             Some(whole) if self.conditions.repeat => cycles / whole * self.ends.len() as f64,
             _ => self.ends.iter().filter(|end| **end < cycles).count() as f64,
         };
-        kinks as f64 + ends
+        kinks as f64 + ends + f64::from(u8::from(self.conditions.wears_from_rest))
     }
 
     /// Pass through the blocks, and index of the block, that begins at `cycles` or is under way then.
