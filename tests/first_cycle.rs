@@ -45,7 +45,7 @@ const CASES: [Case; 14] = [
     ),
     case(
         COULOMB,
-        "[wear.friction-power]\ncoefficient = {k}\nexponent = -0.25\nscope = \"contact\"",
+        "[wear.friction-power]\ncoefficient = {k}\nexponent = -0.25\nscope = \"global\"",
         "indentation = 1.0\nstick_ratio = 0.7\nfrequency = 10",
     ),
     case("[friction.static-kinetic]\nstatic_coefficient = 1.2\nkinetic_coefficient = 1.0", ARCHARD, PARTIAL),
@@ -87,7 +87,7 @@ fn a_run_from_rest_is_the_settled_one_a_quarter_of_a_cycle_further() {
             "{} {} {}: {volume:.1e}, {energy:.1e}; settled {apart:.1e}",
             case.friction, case.wear, case.loading
         );
-        assert!(volume < 2e-4 && energy < 2e-4, "{} {}: {volume:e}, {energy:e}", case.wear, case.loading);
+        assert!(volume < 5e-5 && energy < 5e-5, "{} {}: {volume:e}, {energy:e}", case.wear, case.loading);
         assert!(apart > 20.0 * volume, "{} {}: {apart:e} {volume:e}", case.wear, case.loading);
         assert!(from_rest.wear_depth()[0].iter().all(|depth| *depth == 0.0));
         // The loop is that of the settled cycle, and not 5/4 of it.
