@@ -1,7 +1,7 @@
 //! Fretting regimes over cycles and what a sweep varies: a running condition fretting map.
 
 use super::measure::Measure;
-use super::sweep::{Input, inputs};
+use super::sweep::{Input, inaccurate, inputs};
 use crate::contact::stick_slip::{FrettingRegime, Regime};
 use crate::data::{Snapshot, SweepFile, fretting_regimes};
 use crate::error::{Error, Result};
@@ -48,10 +48,9 @@ pub(super) fn figure(file: &SweepFile) -> Result<Figure> {
     let panel = panel(over, &rows);
     let title = Some(plain(&file.header.title)).filter(|title| !title.is_empty());
     let lacking = over.values.len() - rows.len();
-    let notes = match lacking {
-        0 => vec![],
-        _ => vec![format!("{lacking} of {} scenes have no snapshots.", over.values.len())],
-    };
+    let lacks =
+        (lacking > 0).then(|| format!("{lacking} of {} scenes have no snapshots.", over.values.len()));
+    let notes = lacks.into_iter().chain(inaccurate(file)).collect();
     Ok(Figure { title, rows: vec![Row { height: 300.0, panels: vec![panel] }], notes })
 }
 

@@ -91,6 +91,14 @@ fn notes(file: &SweepFile, values: &[f64]) -> Vec<String> {
     notes
 }
 
+/// A sentence about the scenes that are less accurate than was asked for.
+pub(super) fn inaccurate(file: &SweepFile) -> Option<String> {
+    let column = file.columns.iter().find(|it| it.name == "accuracy_met")?;
+    let Values::Numbers(met) = &column.values else { return None };
+    let missed = met.iter().filter(|it| **it == 0.0).count();
+    (missed > 0).then(|| format!("{missed} of {} scenes are less accurate than was asked for.", met.len()))
+}
+
 /// Logarithmic where results are positive and of very different sizes.
 fn spacing(values: &[f64]) -> Spacing {
     let finite = || values.iter().copied().filter(|value| value.is_finite());
@@ -139,10 +147,14 @@ fn input(column: &Variable) -> Option<Input<'_>> {
 /// Units of the values of a key of the scene.
 fn scale_of_key(key: &str) -> Option<Scale> {
     match key.rsplit('.').next().unwrap_or(key) {
-        "radius" | "amplitude" | "indentation" | "transverse_amplitude" | "reference_depth" | "smoothing" => {
-            Some(Scale::LENGTH)
-        }
-        "initial_force" | "normal_force" => Some(Scale::FORCE),
+        "radius"
+        | "amplitude"
+        | "stroke"
+        | "indentation"
+        | "transverse_amplitude"
+        | "reference_depth"
+        | "smoothing" => Some(Scale::LENGTH),
+        "initial_force" | "normal_force" | "tangential_force" => Some(Scale::FORCE),
         "modulus" | "pressure" => Some(Scale::PRESSURE),
         _ => None,
     }

@@ -162,8 +162,8 @@ pub(super) fn check(
     let of_mode = mode.entry().and_then(|mode| section.optional(mode.name));
     if let (true, Some(entry)) = (motion.wears_from_rest, &of_mode) {
         return Err(entry.misplaced(
-            "settles over several cycles, each with slip of its own, which loading.wear_from = \"first-cycle\" would have to follow one by one; \
-             leave that out (a loading to and fro at constant indentation is settled from its first reversal on)",
+            "slips in ways of its own in the first cycles, which loading.wear_from = \"first-cycle\" would have to follow one by one; leave that \
+             out (tangential oscillation at constant indentation is settled from its first reversal on)",
         ));
     }
     if motion.holds_normal_force() {
