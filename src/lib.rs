@@ -124,7 +124,7 @@ pub use contact::closed_form::{
 pub use contact::half_space::{HalfSpace, modulus_at_depth, similar_stiffness_ratio};
 pub use contact::indenter::{EquivalentProfile, Indenter, TabulatedProfile, power_law_factor};
 pub use contact::stick_slip::{
-    Regime, full_sliding_amplitude, slip_amplitude, slip_compression, stick_radius,
+    FrettingRegime, Regime, full_sliding_amplitude, slip_amplitude, slip_compression, stick_radius,
 };
 pub use contact::transforms::Transforms;
 pub use data::{LimitCurves, LimitDistance, Snapshot, StopReason};

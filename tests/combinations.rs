@@ -249,7 +249,7 @@ fn every_pair_runs_as_accurately_as_is_asked_or_is_refused_with_its_reason() {
 fn page(cells: &BTreeMap<[(usize, usize); 2], Cell>) -> String {
     let mut page = String::from(
         "# What goes together\n\n\
-         Every two levels of control, regime, law of wear, law of friction and mode, the rest plain: a paraboloid, k = 0, c/a0 = 0.7, τ = 1. **yes**: the run at an accuracy of 1e-2 is that near\n\
+         Every two levels of control, regime, law of wear, law of friction, mode and start of wear, the rest plain: a paraboloid, k = 0, c/a0 = 0.7, τ = 1. **yes**: the run at an accuracy of 1e-2 is that near\n\
          one at 2e-3, as it says. **told**: it says that it is not (`accuracy_met`, exit code 3). A number: refused, for the reason below. `tests/combinations.rs` runs all of it and keeps this page.\n",
     );
     let mut reasons: Vec<String> = vec![];
