@@ -16,7 +16,7 @@ use serde_json::Value;
 use std::f64::consts::PI;
 use support::command::{done, names, object, run, text};
 
-const KEYS: [&str; 19] = [
+const KEYS: [&str; 22] = [
     "grading",
     "stiffness_ratio",
     "normal_stiffness",
@@ -28,6 +28,9 @@ const KEYS: [&str; 19] = [
     "regime",
     "contact_radius_initial",
     "stick_radius",
+    "energy_ratio",
+    "energy_ratio_transition",
+    "sliding_ratio",
     "contact_radius_limit",
     "slip_width_limit",
     "contact_growth_limit",

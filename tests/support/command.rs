@@ -8,9 +8,11 @@ use std::time::Duration;
 use serde_json::Value;
 
 /// The keys of the JSON of `run`.
-pub const RUN_KEYS: [&str; 19] = [
+pub const RUN_KEYS: [&str; 24] = [
     "output",
     "stop_reason",
+    "regime",
+    "fretting_regime",
     "error_estimate",
     "accuracy_met",
     "cycles",
@@ -24,10 +26,13 @@ pub const RUN_KEYS: [&str; 19] = [
     "contact_radius",
     "stick_radius",
     "wear_volume",
+    "wear_depth_max",
     "wear_volume_limit",
     "limit_distance",
     "limit_distance_relative",
     "dissipated_energy",
+    "energy_ratio",
+    "sliding_ratio",
 ];
 
 /// The program in a folder of its own, without a terminal.
