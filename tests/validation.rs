@@ -66,6 +66,17 @@ fn worn_volumes_of_coatings_are_the_coefficient_times_the_energy() {
 }
 
 #[test]
+fn loops_of_the_unworn_sphere_are_those_of_the_closed_form() {
+    let contact = SCENE.parse::<Scene>().unwrap().contact().unwrap();
+    let results = run(415.1, "100 um", 0.3);
+    let pairs = [
+        (contact.energy_ratio().unwrap(), results.energy_ratio()[0]),
+        (contact.sliding_ratio().unwrap(), results.sliding_ratio()[0]),
+    ];
+    assert!(pairs.iter().all(|(one, other)| (one / other - 1.0).abs() < 1e-4), "{pairs:?}");
+}
+
+#[test]
 fn friction_that_is_not_known_does_not_change_the_volume_of_an_energy() {
     let per_energy = [0.2, 0.7].map(|friction| {
         let results = run(415.1, "100 um", friction);
