@@ -84,12 +84,16 @@ fn panel(results: &RunResults, direction: &Direction) -> Panel {
     panel
 }
 
+/// What a curve is of, and its value in a snapshot.
+type Ratio = (&'static str, fn(&Snapshot) -> f64);
+
+const RATIOS: [Ratio; 2] =
+    [("energy ratio *A*", |it| it.energy_ratio), ("sliding ratio *D*", |it| it.sliding_ratio)];
+
 /// Energy ratio and sliding ratio; none of orbits.
 fn ratios(results: &RunResults) -> Option<Panel> {
     let later = || results.snapshots().iter().filter(|it| it.cycles > 0.0);
-    let of: [(&str, fn(&Snapshot) -> f64); 2] =
-        [("energy ratio *A*", |it| it.energy_ratio), ("sliding ratio *D*", |it| it.sliding_ratio)];
-    let all = later().flat_map(|it| of.map(|(_, of)| of(it))).filter(|it| it.is_finite());
+    let all = later().flat_map(|it| RATIOS.map(|(_, of)| of(it))).filter(|it| it.is_finite());
     let all: Vec<f64> = all.collect();
     if all.is_empty() {
         return None;
@@ -97,7 +101,7 @@ fn ratios(results: &RunResults) -> Option<Panel> {
     let x = Measure::NUMBER.axis("cycles *N*", Spacing::Logarithmic, later().map(|it| it.cycles), 0.0);
     let y = Measure::NUMBER.axis("ratio", Spacing::Linear, all.into_iter().chain([0.0]), 0.08);
     let mut panel = Panel::new(x, y).titled("openness of the loops");
-    for (number, (name, of)) in of.into_iter().enumerate() {
+    for (number, (name, of)) in RATIOS.into_iter().enumerate() {
         let style = Style::Line { width: 1.8, dash: Dash::ALL[number] };
         let points = later().map(|it| [it.cycles, of(it)]).collect();
         panel.series.push(Series::new(name, style, DISTINCT[number], points).in_legend());

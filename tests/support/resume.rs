@@ -22,9 +22,11 @@ impl Observer for StopAfter {
 fn without_wall_time(path: &Path) -> RunFile {
     let mut file = RunFile::open(path).expect("a run");
     file.checkpoint.as_mut().expect("a checkpoint").wall_seconds = 0.0;
-    // Where the ground has come to stick it is not a number, which equals nothing; no pressure is negative.
-    let pressures = file.snapshots.iter_mut().flat_map(|snapshot| &mut snapshot.pressure);
-    pressures.filter(|pressure| pressure.is_nan()).for_each(|pressure| *pressure = -1.0);
+    // Pressure where the ground has come to stick and ratios of loops off the axis are not numbers, which equal nothing; none is negative.
+    let unknown = file.snapshots.iter_mut().flat_map(|snapshot| {
+        snapshot.pressure.iter_mut().chain([&mut snapshot.energy_ratio, &mut snapshot.sliding_ratio])
+    });
+    unknown.filter(|value| value.is_nan()).for_each(|value| *value = -1.0);
     file
 }
 
