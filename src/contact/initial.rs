@@ -115,21 +115,23 @@ impl InitialContact {
     ///
     /// # Arguments
     /// * `indentation` -- `d`, m, positive
-    /// * `slip_compression` -- `q_c`, m, from 0 to below `d`
+    /// * `slip_compression` -- `q_c`, m, from 0; from `d` on the whole contact slides
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if a sphere would sink in to its equator, or a table end.
     pub fn at(&self, indentation: f64, slip_compression: f64) -> Result<Self> {
         let profile = &self.equivalent_profile;
         let contact_radius = profile.radius_at(indentation)?;
-        let stick_logarithm = stick_logarithm(profile, indentation, contact_radius, slip_compression)?;
+        let sticks = slip_compression < indentation;
+        let logarithm = || stick_logarithm(profile, indentation, contact_radius, slip_compression);
+        let stick_logarithm = sticks.then(logarithm).transpose()?;
         let normal_force = self.half_space.normal_stiffness() * profile.load_integral(contact_radius);
         Ok(Self {
             indentation,
             contact_radius,
             normal_force,
             slip_compression,
-            stick_logarithm: Some(stick_logarithm),
+            stick_logarithm,
             ..self.clone()
         })
     }

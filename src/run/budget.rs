@@ -70,7 +70,7 @@ pub(in crate::run) fn springs_for(
     schedule: &Schedule,
     accuracy: f64,
 ) -> usize {
-    if Gross::follows(contact, schedule) {
+    if Gross::follows(contact, schedule).unwrap_or_default() {
         let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
         let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
         return (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize;

@@ -188,7 +188,7 @@ impl Model {
         clustering: Clustering,
         store: &OperatorStore,
     ) -> Result<Self> {
-        if Gross::follows(contact, &schedule) {
+        if Gross::follows(contact, &schedule)? {
             return Self::in_gross_slip(contact, schedule, springs, store);
         }
         let backend = Self::backend(contact, &schedule, springs);
@@ -284,6 +284,11 @@ impl Model {
             );
             return Err(Error::Inconsistent { what: "numerics.springs", why });
         }
+        let deepest = schedule.largest_indentation();
+        let contact = &match deepest == contact.indentation() {
+            true => contact.clone(),
+            false => contact.at(deepest, contact.slip_compression().max(deepest))?,
+        };
         let gross = Gross::new(contact, &schedule, springs)?;
         let half = contact.equivalent_profile().value(0.5 * contact.contact_radius());
         let unused = contact.at(contact.indentation(), contact.indentation() - half)?;

@@ -54,9 +54,9 @@ pub struct PlainSlopes {
 }
 
 /// Wear of the surface, from pressures and paths of slip: shape `(springs, steps)` each, one column of pressures if they are all the same.
-struct Worn {
+pub(super) struct Worn {
     /// Depth worn in a period, m.
-    depth: Vec<f64>,
+    pub depth: Vec<f64>,
     /// Derivatives by the pressure in each step.
     by_pressure: Mat<f64>,
     /// Derivatives by the path in each step.
@@ -64,13 +64,13 @@ struct Worn {
 }
 
 /// What is on the surface in the steps of a period.
-struct Surface {
+pub(super) struct Surface {
     /// What the law of wear takes as pressure, Pa, `(springs, steps)` or `(springs, 1)`.
-    pressure: Mat<f64>,
+    pub pressure: Mat<f64>,
     /// Direction of the slip in each step, `(springs, steps · components)`.
-    direction: Mat<f64>,
+    pub direction: Mat<f64>,
     /// Path of slip, m, `(springs, steps)`.
-    path: Mat<f64>,
+    pub path: Mat<f64>,
 }
 
 impl CycleFields {
@@ -258,7 +258,7 @@ impl Model {
     }
 
     /// Depth worn in a period.
-    fn worn(&self, loading: &CycleLoading, surface: &Surface, slopes: bool) -> Worn {
+    pub(super) fn worn(&self, loading: &CycleLoading, surface: &Surface, slopes: bool) -> Worn {
         let law = &*loading.wear;
         let (n, steps) = (surface.path.nrows(), surface.path.ncols());
         let size = if slopes { n } else { 0 };

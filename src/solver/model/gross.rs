@@ -4,7 +4,7 @@
 //! `f = d - u` depend on `ξ` alone. At a fixed radius `∂f/∂N` is the depth `W` worn in a cycle, so that on the moving mesh
 //!
 //! ```text
-//! d' - F q' + (A'/A) ξ ∂u/∂ξ = W(p, s),     s = (μ_f/M) (q_c - u),     q_c = M U/μ_f
+//! d' - F q' + (A'/A) ξ ∂u/∂ξ = W(p, s),     s = (μ_f/M) (q_c - u),     q_c = M U/μ_f  under Coulomb's law
 //! d - u(a) = f_0(a),     F_N = c_N A^ν ∫_0^1 ξ^(ν-1) q dξ  or  d held
 //! ```
 //!
@@ -13,14 +13,17 @@
 //! Under a held force next to the transition the axis may be pressed so hard, as the ground around it wears, that springs stick there again. Then
 //! `q_c - u` is the transform of `(q_c - q)₊`, zero within the stick radius.
 
+mod cycle;
+
 use std::f64::consts::PI;
 
-use super::schedule::{CycleLoading, Schedule};
+use super::first_force::first_force;
+use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
 use super::{CycleFields, Fields, Model, RadialFields, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
-use crate::laws::wear::Rubbing;
+use crate::laws::history::History;
 use crate::numerics::linear::dot;
 use crate::numerics::whole_contact::{Place, WholeContact};
 
@@ -48,18 +51,6 @@ struct Whole {
     elastic: Vec<f64>,
     /// Pressure, Pa, at the inner nodes.
     pressure: Vec<f64>,
-    /// `q_c - u`, m, at the inner nodes.
-    slip_depth: Vec<f64>,
-    stick: Option<Stick>,
-}
-
-/// Springs next to the axis that stick.
-#[derive(Debug, Clone)]
-struct Stick {
-    /// `c²/a²`.
-    fraction: f64,
-    /// `ξ`, weight of `∫ ξ^(ν-1) dξ`, and `q`.
-    within: Vec<[f64; 3]>,
 }
 
 /// Rates per cycle of a contact in gross slip.
@@ -76,12 +67,39 @@ pub struct GrossRates {
 }
 
 impl Gross {
-    /// Whether a contact is in gross slip from the first cycle on, to and fro at one amplitude under Coulomb's friction, and wears by a local law.
-    pub fn follows(contact: &InitialContact, schedule: &Schedule) -> bool {
-        contact.regime() == Regime::FullSliding
-            && schedule.is_uniform()
-            && !schedule.resolves()
-            && schedule.conditions().wear.spreading().is_none()
+    /// Whether a contact is in gross slip in every cycle: each is so on the unworn contact, at the largest indentation of the run.
+    ///
+    /// # Errors
+    /// Those of the force of the first cycle.
+    pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
+        let conditions = schedule.conditions();
+        let along_energy = *schedule.friction_along_energy() != History::Constant;
+        let both = along_energy && conditions.friction_history != History::Constant;
+        // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
+        let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
+        let spreads = conditions.wear.spreading().is_some();
+        // There wear by the traction ends all pressure in a finite time, which no step comes past.
+        let steep = conditions.friction.kinetic_strength_slope(0.0).is_infinite();
+        let ends = steep && conditions.wear.takes_traction() && !conditions.holds_normal_force;
+        if contact.regime() != Regime::FullSliding || both || lifted || spreads || ends {
+            return Ok(false);
+        }
+        let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
+        for loading in schedule.extremes() {
+            let slides = match loading.control {
+                AmplitudeControl::Displacement => loading.slip_compression(ratio) >= depth,
+                AmplitudeControl::Force(_) => false,
+                AmplitudeControl::Rig(_) => {
+                    let amplitude = loading.friction.static_strength(depth) / ratio;
+                    let force = first_force(contact, &*loading.friction, amplitude, depth)?;
+                    loading.excess(force, amplitude) <= 0.0
+                }
+            };
+            if !slides {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     pub(super) fn new(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Result<Self> {
@@ -110,17 +128,6 @@ fn unworn_compression(contact: &InitialContact, mesh: &WholeContact) -> Vec<f64>
     let inner = &mesh.fractions()[..mesh.inner()];
     let profile = contact.equivalent_profile();
     inner.iter().map(|x| contact.indentation() - profile.value(contact.contact_radius() * x.sqrt())).collect()
-}
-
-impl Stick {
-    /// `(sin πν/π) ∫_0^(c²) s^(ν-1) (q - q_c) (t-s)^(-ν) ds` at a fraction `ξ` outside.
-    fn missing(&self, nu: f64, slip_compression: f64, fraction: f64) -> f64 {
-        let parts = self
-            .within
-            .iter()
-            .map(|[x, weight, q]| weight * (q - slip_compression) * (fraction - x).powf(-nu));
-        (PI * nu).sin() / PI * parts.sum::<f64>()
-    }
 }
 
 impl Model {
@@ -169,79 +176,14 @@ impl Model {
         if !(area > 0.0 && area.is_finite() && indentation.is_finite()) {
             return None;
         }
-        let scale = half_space.normal_stiffness() * area.powf(nu - 1.0);
+        let scale = self.gross_pressure_scale(area);
         let pressure = mesh.pressure(compression).into_iter().map(|p| scale * p).collect();
-        let level = self.contact.slip_compression();
-        // At held indentation compressions only fall.
-        let pressed = gross.holds_force().then(|| mesh.last_above(compression, level)).flatten();
-        let stick = pressed.and_then(|end| {
-            let within = mesh.up_to(end, compression).ok()?;
-            Some(Stick { fraction: mesh.fraction(end), within })
-        });
-        let slip_depth = elastic.iter().zip(mesh.fractions()).take(mesh.inner());
-        let slip_depth = slip_depth.map(|(u, x)| self.slip_depth_at(stick.as_ref(), *u, *x)).collect();
-        Some(Whole { area, indentation, elastic, pressure, slip_depth, stick })
+        Some(Whole { area, indentation, elastic, pressure })
     }
 
-    fn slip_depth_at(&self, stick: Option<&Stick>, elastic: f64, fraction: f64) -> f64 {
-        let level = self.contact.slip_compression();
-        match stick {
-            Some(stick) if fraction <= stick.fraction => 0.0,
-            Some(stick) => level - elastic + stick.missing(1.0 - self.mu(), level, fraction),
-            None => level - elastic,
-        }
-    }
-
-    /// What a cycle does, with the depth worn at the inner nodes, m.
-    fn gross_wear(
-        &self,
-        gross: &Gross,
-        loading: &CycleLoading,
-        compression: &[f64],
-        whole: &Whole,
-    ) -> (Vec<f64>, CycleFields) {
-        let (half_space, mesh) = (self.contact.half_space(), &gross.mesh);
-        let friction = self.contact.friction().coefficient;
-        let per_depth = friction / half_space.stiffness_ratio();
-        let level = self.contact.slip_compression();
-        let inner = compression.iter().zip(mesh.load_weights());
-        let stuck = whole.stick.iter().flat_map(|stick| &stick.within);
-        let squares: f64 = inner.map(|(q, weight)| weight * q * (level - q)).sum::<f64>()
-            + stuck.map(|[_, weight, q]| weight * q * (q - level)).sum::<f64>();
-        let energy_scale = 4.0 * friction * per_depth * half_space.normal_stiffness();
-        let dissipation = energy_scale * whole.area.powf(1.0 - self.mu()) * squares;
-        let law = &*loading.wear;
-        let mean_pressure = self.contact.mean_pressure();
-        let at_contact = law.at_contact(dissipation / (PI * whole.area)).unwrap_or(1.0);
-        let pressed = if law.takes_traction() { friction } else { 1.0 };
-        let depth = whole.pressure.iter().zip(&whole.slip_depth).map(|(pressure, slip)| {
-            let path = 4.0 * per_depth * slip.max(0.0);
-            let rate = law.rate(&Rubbing { pressure: pressed * pressure, path, mean_pressure });
-            let depth = rate.depth * path;
-            at_contact * law.of_cycle(depth).map_or(depth, |[depth, _]| depth)
-        });
-        let mut depth: Vec<f64> = depth.collect();
-        let volume = match law.volume_per_energy(loading.friction.coefficient()) {
-            Some(factor) => at_contact * factor * dissipation,
-            None => {
-                // At the edge the polynomial through the other nodes.
-                let mut all = depth.clone();
-                all.push(mesh.value_inside(&depth, mesh.place(1.0)));
-                PI * whole.area * mesh.area(&all)
-            }
-        };
-        let cycle = CycleFields {
-            growth: depth.iter().map(|depth| depth / self.contact.indentation()).collect(),
-            slip: whole.slip_depth.iter().map(|depth| per_depth * depth).collect(),
-            dissipation,
-            jump_loss: 0.0,
-            work: dissipation,
-            volume,
-            amplitude: loading.amplitude,
-            stick_radius: whole.stick.as_ref().map_or(0.0, |stick| (stick.fraction * whole.area).sqrt()),
-        };
-        depth.iter_mut().for_each(|depth| *depth *= loading.share);
-        (depth, cycle.lasting(loading.share))
+    /// `c_N A^(ν-1)`, Pa/m.
+    fn gross_pressure_scale(&self, area: f64) -> f64 {
+        self.contact.half_space().normal_stiffness() * area.powf(-self.mu())
     }
 
     /// Rates of the compressions, and what a cycle does; none where no contact has them.
@@ -253,7 +195,7 @@ impl Model {
     ) -> Option<GrossRates> {
         let mesh = &gross.mesh;
         let whole = self.whole(gross, compression)?;
-        let (depth, cycle) = self.gross_wear(gross, loading, compression, &whole);
+        let (depth, cycle, _) = self.gross_wear(gross, loading, compression, &whole);
         // q' = d' F⁻¹ 1 + (A'/A) F⁻¹ ξ ∂u/∂ξ - F⁻¹ W, with A'/A and d' from the edge and the force.
         let mut carried = mesh.dilation(&whole.elastic);
         mesh.solve_profile(&mut carried);
@@ -314,7 +256,6 @@ impl Model {
             slip_area: whole.area,
             wear_depth: depth.collect(),
             elastic_depth: whole.elastic,
-            slip_depth: whole.slip_depth,
             pressure: whole.pressure,
             density: state.compression.clone(),
             ..Fields::default()
@@ -353,20 +294,34 @@ impl Model {
         fields.slip_area.powf(1.0 - self.mu()) * dot(gross.mesh.load_weights(), values)
     }
 
+    /// Weights of such a sum over the springs of the mesh.
+    pub(super) fn spring_weights(&self, fields: &Fields) -> Vec<f64> {
+        match &self.gross {
+            Some(gross) => {
+                let scale = fields.slip_area.powf(1.0 - self.mu());
+                gross.mesh.load_weights().iter().map(|weight| scale * weight).collect()
+            }
+            None => {
+                let springs = self.operators.abel.spring_sum().iter().zip(&fields.density_factor);
+                springs.map(|(weight, factor)| fields.slip_area * weight * factor).collect()
+            }
+        }
+    }
+
     pub(super) fn gross_radial_fields(&self, gross: &Gross, state: &State) -> RadialFields {
         let offsets = self.output.offsets();
         let [mut wear_depth, mut pressure, mut slip] = [(); 3].map(|()| vec![0.0; offsets.len()]);
         if let Some(whole) = self.whole(gross, &state.compression) {
             let mesh = &gross.mesh;
-            let per_depth = self.contact.friction().coefficient / self.contact.half_space().stiffness_ratio();
+            let loading = self.loading_in(state, self.schedule.loading(state.cycles, state.cycles));
+            let (_, cycle, sliding) = self.gross_wear(gross, &loading, &state.compression, &whole);
             for (i, squared) in offsets.iter().enumerate().take_while(|(_, squared)| **squared < whole.area) {
-                let fraction = squared / whole.area;
-                let place: Place = mesh.place(fraction);
+                let place: Place = mesh.place(squared / whole.area);
                 let elastic = mesh.value(&whole.elastic, place);
                 let unworn = self.contact.indenter().profile(squared.sqrt());
                 wear_depth[i] = (whole.indentation - elastic - unworn).max(0.0);
                 pressure[i] = mesh.value_inside(&whole.pressure, place);
-                slip[i] = per_depth * self.slip_depth_at(whole.stick.as_ref(), elastic, fraction).max(0.0);
+                slip[i] = sliding.slip_at(mesh, &cycle, place).max(0.0);
             }
         }
         RadialFields { wear_depth, pressure, slip }

@@ -168,10 +168,8 @@ impl Model {
             let x = radius * part.powf(exponent.recip());
             add(core * weight, depth - profile.value(x));
         }
-        let annulus = half_space.normal_stiffness() * fields.slip_area;
-        let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
-        for ((q, factor), sum) in springs {
-            add(annulus * sum * factor, q.max(0.0));
+        for (q, weight) in compression.iter().zip(self.spring_weights(fields)) {
+            add(half_space.normal_stiffness() * weight, q.max(0.0));
         }
         for force in &mut force {
             force[0] = force[steps];

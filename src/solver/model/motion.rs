@@ -128,7 +128,7 @@ impl Model {
     }
 
     /// Springs through the period of a path, with what goes one way between reversals as one step.
-    fn resolved_motion(
+    pub(super) fn resolved_motion(
         &self,
         loading: &CycleLoading,
         path: &Path,
@@ -347,20 +347,20 @@ impl PathSprings<'_> {
 }
 
 /// What the law of wear takes for the load of a spring.
-struct Bearing<'a> {
+pub(super) struct Bearing<'a> {
     /// The law that says what resists slip, where wear takes the traction.
     traction: Option<&'a dyn FrictionLaw>,
     spreads: bool,
 }
 
 impl<'a> Bearing<'a> {
-    fn new(loading: &'a CycleLoading) -> Self {
+    pub(super) fn new(loading: &'a CycleLoading) -> Self {
         let traction = loading.wear.takes_traction().then_some(&*loading.friction);
         Self { traction, spreads: loading.wear.spreading().is_some() }
     }
 
     /// Of a spring of this compression at the largest indentation, lifted by `lift`, m: its compression, or what resists its slip.
-    fn of(&self, compression: f64, lift: f64) -> f64 {
+    pub(super) fn of(&self, compression: f64, lift: f64) -> f64 {
         let lifted = compression - lift;
         // A spring that is never lifted loses contact by round-off only, about zero in the limit; that is better left as it is, for it wears
         // back. Else springs may lose contact.

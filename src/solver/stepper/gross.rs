@@ -62,20 +62,20 @@ fn step(
     evaluations: &mut u64,
 ) -> Option<Trial> {
     let start = &state.compression;
-    let rates = |at: f64, compression: &[f64], evaluations: &mut u64| {
+    let rates = |at: f64, energy: f64, compression: &[f64], evaluations: &mut u64| {
         *evaluations += 1;
-        let loading = model.schedule().loading(state.cycles, at);
+        let loading = model.after_energy(model.schedule().loading(state.cycles, at), energy);
         model.gross_rates(gross, &loading, compression)
     };
     let scale = largest(start);
-    let first = rates(state.cycles, start, evaluations)?;
+    let first = rates(state.cycles, state.dissipated_energy, start, evaluations)?;
     let factors = {
         let step = cycles * ALEXANDER.diagonal;
         let mut matrix = Mat::<f64>::identity(start.len(), start.len());
         let mut moved = start.clone();
         for j in 0..start.len() {
             moved[j] += DIFFERENCE * scale;
-            let there = rates(state.cycles, &moved, evaluations)?;
+            let there = rates(state.cycles, state.dissipated_energy, &moved, evaluations)?;
             moved[j] = start[j];
             for i in 0..start.len() {
                 matrix[(i, j)] -= step * (there.compression[i] - first.compression[i]) / (DIFFERENCE * scale);
@@ -92,7 +92,10 @@ fn step(
                 start[i] + cycles * before.sum::<f64>()
             })
             .collect();
+        let spent = stages.iter().zip(row).map(|(stage, weight)| cycles * weight * stage.dissipation);
+        let spent = state.dissipated_energy + spent.sum::<f64>();
         let guess = stages.last().unwrap_or(&first);
+        let mut dissipation = guess.dissipation;
         for (i, q) in at.iter_mut().enumerate() {
             *q = gathered[i] + cycles * ALEXANDER.diagonal * guess.compression[i];
         }
@@ -100,7 +103,9 @@ fn step(
         let mut before = f64::INFINITY;
         let mut found = None;
         for _ in 0..ITERATIONS {
-            let there = rates(state.cycles + time * cycles, &at, evaluations)?;
+            let energy = spent + cycles * ALEXANDER.diagonal * dissipation;
+            let there = rates(state.cycles + time * cycles, energy, &at, evaluations)?;
+            dissipation = there.dissipation;
             let mut change: Vec<f64> = (0..start.len())
                 .map(|i| at[i] - gathered[i] - cycles * ALEXANDER.diagonal * there.compression[i])
                 .collect();
