@@ -257,28 +257,37 @@ const SLIDING: [(&str, &str, &str); 10] = [
     ("[friction.load-dependent]\ncoefficient = 1.0\nexponent = 0.5", "", ""),
     (COULOMB, "", "[friction.history]\nfinal_factor = 0.6\ntau = 2\n"),
     (COULOMB, "", "[friction.history]\nfinal_factor = 1.3\ntau = 2\n"),
-    ("[friction.wear-dependent]\nfirst_coefficient = 1.0\nlast_coefficient = 1.4\nenergy_density = 2", "", ""),
+    (
+        "[friction.wear-dependent]\nfirst_coefficient = 1.0\nlast_coefficient = 1.4\nenergy_density = 2",
+        "",
+        "",
+    ),
     (COULOMB, "", "[[loading.blocks]]\ntau = 1\namplitude_factor = 0.7\n[[loading.blocks]]\ntau = 1\n"),
-    (COULOMB, "repeat = true", "[[loading.blocks]]\ntau = 0.7\n[[loading.blocks]]\ntau = 1.1\namplitude_factor = 0.7\n"),
+    (
+        COULOMB,
+        "repeat = true",
+        "[[loading.blocks]]\ntau = 0.7\n[[loading.blocks]]\ntau = 1.1\namplitude_factor = 0.7\n",
+    ),
     (COULOMB, "rig_stiffness = 2.0", ""),
 ];
 
-/// Under the law of dissipated energy `V = α ΣE` whatever friction does: the volume is of the surface, the energy of the springs.
+/// Under the law of dissipated energy `V = α ΣE` whatever friction does, unless it depends on the load: the volume is of the surface, the energy of the springs.
 #[test]
 fn gross_slip_under_any_friction_blocks_and_a_rig_wears_by_energy_and_ends_in_a_flat() {
     for grading in [-0.3, 0.0, 0.5] {
         for (friction, line, table) in SLIDING {
             for load in ["normal_force", "initial_force"] {
-                // Not followed together; and wear that ends in a finite time, on another mesh.
-                let forces = load == "normal_force" && line.starts_with("rig");
-                if forces || load == "initial_force" && friction.contains("-0.3") {
+                // A rig is not followed beside a held normal force.
+                if load == "normal_force" && line.starts_with("rig") {
                     continue;
                 }
+                let by_load = friction.contains("load-dependent");
+                let wear = if by_load { "[wear.archard]" } else { "[wear.dissipated-energy]" };
                 let run = |tau: f64, numerics: &str| {
                     let text = scene(grading, 2.0, 2.4, tau, load).text().to_owned();
                     let text = text
                         .replace(COULOMB, friction)
-                        .replace("[wear.archard]", "[wear.dissipated-energy]")
+                        .replace("[wear.archard]", wear)
                         .replace("[output]", &format!("{line}\n{table}{numerics}[output]"));
                     text.parse::<Scene>().unwrap().simulate().unwrap()
                 };
@@ -286,11 +295,14 @@ fn gross_slip_under_any_friction_blocks_and_a_rig_wears_by_energy_and_ends_in_a_
                 let finer = run(5.0, "[numerics]\nsprings = 27\n");
                 let [volume, fine] = [&results, &finer].map(|it| last(it.worn_volume()));
                 let balance = 0.25 * last(results.dissipated_energy()) / volume - 1.0;
+                let balance = if by_load { 0.0 } else { balance };
                 let off = volume / fine - 1.0;
                 let place = format!("k {grading}, {load}: {friction} {line} {table}");
-                println!("{place}: balance {balance:.1e}, finer {off:.1e}, estimate {:?}", results.error_estimate());
-                // Measured: 1.4e-4 at a load-dependence of q^0.5 and k = -0.3.
-                assert!(results.error_estimate().unwrap() < 3e-4, "{place}");
+                println!(
+                    "{place}: balance {balance:.1e}, finer {off:.1e}, estimate {:?}",
+                    results.error_estimate()
+                );
+                assert!(results.accuracy_met() == Some(true), "{place}: {:?}", results.error_estimate());
                 // Measured: 3e-5 and 3e-5.
                 assert!(balance.abs() < 1e-4 && off.abs() < 1e-4, "{place}: {balance:e} {off:e}");
                 if load == "initial_force" && grading == 0.0 {

@@ -70,6 +70,18 @@ impl History {
         }
     }
 
+    /// Whether it falls, and whether it rises, somewhere.
+    pub fn directions(&self) -> [bool; 2] {
+        match self {
+            Self::Constant => [false, false],
+            Self::Exponential { last, .. } => [*last < 1.0, *last > 1.0],
+            Self::Table { factors, .. } => [
+                factors.windows(2).any(|pair| pair[1] < pair[0]),
+                factors.windows(2).any(|pair| pair[1] > pair[0]),
+            ],
+        }
+    }
+
     /// Smallest and largest factor over all times.
     pub fn range(&self) -> [f64; 2] {
         match self {

@@ -1,9 +1,10 @@
 //! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
-use super::moving::{LAST_CORE, follows_held_force, slides_at_once};
+use super::moving::{LAST_CORE, follows_held_force, held_stick_radius, slides_at_once};
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
+use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::bracketed;
 
@@ -51,12 +52,18 @@ impl Schedule {
         let ratio = contact.half_space().stiffness_ratio();
         let depth = self.largest_indentation();
         let first = self.conditions().tangential_control == TangentialControl::Displacement;
-        let compression = if first || self.conditions().holds_both_forces() {
+        let profile = contact.equivalent_profile();
+        let both = self.conditions().holds_both_forces();
+        let compression = if both && *self.friction_change() != History::Constant {
+            // Falling friction lets the edge of stick recede over unworn ground.
+            let edge = |loading| held_stick_radius(contact, contact.normal_force(), &loading);
+            let least = self.extremes().map(|loading| edge(loading).unwrap_or_default());
+            depth - profile.value(least.fold(f64::INFINITY, f64::min))
+        } else if first || both {
             self.extremes().map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
         } else {
             self.last_slip_compression(contact)?
         };
-        let profile = contact.equivalent_profile();
         let radius = if depth == contact.indentation() {
             contact.contact_radius()
         } else {

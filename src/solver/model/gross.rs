@@ -30,6 +30,9 @@ use crate::numerics::whole_contact::{Place, WholeContact};
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
 const SHOWN: [usize; 2] = [64, 128];
 
+/// Difference of a slope of friction from that of its strength at all of the indentation, relative, that is round-off.
+const EVEN: f64 = 1e-12;
+
 /// The mesh of a contact in gross slip.
 #[derive(Debug, Clone)]
 pub struct Gross {
@@ -78,10 +81,12 @@ impl Gross {
         // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
         let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
         let spreads = conditions.wear.spreading().is_some();
-        // There wear by the traction ends all pressure in a finite time, which no step comes past.
-        let steep = conditions.friction.kinetic_strength_slope(0.0).is_infinite();
-        let ends = steep && conditions.wear.takes_traction() && !conditions.holds_normal_force;
-        if contact.regime() != Regime::FullSliding || both || lifted || spreads || ends {
+        // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
+        let friction = &conditions.friction;
+        let depth = contact.indentation();
+        let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
+        let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
+        if contact.regime() != Regime::FullSliding || both || lifted || spreads || uneven {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());

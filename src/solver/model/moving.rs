@@ -61,6 +61,21 @@ enum Cause {
     Sliding(f64),
     /// This normal force, N, and the tangential amplitude of force are held: the edge stays, `q_c = d - g_0(c)` grows, the amplitude with it.
     BothForces(f64),
+    /// The same while friction falls: the edge recedes to where unworn ground alone bears `F_N - F_x/μ`, see [`held_stick_radius`].
+    ReleasedForces(f64),
+}
+
+impl Cause {
+    /// The normal force that is held, N.
+    fn normal_force(self) -> Option<f64> {
+        match self {
+            Self::NormalForce(force)
+            | Self::Sliding(force)
+            | Self::BothForces(force)
+            | Self::ReleasedForces(force) => Some(force),
+            Self::Friction | Self::Tangential => None,
+        }
+    }
 }
 
 /// How the edge of stick moves.
@@ -120,7 +135,10 @@ impl MovingStick {
         }
         let cause = match (conditions.holds_normal_force, conditions.tangential_control) {
             (true, TangentialControl::Displacement) => Some(Cause::NormalForce(contact.normal_force())),
-            (true, _) => Some(Cause::BothForces(contact.normal_force())),
+            (true, _) if *schedule.friction_change() == History::Constant => {
+                Some(Cause::BothForces(contact.normal_force()))
+            }
+            (true, _) => Some(Cause::ReleasedForces(contact.normal_force())),
             (false, TangentialControl::Displacement) => {
                 let changes = *schedule.friction_change() != History::Constant;
                 match &conditions.blocks[..] {
@@ -154,7 +172,7 @@ impl MovingStick {
                     .into(),
             });
         }
-        let [falls, rises] = directions(schedule.friction_change());
+        let [falls, rises] = schedule.friction_change().directions();
         let outwards = match cause {
             Cause::NormalForce(_) if falls || !conditions.blocks.is_empty() => {
                 return Err(Error::Inconsistent {
@@ -165,7 +183,7 @@ impl MovingStick {
                 });
             }
             Cause::NormalForce(_) | Cause::Sliding(_) => true,
-            Cause::BothForces(_) => false,
+            Cause::BothForces(_) | Cause::ReleasedForces(_) => false,
             Cause::Friction if falls && rises => {
                 check_rest(schedule, contact)?;
                 return Ok(None);
@@ -187,7 +205,7 @@ impl MovingStick {
             return contact.with_core(FARTHEST * contact.indentation(), core);
         }
         match self.cause {
-            Cause::NormalForce(_) | Cause::BothForces(_) => {
+            Cause::NormalForce(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => {
                 Ok(contact.under_held_forces()?.unwrap_or_else(|| contact.clone()))
             }
             _ => Ok(contact.clone()),
@@ -279,6 +297,8 @@ impl MovingStick {
             _ => loading.slip_compression(model.contact.half_space().stiffness_ratio()),
         };
         let depth = model.contact.indentation() - compression;
+        // Under both forces what is solved for is the compression.
+        let solved = if matches!(self.cause, Cause::ReleasedForces(_)) { compression } else { depth };
         if depth <= 0.0 {
             return Err(Error::Inconsistent {
                 what: "loading.amplitude",
@@ -294,7 +314,7 @@ impl MovingStick {
         let nodes = if self.outwards { model.output.offsets().len() } else { 0 };
         Ok(StickEdge {
             area: radius * radius,
-            depth,
+            depth: solved,
             load,
             left_behind: vec![0.0; behind],
             wear_depth: vec![0.0; nodes],
@@ -311,7 +331,7 @@ impl MovingStick {
 /// As [`slides_at_once`].
 pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
-    let [_, rises] = directions(schedule.friction_change());
+    let [_, rises] = schedule.friction_change().directions();
     let inwards = !rises && conditions.blocks.is_empty();
     Ok(conditions.tangential_control != TangentialControl::Displacement
         && inwards
@@ -336,6 +356,24 @@ pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> R
             loading.excess(force, amplitude) <= 0.0
         }
     })
+}
+
+/// Stick radius, m, under both forces held while the ground within it is unworn; none where stick cannot bear them.
+///
+/// ```text
+/// F_N - F_x/μ_f = 2 c_N ∫_0^c x^k (g_0(c) - g_0(x)) dx
+/// ```
+pub(super) fn held_stick_radius(
+    contact: &InitialContact,
+    normal_force: f64,
+    loading: &CycleLoading,
+) -> Option<f64> {
+    let borne = normal_force - loading.asked() / loading.friction.reference_coefficient();
+    let profile = contact.equivalent_profile();
+    let excess =
+        |radius: f64| contact.half_space().normal_stiffness() * profile.load_integral(radius) - borne;
+    let edge = contact.contact_radius();
+    (borne > 0.0).then(|| bracketed(excess, 1e-9 * edge, edge, 0.0).ok()).flatten()
 }
 
 /// Refuses an edge of stick that comes to rest on worn ground within the mesh: errors of the springs next to it grow with slip and move it inwards.
@@ -401,18 +439,6 @@ fn unworn_load(profile: &EquivalentProfile, radius: f64, slip_compression: f64) 
     0.5 * profile.load_integral(radius) + slip_compression * radius.powf(exponent) / exponent
 }
 
-/// Whether a history falls, and whether it rises, somewhere.
-fn directions(history: &History) -> [bool; 2] {
-    match history {
-        History::Constant => [false, false],
-        History::Exponential { last, .. } => [*last < 1.0, *last > 1.0],
-        History::Table { factors, .. } => [
-            factors.windows(2).any(|pair| pair[1] < pair[0]),
-            factors.windows(2).any(|pair| pair[1] > pair[0]),
-        ],
-    }
-}
-
 impl Model {
     /// How the edge of stick moves, if it does.
     pub fn moving(&self) -> Option<&MovingStick> {
@@ -432,7 +458,7 @@ impl Model {
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
             Cause::NormalForce(_) => loading.slip_compression(self.contact.half_space().stiffness_ratio()),
-            Cause::Sliding(_) | Cause::BothForces(_) => stick.depth,
+            Cause::Sliding(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => stick.depth,
         };
         StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
     }
@@ -441,7 +467,7 @@ impl Model {
     /// where a normal force is held.
     pub(super) fn depth_over_core(&self, stick_zone: &StickZone) -> f64 {
         match self.moving.as_ref().map(|moving| moving.cause) {
-            Some(Cause::NormalForce(_) | Cause::BothForces(_)) => {
+            Some(Cause::NormalForce(_) | Cause::BothForces(_) | Cause::ReleasedForces(_)) => {
                 let height = self.contact.equivalent_profile().value(stick_zone.stick_area.sqrt());
                 stick_zone.slip_compression + height
             }
@@ -452,9 +478,8 @@ impl Model {
     /// Adds the part of a held force that the quadrature over the springs misses in the first cycle to the load of the stick zone.
     pub(super) fn close_force(&self, mut state: State) -> State {
         let cause = self.moving.as_ref().map(|moving| moving.cause);
-        let Some(Cause::NormalForce(force) | Cause::Sliding(force) | Cause::BothForces(force)) = cause else {
-            return state;
-        };
+        let held = cause.and_then(Cause::normal_force);
+        let Some(force) = held else { return state };
         let left = force - self.normal_force(&self.fields(&state));
         if let Some(stick) = &mut state.stick {
             stick.load += 0.5 * left / self.contact.half_space().normal_stiffness();
@@ -468,7 +493,9 @@ impl Model {
             (Some(Cause::Tangential), Some(stick)) => {
                 self.displaced(loading, self.contact.indentation() - stick.depth)
             }
-            (Some(Cause::BothForces(_)), Some(stick)) => self.displaced(loading, stick.depth),
+            (Some(Cause::BothForces(_) | Cause::ReleasedForces(_)), Some(stick)) => {
+                self.displaced(loading, stick.depth)
+            }
             _ => self.after_energy(loading, state.dissipated_energy),
         }
     }
@@ -499,6 +526,9 @@ impl Model {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
                 let loading = self.schedule.loading(state.cycles, state.cycles);
                 stick.depth + self.stick_zone_in(Some(stick), &loading).slip_compression
+            }
+            (Some(MovingStick { cause: Cause::ReleasedForces(_), .. }), Some(stick)) => {
+                stick.depth + self.contact.equivalent_profile().value(stick.area.sqrt())
             }
             (Some(moving), Some(stick)) if moving.deepens() => {
                 self.contact.indentation() - self.stick_zone.slip_compression + stick.depth

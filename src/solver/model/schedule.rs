@@ -382,15 +382,16 @@ fn check_forces(conditions: &Conditions) -> Result<()> {
             "give loading.initial_force or loading.indentation instead, or remove loading.rig_stiffness",
         ),
         TangentialControl::Force => {
-            let changes = conditions.friction_history != History::Constant
-                || conditions.friction.along_energy() != History::Constant;
-            if conditions.friction.coefficient().is_some() && !changes && conditions.blocks.is_empty() {
+            let history = &conditions.friction_history;
+            let along_energy = conditions.friction.along_energy() != History::Constant;
+            let coulomb = conditions.friction.coefficient().is_some() && !along_energy;
+            if coulomb && conditions.blocks.is_empty() && !history.directions()[1] {
                 return Ok(());
             }
             beside(
-                "and so is the tangential force, under which the edge of stick stays where it is only with a constant coefficient of friction \
-                 and without blocks: else it moves, which is not followed under both forces",
-                "take friction.coulomb without a history, and no blocks, or give loading.initial_force or loading.indentation instead",
+                "and so is the tangential force, under which the edge of stick stays where it is with a constant coefficient of friction, and recedes over \
+                 unworn ground with one that falls: else it moves over worn ground, which is not followed under both forces",
+                "take friction.coulomb, constant or falling, and no blocks, or give loading.initial_force or loading.indentation instead",
             )
         }
     }

@@ -3,6 +3,7 @@
 use crate::contact::closed_form::LimitingShape;
 use crate::data::{RunFile, Snapshot, StopReason, largest};
 use crate::error::{Error, Result};
+use crate::laws::history::History;
 use crate::scene::{Scene, Tolerances};
 
 use super::CURVE_POINTS;
@@ -160,7 +161,9 @@ impl Course {
 
 /// Eq. (9), for every profile, from the permanent stick radius and the largest indentation; under both forces held from the scene alone.
 fn limit(scene: &Scene, indentation: f64, stick_radius: f64) -> Result<LimitingShape> {
+    let constant = scene.conditions().friction_history == History::Constant;
     if scene.conditions().holds_both_forces()
+        && constant
         && let Some(limit) = LimitingShape::under(&scene.contact()?, scene.conditions())?
     {
         return Ok(limit);

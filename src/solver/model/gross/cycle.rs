@@ -57,8 +57,10 @@ impl ClosedForm {
         if fraction <= stick.fraction {
             return 0.0;
         }
-        let parts =
-            stick.within.iter().map(|[x, weight, b]| weight * (b - self.level) * (fraction - x).powf(-self.nu));
+        let parts = stick
+            .within
+            .iter()
+            .map(|[x, weight, b]| weight * (b - self.level) * (fraction - x).powf(-self.nu));
         self.level - carried + (PI * self.nu).sin() / PI * parts.sum::<f64>()
     }
 }
@@ -168,9 +170,8 @@ impl Model {
             more => 0.25 * more * more * scale * sum(&|weight, b| weight * b * b),
         };
         let closed = ClosedForm { per_depth, level, carried, stick, nu };
-        let path = |i: usize| {
-            4.0 * per_depth * closed.slip_depth(closed.carried[i], mesh.fractions()[i]).max(0.0)
-        };
+        let path =
+            |i: usize| 4.0 * per_depth * closed.slip_depth(closed.carried[i], mesh.fractions()[i]).max(0.0);
         let path = Mat::from_fn(mesh.inner(), 1, |i, _| path(i));
         let taken = loading.wear.takes_traction();
         let pressure = if plain {

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::{Cause, MovingStick, StickEdge};
+use super::{Cause, MovingStick, StickEdge, held_stick_radius};
 use crate::numerics::grid::lagrange;
 use crate::solver::model::schedule::CycleLoading;
 use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
@@ -180,7 +180,7 @@ impl StickStage<'_> {
     fn slip_compression(&self, at: &Unknowns) -> f64 {
         match self.moving.cause {
             Cause::Tangential => self.model.contact.indentation() - at.stick_depth,
-            Cause::Sliding(_) | Cause::BothForces(_) => at.stick_depth,
+            Cause::Sliding(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => at.stick_depth,
             _ => self.driven_slip_compression(),
         }
     }
@@ -194,7 +194,7 @@ impl StickStage<'_> {
     fn loading(&self, at: &Unknowns) -> CycleLoading {
         let loading = self.target.springs.loading.clone();
         match self.moving.cause {
-            Cause::Tangential | Cause::BothForces(_) => {
+            Cause::Tangential | Cause::BothForces(_) | Cause::ReleasedForces(_) => {
                 self.model.displaced(loading, self.slip_compression(at))
             }
             _ => loading,
@@ -227,7 +227,9 @@ impl StickStage<'_> {
                 + (slip_compression - target.slip_compression) * radius.powf(exponent) / exponent
         } else {
             let deeper = match self.moving.cause {
-                Cause::NormalForce(_) => passed.risen + slip_compression - target.slip_compression,
+                Cause::NormalForce(_) | Cause::ReleasedForces(_) => {
+                    passed.risen + slip_compression - target.slip_compression
+                }
                 _ => 0.0,
             };
             target.stick.load
@@ -310,8 +312,12 @@ impl StickStage<'_> {
             let slope = self.extrapolated(|i| (-trial.fields.log_slip[i]).exp());
             return (passed.unworn_rise - passed.risen * slope) / q;
         }
-        let profile = self.model.contact.equivalent_profile();
-        (profile.value(at.stick_area.sqrt()) - at.stick_depth) / q
+        let contact = &self.model.contact;
+        if let Cause::ReleasedForces(force) = self.moving.cause {
+            let radius = held_stick_radius(contact, force, &self.target.springs.loading);
+            return radius.map_or(f64::NAN, |radius| at.stick_area / (radius * radius) - 1.0);
+        }
+        (contact.equivalent_profile().value(at.stick_area.sqrt()) - at.stick_depth) / q
     }
 
     /// What decides the height of the profile there: friction, or a balance of forces.
@@ -320,9 +326,10 @@ impl StickStage<'_> {
         match self.moving.cause {
             _ if self.moving.jumps => passed.risen / q,
             Cause::Friction => (at.stick_depth - (model.contact.indentation() - q)) / q,
-            Cause::NormalForce(force) | Cause::Sliding(force) | Cause::BothForces(force) => {
-                model.normal_force(&trial.fields) / force - 1.0
-            }
+            Cause::NormalForce(force)
+            | Cause::Sliding(force)
+            | Cause::BothForces(force)
+            | Cause::ReleasedForces(force) => model.normal_force(&trial.fields) / force - 1.0,
             Cause::Tangential => {
                 let force = model.force(loading, &at.compression, &trial.fields, loading.amplitude);
                 let asked = &self.target.springs.loading;
@@ -386,7 +393,10 @@ impl StickStage<'_> {
             * trial.fields.density_factor[spring];
         match self.moving.cause {
             Cause::Friction => 0.0,
-            Cause::NormalForce(force) | Cause::Sliding(force) | Cause::BothForces(force) => weight / force,
+            Cause::NormalForce(force)
+            | Cause::Sliding(force)
+            | Cause::BothForces(force)
+            | Cause::ReleasedForces(force) => weight / force,
             Cause::Tangential => {
                 let strength = |q: f64| loading.friction.kinetic_strength(q);
                 if strength(q) >= half_space.stiffness_ratio() * loading.amplitude {
