@@ -80,13 +80,15 @@ impl Gross {
         let both = along_energy && conditions.friction_history != History::Constant;
         // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
         let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
+        // To and fro the closed form knows where springs stick, steps of a period do not.
+        let stepped = schedule.resolves() && conditions.mode.is_tangential();
         let spreads = conditions.wear.spreading().is_some();
         // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
         let friction = &conditions.friction;
         let depth = contact.indentation();
         let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
         let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
-        if contact.regime() != Regime::FullSliding || both || lifted || spreads || uneven {
+        if contact.regime() != Regime::FullSliding || both || lifted || stepped || spreads || uneven {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());

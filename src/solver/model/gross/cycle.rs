@@ -27,6 +27,8 @@ pub(super) struct Sliding {
     components: usize,
     /// In closed form at constant indentation.
     closed: Option<ClosedForm>,
+    /// `c²/a²` of the springs that stick.
+    stuck: f64,
 }
 
 /// Slip in a cycle to and fro at constant indentation.
@@ -113,7 +115,6 @@ impl Model {
         };
         let path = &sliding.surface.path;
         let slip = |i: usize| 0.25 * per_cycle * path.row(i).iter().sum::<f64>();
-        let stick = sliding.closed.as_ref().and_then(|closed| closed.stick.as_ref());
         let cycle = CycleFields {
             growth: depth.iter().map(|depth| depth / self.contact.indentation()).collect(),
             slip: (0..depth.len()).map(slip).collect(),
@@ -122,7 +123,7 @@ impl Model {
             work: energies.work,
             volume,
             amplitude: sliding.amplitude,
-            stick_radius: stick.map_or(0.0, |stick| (stick.fraction * whole.area).sqrt()),
+            stick_radius: (sliding.stuck * whole.area).sqrt(),
         };
         depth.iter_mut().for_each(|depth| *depth *= loading.share);
         (depth, cycle.lasting(loading.share), sliding)
@@ -187,11 +188,12 @@ impl Model {
             surface: Surface { pressure, direction: Mat::zeros(0, 0), path },
             energies: Energies { dissipation, jump_loss, work: dissipation + jump_loss },
             components: 1,
+            stuck: closed.stick.as_ref().map_or(0.0, |stick| stick.fraction),
             closed: Some(closed),
         }
     }
 
-    /// Along a path, of which no spring sticks for a whole period.
+    /// Along a path.
     fn sliding_on_path(
         &self,
         gross: &Gross,
@@ -207,6 +209,8 @@ impl Model {
             slip.iter_mut().for_each(|slip| *slip += motion.free[m]);
             slip
         };
+        let sticks = |spring: &usize| (0..motion.free.len()).all(|m| motion.slip[(*spring, m)] == 0.0);
+        let last = (0..mesh.inner()).rev().find(sticks);
         let slip: Vec<Vec<f64>> = (0..motion.free.len()).map(column).collect();
         let path = Mat::from_fn(mesh.inner(), motion.steps(), |i, step| {
             let columns = slip[components * step..components * (step + 1)].iter();
@@ -227,6 +231,7 @@ impl Model {
                 work: energy(|it| it.work),
             },
             components,
+            stuck: last.map_or(0.0, |spring| mesh.fractions()[spring]),
             closed: None,
         }
     }
