@@ -305,7 +305,7 @@ impl Model {
     /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
     pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
         let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
-        let serve = springs >= HIERARCHICAL && schedule.wears_smoothly() && stays;
+        let serve = springs >= HIERARCHICAL && schedule.is_plain() && stays;
         if serve { Backend::Hierarchical } else { Backend::Dense }
     }
 

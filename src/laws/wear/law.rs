@@ -74,6 +74,11 @@ pub trait WearLaw: Debug + Send + Sync {
         None
     }
 
+    /// Whether the rate is local and has no kink, so that wear is smooth along the slip annulus.
+    fn is_smooth(&self) -> bool {
+        self.spreading().is_none()
+    }
+
     /// Key of the scene and reason, where the law itself may keep everything from wearing at this mean pressure, Pa.
     fn keeps_from_wearing(&self, _mean_pressure: f64) -> Option<(&'static str, String)> {
         None

@@ -59,6 +59,10 @@ impl WearLaw for Threshold {
         self.coefficient
     }
 
+    fn is_smooth(&self) -> bool {
+        false
+    }
+
     fn keeps_from_wearing(&self, mean_pressure: f64) -> Option<(&'static str, String)> {
         let why = format!(
             "{:e} Pa is not exceeded where springs slip in the first cycles, so that nothing wears (the mean pressure is {mean_pressure:e} Pa); \
