@@ -185,6 +185,7 @@ pub struct Scene {
     wear: Archard,
     loading: Loading,
     conditions: Conditions,
+    path: Option<Arc<RecordedPath>>,
     numerics: Numerics,
     output: Output,
     text: String,
@@ -261,7 +262,7 @@ impl Scene {
 
     /// The recorded path, if the indenter follows one.
     pub fn path(&self) -> Option<Arc<RecordedPath>> {
-        RecordedPath::of(&self.conditions.mode)
+        self.path.clone()
     }
 
     /// Laws, mode, blocks and control: plain tangential oscillation under Coulomb's and Archard's laws, or something else.

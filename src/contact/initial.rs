@@ -234,6 +234,13 @@ impl InitialContact {
         self.normal_force / (PI * self.contact_radius * self.contact_radius)
     }
 
+    /// Tangential stiffness of the first contact without slip, `2 c_T ∫_0^a0 x^k dx`, N/m.
+    pub fn tangential_stiffness(&self) -> f64 {
+        let order = 1.0 + self.half_space.grading();
+        let per_length = self.half_space.stiffness_ratio() * self.half_space.normal_stiffness();
+        2.0 * per_length * self.contact_radius.powf(order) / order
+    }
+
     /// Tangential amplitude `U`, m.
     pub fn amplitude(&self) -> f64 {
         self.amplitude

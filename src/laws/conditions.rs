@@ -44,6 +44,26 @@ pub struct Conditions {
     pub frequency: Option<f64>,
 }
 
+/// What of a contact tells whether a condition changes anything.
+#[derive(Debug, Clone, Copy)]
+pub struct Extent {
+    /// Indentation `d`, m.
+    pub indentation: f64,
+    /// Tangential amplitude `U`, m.
+    pub amplitude: f64,
+    /// Mean pressure, Pa.
+    pub mean_pressure: f64,
+    /// Width of the slip annulus, m.
+    pub slip_width: f64,
+    /// Tangential stiffness, N/m.
+    pub tangential_stiffness: f64,
+}
+
+/// The larger distance of two factors from one.
+fn off(factors: [f64; 2]) -> f64 {
+    factors.map(|factor| (factor - 1.0).abs()).into_iter().fold(0.0, f64::max)
+}
+
 /// A law itself, whoever else holds it.
 fn law<L: Serialize + ?Sized, S: Serializer>(law: &Arc<L>, serializer: S) -> Result<S::Ok, S::Error> {
     law.as_ref().serialize(serializer)
@@ -83,6 +103,9 @@ impl PartialEq for Conditions {
 impl Conditions {
     /// The words for forces that are held among [`Conditions::departures`].
     pub const HELD_FORCES: [&str; 2] = ["a held tangential force", "a held normal force"];
+
+    const CHANGING_FRICTION: &str = "friction that changes along the cycles";
+    const CHANGING_WEAR: &str = "a wear coefficient that changes along the cycles";
 
     /// Plain tangential oscillation under Coulomb's and Archard's laws.
     pub fn plain(friction: Coulomb, wear: Archard) -> Self {
@@ -124,15 +147,56 @@ impl Conditions {
         let changes = |history: &History, words| given(*history != History::Constant, words);
         let departures = [
             self.friction.entry().departure,
-            changes(&self.friction_history, "friction that changes along the cycles"),
+            changes(&self.friction_history, Self::CHANGING_FRICTION),
             self.wear.entry().departure,
-            changes(&self.wear_history, "a wear coefficient that changes along the cycles"),
+            changes(&self.wear_history, Self::CHANGING_WEAR),
             self.mode.entry().and_then(|mode| mode.departure),
             given(!self.blocks.is_empty(), "blocks"),
             control,
             given(self.holds_normal_force, Self::HELD_FORCES[1]),
         ];
         departures.into_iter().flatten().collect()
+    }
+
+    /// Leaves out what changes a run by no more than a part of it; in words what of that changes it at all.
+    ///
+    /// # Arguments
+    /// * `contact` -- the first one
+    /// * `wear` -- Archard's law that stands for the law of wear
+    /// * `part` -- relative
+    pub fn simplify(&mut self, contact: &Extent, wear: Archard, part: f64) -> Vec<&'static str> {
+        let mut left_out = vec![];
+        let mut is_idle = |effect: f64, words: Option<&'static str>| {
+            let idle = effect <= part;
+            left_out.extend(words.filter(|_| idle && effect > 0.0));
+            idle
+        };
+        let histories = [&mut self.friction_history, &mut self.wear_history];
+        for (history, words) in histories.into_iter().zip([Self::CHANGING_FRICTION, Self::CHANGING_WEAR]) {
+            if is_idle(off(history.range()), Some(words)) {
+                *history = History::Constant;
+            }
+        }
+        let factors = self.blocks.iter().map(|it| off([it.amplitude_factor, it.indentation_factor]));
+        if is_idle(factors.fold(0.0, f64::max), Some("blocks")) {
+            (self.blocks, self.repeat) = (vec![], false);
+        }
+        let departure = self.mode.entry().and_then(|mode| mode.departure);
+        if is_idle(self.mode.departure(contact.amplitude, contact.indentation), departure) {
+            self.mode = Arc::new(Tangential);
+        }
+        if let TangentialControl::Rig { stiffness } = self.tangential_control
+            && is_idle(contact.tangential_stiffness / stiffness, Some("a compliant rig"))
+        {
+            self.tangential_control = TangentialControl::Displacement;
+        }
+        // Pressures go on falling elsewhere.
+        let deep = !self.holds_normal_force && self.blocks.iter().all(|it| it.indentation_factor >= 1.0);
+        let effect = self.wear.departure(contact.mean_pressure, contact.slip_width);
+        if deep && is_idle(effect, self.wear.entry().departure) {
+            self.wear = Arc::new(wear);
+        }
+        left_out
     }
 
     /// Whether the normal force and the amplitude of the tangential one are held. Under Coulomb's law the stick radius is then that of the first

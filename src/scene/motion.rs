@@ -9,6 +9,7 @@ use super::laws::{Given, OneClock, clock_of, given};
 use super::reading::Read;
 use crate::contact::InitialContact;
 use crate::error::Result;
+use crate::laws::conditions::Extent;
 use crate::laws::entry::Lengths;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::loading::{Amplitude, Block, Duration, Load, Loading, TangentialControl};
@@ -150,6 +151,16 @@ pub(super) fn mode<'c>(
 /// What others refer to.
 pub(super) fn lengths(contact: &InitialContact) -> Lengths {
     Lengths { indentation: contact.indentation(), amplitude: contact.amplitude() }
+}
+
+pub(super) fn extent(contact: &InitialContact) -> Extent {
+    Extent {
+        indentation: contact.indentation(),
+        amplitude: contact.amplitude(),
+        mean_pressure: contact.mean_pressure(),
+        slip_width: contact.contact_radius() - contact.stick_radius().unwrap_or(0.0),
+        tangential_stiffness: contact.tangential_stiffness(),
+    }
 }
 
 /// Refuses what does not go together.

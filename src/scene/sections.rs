@@ -15,8 +15,12 @@ use crate::laws::conditions::Conditions;
 use crate::laws::entry as law;
 use crate::laws::friction::{self, Coulomb};
 use crate::laws::loading::{Duration, Loading};
+use crate::laws::motion::RecordedPath;
 use crate::laws::wear::{self, Archard};
 use crate::units::{Dimension, Table};
+
+/// Part of the accuracy that a condition changes at most where it is left out.
+const IDLE: f64 = 1e-2;
 
 /// Reads the whole document; the text is kept as it is.
 pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
@@ -27,7 +31,7 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     let indenter = Indenter::from(shape.build()?);
     warnings.append(&mut shape.values.warnings.borrow_mut());
     let half_space = contact(root, &mut warnings)?;
-    let Physics { loading, wear, conditions } = physics(root, &indenter, &half_space, rows)?;
+    let Physics { loading, wear, mut conditions } = physics(root, &indenter, &half_space, rows)?;
     let friction = Coulomb { coefficient: conditions.friction.reference_coefficient() };
     let numerics = match root.optional("numerics") {
         Some(entry) => {
@@ -38,10 +42,16 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
         }
         None => Numerics::default(),
     };
-    let slides = || {
-        let contact = InitialContact::new(&indenter, &half_space, &friction, &wear, &loading);
-        contact.is_ok_and(|it| it.regime() == Regime::FullSliding)
-    };
+    let path = RecordedPath::of(&conditions.mode);
+    let first = || InitialContact::new(&indenter, &half_space, &friction, &wear, &loading);
+    if !conditions.is_plain() {
+        let first = first().map_err(|error| table(root, &keys::LOADING).map_or_else(|it| it, |it| it.error(error)))?;
+        let left_out = conditions.simplify(&motion::extent(&first), wear, IDLE * numerics.accuracy);
+        warnings.extend(left_out.into_iter().map(|words| {
+            format!("{words}: less than a hundredth of numerics.accuracy comes of it, so that it is left out")
+        }));
+    }
+    let slides = || first().is_ok_and(|it| it.regime() == Regime::FullSliding);
     warnings.extend(warning_of_another_limit(&conditions, slides));
     let output = match root.optional("output") {
         Some(entry) => output(&entry.section()?, Some(loading.duration))?,
@@ -55,6 +65,7 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
         wear,
         loading,
         conditions,
+        path,
         numerics,
         output,
         text: text.into(),

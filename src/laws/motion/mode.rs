@@ -10,6 +10,9 @@ use serde_json::Value;
 use crate::laws::entry::Entry;
 use crate::laws::path::{Path, PathPoint};
 
+/// Points of a period by which a mode is told from oscillation to and fro.
+const SAMPLES: usize = 64;
+
 /// What the indenter does over one period, of which the tangential oscillation `u_x = U cos ωt` is a part.
 ///
 /// Solvers ask for its properties, never for its name.
@@ -69,6 +72,34 @@ impl dyn Mode {
     /// Whether the indentation changes within the period.
     pub fn changes_indentation(&self) -> bool {
         self.indentations() != [0.0; 2]
+    }
+
+    /// What it differs by from oscillation to and fro by the amplitude, relative to amplitude and indentation.
+    ///
+    /// # Arguments
+    /// * `amplitude` -- `U`, m
+    /// * `indentation` -- `d`, m
+    pub fn departure(&self, amplitude: f64, indentation: f64) -> f64 {
+        if self.is_tangential() {
+            return 0.0;
+        }
+        let period = self.period(amplitude, SAMPLES);
+        let aside = |point: &PathPoint| (point.tangential[1] / amplitude).abs().max(point.lift / indentation);
+        let deeper = self.indentations().map(|by| (by / indentation).abs());
+        let aside = period.iter().map(aside).chain(deeper).fold(0.0, f64::max);
+        let along: Vec<f64> = period.iter().map(|point| point.tangential[0]).collect();
+        let moves = along.iter().zip(along.iter().cycle().skip(1)).map(|(from, to)| to - from);
+        let moves: Vec<(f64, f64)> = along.iter().copied().zip(moves).filter(|(_, by)| *by != 0.0).collect();
+        // Where the motion turns, it starts in the direction it did not come from.
+        let before = moves.iter().cycle().skip(moves.len().saturating_sub(1));
+        let turns = before.zip(&moves).filter(|((_, came), (_, goes))| came * goes < 0.0);
+        let mut count = 0;
+        let short = turns.map(|(_, (at, goes))| {
+            count += 1;
+            (at / amplitude + goes.signum()).abs()
+        });
+        let short = short.fold(0.0, f64::max);
+        if count == 2 * self.oscillations() { aside.max(short) } else { f64::INFINITY }
     }
 
     fn name(&self) -> String {

@@ -79,6 +79,15 @@ pub trait WearLaw: Debug + Send + Sync {
         self.spreading().is_none()
     }
 
+    /// What the law differs by, at most and relatively, from Archard's with the same coefficient; infinite where that is not small.
+    ///
+    /// # Arguments
+    /// * `mean_pressure` -- Pa
+    /// * `slip_width` -- of the slip annulus, m
+    fn departure(&self, _mean_pressure: f64, _slip_width: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// Key of the scene and reason, where the law itself may keep everything from wearing at this mean pressure, Pa.
     fn keeps_from_wearing(&self, _mean_pressure: f64) -> Option<(&'static str, String)> {
         None

@@ -54,6 +54,10 @@ impl WearLaw for NonLocal {
         self.coefficient
     }
 
+    fn departure(&self, _: f64, slip_width: f64) -> f64 {
+        self.length / slip_width
+    }
+
     fn spreading(&self) -> Option<Spreading> {
         Some(Spreading { length: self.length })
     }

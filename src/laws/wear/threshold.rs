@@ -59,6 +59,10 @@ impl WearLaw for Threshold {
         self.coefficient
     }
 
+    fn departure(&self, mean_pressure: f64, _: f64) -> f64 {
+        self.pressure / mean_pressure
+    }
+
     fn is_smooth(&self) -> bool {
         false
     }
