@@ -181,6 +181,10 @@ impl Conditions {
         if is_idle(factors.fold(0.0, f64::max), Some("blocks")) {
             (self.blocks, self.repeat) = (vec![], false);
         }
+        let coefficient = self.friction.reference_coefficient();
+        if is_idle(self.friction.departure(contact.indentation), self.friction.entry().departure) {
+            self.friction = Arc::new(Coulomb { coefficient });
+        }
         let departure = self.mode.entry().and_then(|mode| mode.departure);
         if is_idle(self.mode.departure(contact.amplitude, contact.indentation), departure) {
             self.mode = Arc::new(Tangential);

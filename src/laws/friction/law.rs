@@ -57,6 +57,14 @@ pub trait FrictionLaw: Debug + Send + Sync {
         None
     }
 
+    /// What the law differs by, at most and relatively, from Coulomb's with its reference coefficient; infinite where that is not small.
+    ///
+    /// # Arguments
+    /// * `indentation` -- `d`, m
+    fn departure(&self, _indentation: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// Factor on its coefficients along the energy that friction has dissipated per area of the first contact, J/m².
     fn along_energy(&self) -> History {
         History::Constant

@@ -77,6 +77,11 @@ impl FrictionLaw for LoadDependent {
         self.coefficient
     }
 
+    /// `|m|` times the logarithms of the compressions that bear most of the load.
+    fn departure(&self, indentation: f64) -> f64 {
+        self.exponent.abs() * (1.0 + (indentation / self.reference).ln().abs())
+    }
+
     fn kinetic_strength(&self, compression: f64) -> f64 {
         let relative = compression.max(0.0) / self.reference;
         self.coefficient * self.reference * relative.powf(1.0 + self.exponent)

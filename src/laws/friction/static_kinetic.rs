@@ -57,6 +57,10 @@ impl FrictionLaw for StaticKinetic {
         self.static_coefficient
     }
 
+    fn departure(&self, _: f64) -> f64 {
+        1.0 - self.kinetic_coefficient / self.static_coefficient
+    }
+
     fn kinetic_strength(&self, compression: f64) -> f64 {
         self.kinetic_coefficient * compression.max(0.0)
     }
