@@ -28,7 +28,7 @@ impl Observer for Seen {
 fn stepper(model: &Model) -> Box<dyn Stepper + Send> {
     match model.moving() {
         Some(_) => Box::new(Sdirk::new(1e-4)),
-        None if model.wears_smoothly() => Box::new(Bdf::new(1e-4)),
+        None if model.wears_steadily() => Box::new(Bdf::new(1e-4)),
         None => Box::new(Sdirk::new(1e-4)),
     }
 }

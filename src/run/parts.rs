@@ -71,7 +71,7 @@ impl Parts {
             StepperChoice::Implicit if model.gross().is_some() => Box::new(GrossSdirk::new(tolerance)),
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
-            StepperChoice::Implicit if model.wears_smoothly() => Box::new(Bdf::new(tolerance)),
+            StepperChoice::Implicit if model.wears_steadily() => Box::new(Bdf::new(tolerance)),
             StepperChoice::Implicit => Box::new(Sdirk::new(tolerance)),
         };
         let whole = numerics.stepper == StepperChoice::EveryCycle;

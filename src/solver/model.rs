@@ -321,7 +321,12 @@ impl Model {
 
     /// Whether wear has no kinks, neither along the slip annulus nor in time.
     pub fn wears_smoothly(&self) -> bool {
-        self.schedule.wears_smoothly() && self.moving.is_none() && !self.slides
+        self.wears_steadily() && self.schedule.wears_smoothly()
+    }
+
+    /// Whether every cycle is the same and the edge of stick rests, so that wear is smooth in time but where kinks pass a spring.
+    pub fn wears_steadily(&self) -> bool {
+        self.schedule.is_steady() && self.moving.is_none() && !self.slides
     }
 
     /// Whether wear goes on as long as the contact is moved: in gross slip under a held normal force.

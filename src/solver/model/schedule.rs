@@ -348,18 +348,18 @@ impl Schedule {
         paths.any(|path| path.points.iter().any(|point| point.tangential[1] != 0.0))
     }
 
-    /// Whether every cycle is the same: one amplitude at one indentation, to and fro, under friction that does not change.
-    fn is_steady(&self) -> bool {
+    /// Whether every cycle is the same: one amplitude at one indentation, under friction that does not change.
+    pub fn is_steady(&self) -> bool {
         let conditions = &self.conditions;
         conditions.blocks.is_empty()
-            && conditions.mode.is_tangential()
             && *self.friction_change() == History::Constant
             && conditions.tangential_control == TangentialControl::Displacement
     }
 
-    /// Whether the mesh of the plain contact serves: every cycle the same under Coulomb's law.
+    /// Whether the mesh of the plain contact serves: every cycle the same, to and fro, under Coulomb's law.
     pub fn is_uniform(&self) -> bool {
-        self.is_steady() && self.conditions.friction.coefficient().is_some()
+        let Conditions { mode, friction, .. } = &self.conditions;
+        self.is_steady() && mode.is_tangential() && friction.coefficient().is_some()
     }
 
     /// Whether the wear of a cycle is in proportion to pressure and slip, and to nothing else.
@@ -370,7 +370,7 @@ impl Schedule {
 
     /// Whether nothing makes a kink in wear along the slip annulus. A resolved cycle does: it takes what is pulled as without contact.
     pub fn wears_smoothly(&self) -> bool {
-        self.is_steady() && !self.resolves() && self.conditions.wear.is_smooth()
+        self.is_steady() && self.conditions.mode.is_tangential() && !self.resolves() && self.conditions.wear.is_smooth()
     }
 }
 
