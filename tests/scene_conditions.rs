@@ -211,7 +211,11 @@ fn blocks_are_read_in_their_order() {
     assert!(conditions.repeat && conditions.clock == Clock::Tau);
     let once = with_loading("[[loading.blocks]]\ncycles = 10\namplitude_factor = 0.9");
     assert_eq!((once.blocks, once.repeat, once.clock), (vec![block(10.0, 0.9, 1.0)], false, Clock::Cycles));
-    assert_eq!(with_loading("repeat = true\n[[loading.blocks]]\ncycles = 10").blocks, [], "factors of one change nothing");
+    assert_eq!(
+        with_loading("repeat = true\n[[loading.blocks]]\ncycles = 10").blocks,
+        [],
+        "factors of one change nothing"
+    );
 }
 
 const BARE: &str = "[loading]\nindentation = \"2 um\"\ntau = 30\n";

@@ -45,7 +45,8 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     let path = RecordedPath::of(&conditions.mode);
     let first = || InitialContact::new(&indenter, &half_space, &friction, &wear, &loading);
     if !conditions.is_plain() {
-        let first = first().map_err(|error| table(root, &keys::LOADING).map_or_else(|it| it, |it| it.error(error)))?;
+        let first = first()
+            .map_err(|error| table(root, &keys::LOADING).map_or_else(|it| it, |it| it.error(error)))?;
         let left_out = conditions.simplify(&motion::extent(&first), wear, IDLE * numerics.accuracy);
         warnings.extend(left_out.into_iter().map(|words| {
             format!("{words}: less than a hundredth of numerics.accuracy comes of it, so that it is left out")

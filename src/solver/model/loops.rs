@@ -103,7 +103,8 @@ impl Model {
             && loading.amplitude == self.contact.amplitude();
         if unchanged && self.slip_per_depth(loading, fields).is_some() {
             let displacement = to_and_fro(self.contact.amplitude(), steps);
-            let force = self.fretting_loop(fields, compression, &displacement);
+            let mut force = self.fretting_loop(fields, compression, &displacement);
+            force[displacement.len() - 1] = force[0];
             let none = vec![0.0; displacement.len()];
             let moved = |displacement: f64| self.tangential_force(fields, compression, displacement);
             let (amplitude, largest) = (displacement[0], force[0]);

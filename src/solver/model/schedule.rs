@@ -370,7 +370,10 @@ impl Schedule {
 
     /// Whether nothing makes a kink in wear along the slip annulus. A resolved cycle does: it takes what is pulled as without contact.
     pub fn wears_smoothly(&self) -> bool {
-        self.is_steady() && self.conditions.mode.is_tangential() && !self.resolves() && self.conditions.wear.is_smooth()
+        self.is_steady()
+            && self.conditions.mode.is_tangential()
+            && !self.resolves()
+            && self.conditions.wear.is_smooth()
     }
 }
 
