@@ -1,0 +1,94 @@
+//! A scene is computed as what it is, not as it is written; laws without kinks keep the accuracy asked as the plain ones do.
+
+use fretwear::Scene;
+
+const COULOMB: &str = "[friction.coulomb]\ncoefficient = 0.7\n";
+const ARCHARD: &str = "[wear.archard]\ncoefficient = \"1e-8 1/MPa\"\n";
+
+fn scene(friction: &str, wear: &str, more: &str, numerics: &str) -> Scene {
+    let text = format!(
+        "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = 0\nmodulus = \"210 GPa\"\npoisson_ratio = 0.3\n{friction}{wear}\
+         [loading]\nindentation = \"0.75 um\"\nstick_ratio = 0.7\ntau = 10\n{more}[output]\nsnapshots = 5\n[numerics]\n{numerics}"
+    );
+    Scene::from_toml(&text, "scene.toml").unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Friction, wear and motion that come to the plain scene, and whether they do exactly.
+fn other_words() -> Vec<(bool, &'static str, &'static str, &'static str)> {
+    let threshold = "[wear.threshold]\ncoefficient = \"1e-8 1/MPa\"\npressure = 1.0\n";
+    let spread = "[wear.non-local]\ncoefficient = \"1e-8 1/MPa\"\nlength = 1e-12\n";
+    let power = "[wear.power-law]\ncoefficient = 1e-14\npressure_exponent = 1\nslip_exponent = 1\n";
+    let statics = ["0.7", "0.69999999"].map(|kinetic| {
+        let law =
+            format!("[friction.static-kinetic]\nstatic_coefficient = 0.7\nkinetic_coefficient = {kinetic}\n");
+        &*law.leak()
+    });
+    let exponents = ["0", "1e-9"].map(|exponent| {
+        &*format!("[friction.load-dependent]\ncoefficient = 0.7\nexponent = {exponent}\n").leak()
+    });
+    let changing =
+        "[friction.coulomb]\ncoefficient = 0.7\n[friction.history]\nfactors = [1, 1]\nat_tau = [0, 5]\n";
+    let orbit = "[loading.orbit]\ntransverse_ratio = 1e-8\n";
+    let oscillation = "[loading.normal_oscillation]\namplitude_ratio = 1e-8\nfrequency_ratio = \"3/2\"\n";
+    let blocks = "repeat = true\n[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 2\n";
+    vec![
+        (true, statics[0], ARCHARD, ""),
+        (false, statics[1], ARCHARD, ""),
+        (true, exponents[0], ARCHARD, ""),
+        (false, exponents[1], ARCHARD, ""),
+        (true, changing, ARCHARD, ""),
+        (true, COULOMB, power, ""),
+        (false, COULOMB, threshold, ""),
+        (false, COULOMB, spread, ""),
+        (false, COULOMB, ARCHARD, orbit),
+        (false, COULOMB, ARCHARD, oscillation),
+        (true, COULOMB, ARCHARD, blocks),
+        (false, COULOMB, ARCHARD, "rig_stiffness = 1e14\n"),
+    ]
+}
+
+#[test]
+fn the_same_physics_in_other_words_is_the_same_run() {
+    let plain = scene(COULOMB, ARCHARD, "", "").run().unwrap();
+    for (exactly, friction, wear, more) in other_words() {
+        let name = format!("{friction}{wear}{more}");
+        let other = scene(friction, wear, more, "");
+        let told = other.warnings().iter().filter(|it| it.contains("left out")).count();
+        assert_eq!(told, usize::from(!exactly), "{name}: {:?}", other.warnings());
+        let found = other.run().unwrap();
+        let [volume, expected] = [&found, &plain].map(|it| it.summary().wear_volume);
+        assert!((volume / expected - 1.0).abs() < 1e-12, "{name}: {volume:e}, {expected:e}");
+        let [steps, expected] = [&found, &plain].map(|it| it.summary().steps);
+        assert_eq!(steps, expected, "{name}");
+    }
+    // Beyond a hundredth of the accuracy they are what they say.
+    for (friction, more) in [
+        ("[friction.static-kinetic]\nstatic_coefficient = 0.7\nkinetic_coefficient = 0.6999\n", ""),
+        (COULOMB, "[loading.orbit]\ntransverse_ratio = 1e-4\n"),
+        (COULOMB, "[[loading.blocks]]\ntau = 1\namplitude_factor = 0.9999\n[[loading.blocks]]\ntau = 1\n"),
+    ] {
+        assert!(!scene(friction, ARCHARD, more, "").conditions().is_plain(), "{friction}{more}");
+    }
+}
+
+#[test]
+fn laws_without_kinks_keep_the_accuracy_asked() {
+    let laws = [
+        ("[friction.static-kinetic]\nstatic_coefficient = 0.7\nkinetic_coefficient = 0.5\n", ARCHARD),
+        ("[friction.load-dependent]\ncoefficient = 0.5\nexponent = -0.2\n", ARCHARD),
+        (COULOMB, "[wear.power-law]\ncoefficient = 1e-18\npressure_exponent = 1.5\nslip_exponent = 0.5\n"),
+        (COULOMB, "[wear.power-law]\ncoefficient = 1e-11\npressure_exponent = 0.7\nslip_exponent = 0.8\n"),
+    ];
+    for (friction, wear) in laws {
+        let at = |accuracy: f64| {
+            let found = scene(friction, wear, "", &format!("accuracy = {accuracy:e}\n")).run().unwrap();
+            (found.summary().wear_volume, found.summary().accuracy_met, found.radius().len(), found)
+        };
+        let finest = at(1e-6).0;
+        for accuracy in [1e-2, 1e-3, 1e-4] {
+            let (volume, met, radii, _) = at(accuracy);
+            assert_eq!((met, radii), (Some(true), 128), "{friction}{wear} at {accuracy}");
+            assert!((volume / finest - 1.0).abs() < accuracy, "{friction}{wear}: {volume:e}, {finest:e}");
+        }
+    }
+}
