@@ -76,10 +76,11 @@
 //! | feature | what it adds |
 //! |---|---|
 //! | `hdf5` | result files, and the studies that write them; needs the HDF5 library |
+//! | `static-hdf5` | HDF5 built from its source and linked in, so that no system has to have it; needs CMake 3.26 to build |
 //! | `figures` | pictures and pages made from result files |
 //! | `cli` | the program `fretwear` |
 //!
-//! All are on by default. Without them the library simulates in memory, and needs neither a C library nor signals.
+//! All but `static-hdf5` are on by default. Without them the library simulates in memory, and needs neither a C library nor signals.
 
 #![warn(missing_docs)]
 // Some helpers serve files and studies alone.
