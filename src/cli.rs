@@ -1,13 +1,13 @@
 //! The command line: parses, calls the library, prints and exits. One file a command.
 
+use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
-use std::process::ExitCode;
 
+use crate::data::ResultPath;
+use crate::study::most_threads;
+use crate::{Error, Result, Scene};
 use clap::{Args, Parser, Subcommand};
-use fretwear::data::ResultPath;
-use fretwear::study::most_threads;
-use fretwear::{Error, Result, Scene};
 
 mod check;
 mod completions;
@@ -28,7 +28,7 @@ mod sweep;
 mod tradeoff;
 mod universality;
 
-use end::{EXIT_CODES, Failure, done};
+use end::{EXIT_CODES, FAILURE, Failure, done};
 
 /// Fretting wear of elastically graded media, from the first cycle to the limiting shape
 #[derive(Parser)]
@@ -83,10 +83,18 @@ struct Settings {
     settings: Vec<String>,
 }
 
-/// Does what the arguments of the process ask for.
-pub fn main() -> ExitCode {
+/// Does what the arguments ask for, of which the first is the program's name, and prints what comes of it; the exit code.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     signals::outlive_full_files();
-    let outcome = match Cli::parse().command {
+    let command = match Cli::try_parse_from(arguments) {
+        Ok(asked) => asked.command,
+        Err(usage) => {
+            // Nowhere is left to say that stdout or stderr is closed.
+            let _ = usage.print();
+            return usage.exit_code() as u8;
+        }
+    };
+    let outcome = match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Limit(arguments) => limit::limit(&arguments).map(done).map_err(Failure::from),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
@@ -165,12 +173,12 @@ fn error_line(failure: &Failure) {
 }
 
 /// Prints the result; a reader that has seen enough, such as `head`, is no failure.
-fn print(text: &str, code: ExitCode) -> ExitCode {
+fn print(text: &str, code: u8) -> u8 {
     let mut output = std::io::stdout().lock();
     match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             complain("error", &format!("stdout: {error}"));
-            ExitCode::FAILURE
+            FAILURE
         }
         _ => code,
     }

@@ -96,6 +96,27 @@ impl Error {
         }
     }
 
+    /// The dotted key of the scene that the error is about, where it is about one; messages of scenes begin with it.
+    ///
+    /// ```
+    /// let error = "[indenter.ball]".parse::<fretwear::Scene>().unwrap_err();
+    /// assert_eq!(error.key(), Some("indenter.ball"));
+    /// ```
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::OutOfRange { name, .. } | Self::Inconsistent { what: name, .. } => {
+                Some(*name).filter(|it| it.contains('.'))
+            }
+            Self::Scene(text) => {
+                let (_, message) = text.lines().next()?.split_once(": ")?;
+                let end = message.find(|c: char| !c.is_alphanumeric() && !"_-.[]".contains(c))?;
+                let (key, rest) = message.split_at(end);
+                [": ", " = ", " is ", " has ", " and "].iter().any(|it| rest.starts_with(it)).then_some(key)
+            }
+            _ => None,
+        }
+    }
+
     /// Exit code of a program that ends with this error before anything has begun: 1 where a computation failed, 2 where what was given
     /// cannot be used.
     pub fn exit_code(&self) -> u8 {

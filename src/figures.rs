@@ -44,6 +44,8 @@ mod worn_profiles;
 pub use output::FigureFile;
 pub use run::RunResults;
 
+use std::path::Path;
+
 use crate::data::{Dataset, Format, ResultPath, RunFile, SweepFile, format_of};
 use crate::error::{Error, Result};
 use crate::figures::drawing::Figure;
@@ -144,6 +146,14 @@ impl Results {
             Format::Tradeoff => arrays(Self::Tradeoff),
             Format::Sweep => SweepFile::read(file).map(Box::new).map(Self::Sweep),
         }
+    }
+
+    /// A run that is in memory.
+    ///
+    /// # Errors
+    /// Those of the closed form.
+    pub fn of_run(run: crate::run::Results) -> Result<Self> {
+        RunResults::new(run.into_file(), Path::new("run")).map(Box::new).map(Self::Run)
     }
 
     /// The kinds of figures that fit, the most telling one first.

@@ -87,6 +87,9 @@
 #![cfg_attr(not(feature = "figures"), allow(dead_code, unused_imports))]
 
 // The inside: open to the tests and benches of the package, and no interface, so that it changes without notice.
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 #[doc(hidden)]
 pub mod contact;
 #[doc(hidden)]
@@ -140,6 +143,6 @@ pub use run::{Expected, Results, Simulation, Stop};
 pub use run::{Resumed, Run};
 pub use scene::{MapScene, Scene, SceneBuilder, Study, UniversalityStudy};
 #[cfg(feature = "hdf5")]
-pub use study::Progress;
-#[cfg(feature = "hdf5")]
 pub use study::sweep::{Sweep, SweepOptions, SweepOutcome, merge};
+#[cfg(feature = "hdf5")]
+pub use study::{Progress, Watch, run_many};

@@ -1,7 +1,5 @@
 //! The program `fretwear`.
 
-mod cli;
-
 fn main() -> std::process::ExitCode {
-    cli::main()
+    fretwear::cli::main(std::env::args_os()).into()
 }

@@ -1,6 +1,7 @@
 //! Many scenes: sweeps and their jobs on clusters, the universality claim, the trade-off of time and error, wear maps.
 
 mod batch;
+mod many;
 pub mod submit;
 pub mod sweep;
 pub mod tradeoff;
@@ -8,3 +9,4 @@ pub mod universality;
 pub mod wear_map;
 
 pub use batch::{Progress, most_threads};
+pub use many::{Watch, on_threads, run_many};

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::report::{self, CheckReport};
+use crate::{Result, Scene};
 use clap::Args;
-use fretwear::report::{self, CheckReport};
-use fretwear::{Result, Scene};
 
 use super::{Settings, at, complain};
 

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::data::{Mark, check_own, make_folder};
+use crate::report::TableFile;
+use crate::{Error, Result};
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
-use fretwear::data::{Mark, check_own, make_folder};
-use fretwear::report::TableFile;
-use fretwear::{Error, Result};
 
 #[derive(Args)]
 pub struct Completions {

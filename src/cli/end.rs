@@ -1,13 +1,17 @@
 //! How the program ends: exit codes, and errors in the words of the command line.
 
-use std::process::ExitCode;
-
-use fretwear::Error;
-use fretwear::run::Results;
+use crate::Error;
+use crate::run::Results;
 
 /// What the help says of exit codes.
 pub const EXIT_CODES: &str = "Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input, nothing written; \
 3 done, but the accuracy asked for was not reached; 75 stopped by a signal with a checkpoint written.\nResults go to stdout, everything else to stderr.";
+
+/// Exit code of what was done.
+pub const SUCCESS: u8 = 0;
+
+/// Exit code of what failed.
+pub const FAILURE: u8 = 1;
 
 /// Exit code of a run that came to its end less accurately than was asked for; its results are kept.
 const INACCURATE: u8 = 3;
@@ -16,7 +20,7 @@ const INACCURATE: u8 = 3;
 const INTERRUPTED: u8 = 75;
 
 /// What is left to print, and the exit code.
-pub type End = std::result::Result<(String, ExitCode), Failure>;
+pub type End = std::result::Result<(String, u8), Failure>;
 
 /// Why a command came to no end.
 pub enum Failure {
@@ -34,10 +38,10 @@ impl From<Error> for Failure {
 
 impl Failure {
     /// The exit code.
-    pub fn code(&self) -> ExitCode {
+    pub fn code(&self) -> u8 {
         match self {
-            Self::Refused(error) => ExitCode::from(error.exit_code()),
-            Self::Failed(_) => ExitCode::FAILURE,
+            Self::Refused(error) => error.exit_code(),
+            Self::Failed(_) => FAILURE,
         }
     }
 
@@ -66,20 +70,20 @@ pub fn words(error: &Error) -> String {
 }
 
 /// The end of a command that has done what it was asked.
-pub fn done(text: String) -> (String, ExitCode) {
-    (text, ExitCode::SUCCESS)
+pub fn done(text: String) -> (String, u8) {
+    (text, SUCCESS)
 }
 
 /// The exit code of what was stopped and can go on.
-pub fn interrupted() -> ExitCode {
-    ExitCode::from(INTERRUPTED)
+pub fn interrupted() -> u8 {
+    INTERRUPTED
 }
 
 /// The exit code of a run.
-pub fn of_run(results: &Results) -> ExitCode {
+pub fn of_run(results: &Results) -> u8 {
     match (results.is_complete(), results.accuracy_met()) {
         (false, _) => interrupted(),
-        (true, Some(false)) => ExitCode::from(INACCURATE),
-        (true, _) => ExitCode::SUCCESS,
+        (true, Some(false)) => INACCURATE,
+        (true, _) => SUCCESS,
     }
 }

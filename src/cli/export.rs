@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::data::{ResultTables, check_distinct};
+use crate::report::TableFile;
+use crate::report::export::worn_surface;
+use crate::{Error, Result};
 use clap::Args;
-use fretwear::data::{ResultTables, check_distinct};
-use fretwear::report::TableFile;
-use fretwear::report::export::worn_surface;
-use fretwear::{Error, Result};
 
 use super::result_file;
 

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::Result;
+use crate::data::DatasetSummary;
+use crate::report::{self, InfoReport};
 use clap::Args;
-use fretwear::Result;
-use fretwear::data::DatasetSummary;
-use fretwear::report::{self, InfoReport};
 
 use super::result_file;
 

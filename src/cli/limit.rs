@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::Result;
+use crate::data::check_distinct;
+use crate::report::{self, LimitReport, TableFile};
 use clap::Args;
-use fretwear::Result;
-use fretwear::data::check_distinct;
-use fretwear::report::{self, LimitReport, TableFile};
 
 use super::{Settings, at, read};
 

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::Result;
+use crate::report;
+use crate::scene::MapScene;
+use crate::study::wear_map::MapReport;
 use clap::Args;
-use fretwear::Result;
-use fretwear::report;
-use fretwear::scene::MapScene;
-use fretwear::study::wear_map::MapReport;
 
 #[derive(Args)]
 pub struct Map {

@@ -1,13 +1,12 @@
 //! `fretwear merge`.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
+use crate::report;
+use crate::study::sweep::{self, MergeReport};
 use clap::Args;
-use fretwear::report;
-use fretwear::study::sweep::{self, MergeReport};
 
-use super::end::End;
+use super::end::{End, FAILURE, SUCCESS};
 
 #[derive(Args)]
 pub struct Merge {
@@ -28,6 +27,6 @@ pub struct Merge {
 pub fn merge(arguments: &Merge) -> End {
     let merged = sweep::merge(&arguments.folder, &arguments.output, arguments.force)?;
     let report = MergeReport::new(&merged, &arguments.output);
-    let code = if merged.missing_shards.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    let code = if merged.missing_shards.is_empty() { SUCCESS } else { FAILURE };
     Ok((if arguments.json { report::json(&report) } else { report.text() }, code))
 }

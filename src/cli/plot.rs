@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::Result;
+use crate::data::check_distinct;
+use crate::figures::{FigureFile, Kind, Results};
 use clap::Args;
-use fretwear::Result;
-use fretwear::data::check_distinct;
-use fretwear::figures::{FigureFile, Kind, Results};
 
 use super::result_file;
 

@@ -3,9 +3,9 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use fretwear::Result;
-use fretwear::solver::simulation::{End, Flow, Observer, Simulation};
-use fretwear::study::Progress;
+use crate::Result;
+use crate::solver::simulation::{Flow, Observer, Simulation};
+use crate::study::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Parts into which the bar is divided.
@@ -77,18 +77,12 @@ impl Observer for RunProgress {
             return Ok(Flow::Continue);
         }
         let (model, state) = (simulation.model(), simulation.state());
-        let done = match simulation.plan().end {
-            End::Cycles(cycles) => state.cycles / cycles,
-            End::Rate(fraction) => {
-                (simulation.wear_rate() / simulation.progress().first_rate).ln().min(0.0) / fraction.ln()
-            }
-        };
         let left = model
             .limit_depth()
             .iter()
             .zip(&simulation.wear_depth())
             .fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
-        self.bar.set_position((done.clamp(0.0, 1.0) * PARTS as f64) as u64);
+        self.bar.set_position((simulation.done() * PARTS as f64) as u64);
         self.bar.set_message(format!(
             "cycle {:.4e}  τ {:.4}  worn {:.4e} m³  distance {:.1e}",
             state.cycles,

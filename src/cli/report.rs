@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
+use crate::Result;
+use crate::data::check_distinct;
+use crate::figures::Results;
+use crate::figures::page;
+use crate::report::TableFile;
 use clap::Args;
-use fretwear::Result;
-use fretwear::data::check_distinct;
-use fretwear::figures::Results;
-use fretwear::figures::page;
-use fretwear::report::TableFile;
 
 use super::result_file;
 

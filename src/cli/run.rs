@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::data::{Mark, check_distinct, check_own};
+use crate::figures::FigureFile;
+use crate::report::{self, RunReport};
+use crate::run::{self, Results, Resumed};
+use crate::solver::simulation::Observer;
+use crate::{Result, Stop};
 use clap::Args;
-use fretwear::data::{Mark, check_distinct, check_own};
-use fretwear::figures::FigureFile;
-use fretwear::report::{self, RunReport};
-use fretwear::run::{self, Results, Resumed};
-use fretwear::solver::simulation::Observer;
-use fretwear::{Result, Stop};
 
-use super::end::{End, Failure, of_run};
+use super::end::{End, FAILURE, Failure, of_run};
 use super::progress::RunProgress;
 use super::{Settings, at, complain, error_line, plot, read, result_file, signals};
 
@@ -78,7 +78,7 @@ pub fn run(arguments: &Run) -> End {
         && let Err(error) = plot::draw_run(&output, picture)
     {
         error_line(&Failure::Failed(error));
-        return Ok((text, std::process::ExitCode::FAILURE));
+        return Ok((text, FAILURE));
     }
     Ok((text, of_run(&results)))
 }
@@ -127,7 +127,7 @@ fn run_picture(arguments: &Run, named: Option<&Path>) -> Result<FigureFile> {
     check_distinct(&path, &result)?;
     arguments.scene.as_deref().map_or(Ok(()), |scene| check_distinct(&path, scene))?;
     if named.is_none() && arguments.force {
-        check_own(&path, Mark::Words(fretwear::figures::drawing::BEGINNING))?;
+        check_own(&path, Mark::Words(crate::figures::drawing::BEGINNING))?;
     }
     FigureFile::new(&path, arguments.force)
 }

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::Result;
+use crate::report::{self, TableFile};
+use crate::scene::page_of_keys;
+use crate::scene::schema::FileKind;
 use clap::Args;
-use fretwear::Result;
-use fretwear::report::{self, TableFile};
-use fretwear::scene::page_of_keys;
-use fretwear::scene::schema::FileKind;
 
 /// A scene with its alternatives as comments.
 const TEMPLATE: &str = include_str!("../../data/template/scene.toml");

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fretwear::{Error, Result, Stop};
+use crate::{Error, Result, Stop};
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
 
 /// A token that SIGTERM, SIGINT and SIGUSR1 set.

@@ -1,15 +1,14 @@
 //! `fretwear submit`.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
+use crate::Error;
+use crate::report;
+use crate::study::submit::{self, Engine, SubmitReport, Wishes};
 use clap::Args;
-use fretwear::Error;
-use fretwear::report;
-use fretwear::study::submit::{self, Engine, SubmitReport, Wishes};
 
 use super::complain;
-use super::end::{End, done};
+use super::end::{End, FAILURE, done};
 
 /// The study, the engine and what the jobs may take.
 #[derive(Args)]
@@ -96,7 +95,7 @@ pub fn submit(arguments: &Submit) -> End {
         "error",
         &format!("the scripts are written, but {} did not take them: {refusal}", report.engine),
     );
-    Ok((text, ExitCode::FAILURE))
+    Ok((text, FAILURE))
 }
 
 /// An error with the option that helps.

@@ -1,15 +1,14 @@
 //! `fretwear sweep`.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
+use crate::report;
+use crate::scene::Study;
+use crate::study::Progress;
+use crate::study::sweep::{self, SweepOptions, SweepReport};
 use clap::Args;
-use fretwear::report;
-use fretwear::scene::Study;
-use fretwear::study::Progress;
-use fretwear::study::sweep::{self, SweepOptions, SweepReport};
 
-use super::end::{End, Failure, interrupted};
+use super::end::{End, FAILURE, Failure, SUCCESS, interrupted};
 use super::progress::SceneProgress;
 use super::{complain, seconds, signals, threads};
 
@@ -73,9 +72,9 @@ pub fn sweep(arguments: &Sweep) -> End {
         None => interrupted(),
         Some(_) if outcome.failed > arguments.max_failed => {
             complain("error", &format!("{} scenes failed; their rows say why", outcome.failed));
-            ExitCode::FAILURE
+            FAILURE
         }
-        Some(_) => ExitCode::SUCCESS,
+        Some(_) => SUCCESS,
     };
     let text = match (arguments.json, arguments.quiet) {
         (true, _) => report::json(&report),

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::report;
+use crate::scene::Stepper;
+use crate::study::Progress;
+use crate::study::tradeoff::{self, Ladders, TradeoffReport};
 use clap::Args;
-use fretwear::report;
-use fretwear::scene::Stepper;
-use fretwear::study::Progress;
-use fretwear::study::tradeoff::{self, Ladders, TradeoffReport};
 
 use super::end::{End, Failure, done, interrupted};
 use super::progress::SceneProgress;

@@ -1,15 +1,14 @@
 //! `fretwear universality`.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
+use crate::report;
+use crate::scene::UniversalityStudy;
+use crate::study::Progress;
+use crate::study::universality::{self, UniversalityReport};
 use clap::Args;
-use fretwear::report;
-use fretwear::scene::UniversalityStudy;
-use fretwear::study::Progress;
-use fretwear::study::universality::{self, UniversalityReport};
 
-use super::end::{End, Failure, done, interrupted};
+use super::end::{End, FAILURE, Failure, done, interrupted};
 use super::progress::SceneProgress;
 use super::{complain, signals, threads};
 
@@ -76,5 +75,5 @@ pub fn universality(arguments: &Universality) -> End {
     }
     let wrong = report.count - report.agreeing;
     complain("error", &format!("{wrong} of {} cases are not as predicted", report.count));
-    Ok((text, ExitCode::FAILURE))
+    Ok((text, FAILURE))
 }

@@ -61,6 +61,13 @@ impl RunFile {
         Self::from_group(&open, &open.file)
     }
 
+    /// What a file of it holds, its checkpoint blank where it has none.
+    pub fn dataset(&self) -> Dataset {
+        let Self { header, snapshots, stop_reason, complete, .. } = self;
+        let checkpoint = &self.checkpoint.clone().unwrap_or_default();
+        Save { header, snapshots, checkpoint, stop_reason: *stop_reason, complete: *complete }.dataset()
+    }
+
     /// Reads a run from a group of a file.
     pub(super) fn from_group(open: &OpenFile, group: &Group) -> Result<Self> {
         open.check_format(group, Format::Run, NOT_A_RUN)?;

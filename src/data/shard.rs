@@ -8,7 +8,6 @@ use super::atomic::AtomicFile;
 use super::dataset::{Attribute, Dataset, Quantity, Values, Variable, quantity, text};
 use super::labelled::{create_group, file_on_disk, put_dataset};
 use super::reader::{OpenFile, Wanted, variable};
-use super::save::Save;
 use super::seal::{ResultPath, seal};
 use super::{Format, RunFile};
 use crate::error::{Error, Result};
@@ -140,10 +139,6 @@ impl SweepFile {
         if !self.runs.is_empty() {
             let group = create_group(&file, RUNS)?;
             for (scene, run) in &self.runs {
-                let RunFile { header, snapshots, checkpoint, stop_reason, complete, .. } = run;
-                let checkpoint = &checkpoint.clone().unwrap_or_default();
-                let run =
-                    Save { header, snapshots, checkpoint, stop_reason: *stop_reason, complete: *complete };
                 put_dataset(&create_group(&group, &scene.to_string())?, &run.dataset())?;
             }
         }

@@ -31,7 +31,7 @@ impl Target {
     }
 
     pub(super) fn save(&mut self, save: &Save) -> Result<()> {
-        let bytes = sealed(laid_out(self.path(), |file| put_dataset(file, &save.dataset()))?);
+        let bytes = save.dataset().bytes(self.path())?;
         if let Self::Later(path) = self {
             *self = Self::Ready(AtomicFile::new(path, true)?);
         }
@@ -52,6 +52,20 @@ impl Dataset {
     /// If a variable runs along a dimension that has no coordinate before it.
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
         let mut file = AtomicFile::new(path, overwrite)?;
-        file.write(&sealed(laid_out(path, |file| put_dataset(file, self))?))
+        file.write(&self.bytes(path)?)
+    }
+
+    /// The bytes of a file of it.
+    ///
+    /// # Arguments
+    /// * `path` -- what errors call it
+    ///
+    /// # Errors
+    /// [`Error::File`](crate::Error::File) if the HDF5 library cannot lay it out.
+    ///
+    /// # Panics
+    /// As [`Dataset::write`].
+    pub fn bytes(&self, path: &Path) -> Result<Vec<u8>> {
+        Ok(sealed(laid_out(path, |file| put_dataset(file, self))?))
     }
 }

@@ -23,6 +23,31 @@ pub enum Resumed {
 }
 
 impl Results {
+    /// Reads the result file of a run that came to its end, or as far as one that was stopped came.
+    ///
+    /// ```
+    /// # let scene: fretwear::Scene = include_str!("../../data/scenes/paraboloid.toml").parse()?;
+    /// # let folder = tempfile::tempdir()?;
+    /// # let path = folder.path().join("run.h5");
+    /// let results = scene.simulate()?;
+    /// results.save(&path)?;
+    /// assert_eq!(fretwear::Results::open(&path)?.wear_depth(), results.wear_depth());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::File`] if the file is none of a run, is damaged, or holds no checkpoint that fits its scene.
+    pub fn open<'a>(file: impl Into<ResultPath<'a>>) -> Result<Self> {
+        let file = file.into();
+        let path = file.path();
+        let stored = RunFile::open(file)?;
+        let checkpoint = stored.checkpoint.clone();
+        match Run::go_on(stored, path, &Shared::default(), |run| Ok(run.into_deferred_writer(path)))? {
+            Resumed::Complete(results) => Ok(*results),
+            Resumed::Run(run) => Ok(run.0.so_far(checkpoint.unwrap_or_default())),
+        }
+    }
+
     /// Writes the result file.
     ///
     /// # Errors

@@ -166,12 +166,28 @@ impl<'a> Simulation<'a> {
             recorder.writer.save(&checkpoint, stop_reason, complete)?;
         }
         outcome?;
-        let last = snapshot(&stepping);
-        let distance = distance(stepping.model(), limit.as_ref(), &last);
-        let indenter = stepping.model().contact().indenter().clone();
-        let (header, snapshots) = recorder.writer.into_parts();
-        Ok(Results { header, snapshots, checkpoint, stop_reason, last, limit, distance, indenter })
+        Ok(results(&stepping, limit, recorder.writer, checkpoint, stop_reason))
     }
+
+    /// What a run that has been restored from this checkpoint came to.
+    #[cfg(feature = "hdf5")]
+    pub(super) fn so_far(self, checkpoint: Checkpoint) -> Results {
+        results(&self.stepping, self.limit, self.writer, checkpoint, StopReason::Interrupted)
+    }
+}
+
+fn results(
+    stepping: &stepping::Simulation,
+    limit: Option<LimitingShape>,
+    writer: RunWriter,
+    checkpoint: Checkpoint,
+    stop_reason: StopReason,
+) -> Results {
+    let last = snapshot(stepping);
+    let distance = distance(stepping.model(), limit.as_ref(), &last);
+    let indenter = stepping.model().contact().indenter().clone();
+    let (header, snapshots) = writer.into_parts();
+    Results { header, snapshots, checkpoint, stop_reason, last, limit, distance, indenter }
 }
 
 /// Where a run ended, and on which springs.

@@ -19,10 +19,24 @@ impl Scene {
     /// # Errors
     /// As [`Scene::from_path`]; also where a setting is not of a key, with the one that is nearest, or has not its dimension or range.
     pub fn read_with(path: &Path, settings: &[String]) -> Result<Self> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::from_toml_with(&read_text(path)?, path, folder, settings)
+    }
+
+    /// Reads a scene from its text as [`Scene::read_with`] does from a file.
+    ///
+    /// # Arguments
+    /// * `name` -- what messages call it, the path of the file as a rule
+    /// * `folder` -- that to which the files it names are relative
+    ///
+    /// # Errors
+    /// As [`Scene::read_with`].
+    pub fn from_toml_with(text: &str, name: &Path, folder: &Path, settings: &[String]) -> Result<Self> {
+        let rows = Rows::In(folder);
         if settings.is_empty() {
-            return Self::from_path(path);
+            return Self::with_rows(text, &name.display().to_string(), &rows);
         }
-        let mut scene = base_table(&read_text(path)?, path)?;
+        let mut scene = base_table(text, name)?;
         let mut taken: Vec<&str> = vec![];
         for setting in settings {
             let (key, value) = parsed(setting)?;
@@ -33,8 +47,7 @@ impl Scene {
             set(&mut scene, key, value).map_err(wrong)?;
             taken.push(key);
         }
-        let folder = path.parent().unwrap_or(Path::new(""));
-        Self::with_rows(&scene.to_string(), &Self::name_with(path, settings), &Rows::In(folder))
+        Self::with_rows(&scene.to_string(), &Self::name_with(name, settings), &rows)
     }
 
     /// What messages call a scene that [`Scene::read_with`] read: lines are those of the scene with the settings.

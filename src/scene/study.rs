@@ -132,16 +132,27 @@ impl Study {
     /// [`Error::Scene`], whose message shows the line with the bad place marked, the key and the cure; [`Error::File`] if one of the two
     /// files cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = read_text(path)?;
-        let name = path.display().to_string();
-        let source = Source { name: &name, text: &text, kind: "a study" };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::from_toml(&read_text(path)?, &path.display().to_string(), folder)
+    }
+
+    /// Reads a study from its text, and the base scene that it names.
+    ///
+    /// # Arguments
+    /// * `text`, `name` -- the study and what messages call it
+    /// * `folder` -- that to which the base scene is relative
+    ///
+    /// # Errors
+    /// As [`Study::read`].
+    pub fn from_toml(text: &str, name: &str, folder: &Path) -> Result<Self> {
+        let source = Source { name, text, kind: "a study" };
         let document = source.parse()?;
         let root = Section::root(source, document.get_ref());
         let entry = root.required("scene", "name the file of the base scene, relative to the study")?;
-        let base = path.parent().unwrap_or(Path::new("")).join(entry.string()?);
+        let base = folder.join(entry.string()?);
         let base_text =
             read_text(&base).map_err(|error| entry.error(format_args!("cannot be used: {error}")))?;
-        Self::from_texts(&text, &name, &base_text, &base)
+        Self::from_texts(text, name, &base_text, &base)
     }
 
     /// Reads a study from the texts of its two files.

@@ -264,6 +264,15 @@ impl Simulation {
         self.rate
     }
 
+    /// How much of the plan is done, from 0 to 1: by cycles, or by the logarithm of the rate that ends it.
+    pub fn done(&self) -> f64 {
+        let done = match self.plan.end {
+            End::Cycles(cycles) => self.state.cycles / cycles,
+            End::Rate(fraction) => (self.rate / self.progress.first_rate).ln().min(0.0) / fraction.ln(),
+        };
+        done.clamp(0.0, 1.0)
+    }
+
     /// Tries a step of so many cycles and forgets it.
     ///
     /// # Errors

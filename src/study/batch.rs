@@ -50,6 +50,11 @@ impl Batch {
         self.pool.install(work)
     }
 
+    /// Does the same on each thread; what comes of it on all of them.
+    pub(crate) fn broadcast<T: Send>(&self, work: impl Fn() -> T + Sync) -> Vec<T> {
+        self.pool.broadcast(|_| work())
+    }
+
     /// Runs all jobs, and settles each as soon as it has come to an end; none if they were stopped first.
     ///
     /// # Arguments
