@@ -65,6 +65,8 @@ pub use shard::{SweepFile, SweepHeader, column};
 pub use surface::SurfaceSeries;
 #[cfg(feature = "hdf5")]
 pub use tables::{DatasetSummary, ResultTables, TableSummary, VariableSummary};
+#[cfg(feature = "hdf5")]
+pub use target::write_file;
 pub use writer::RunWriter;
 
 use std::sync::Arc;

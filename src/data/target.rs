@@ -42,6 +42,14 @@ impl Target {
     }
 }
 
+/// Writes the bytes of a result file, as a whole or not at all.
+///
+/// # Errors
+/// [`Error::Exists`](crate::Error::Exists) if it exists and `overwrite` is not given, [`Error::File`](crate::Error::File) if it cannot be written.
+pub fn write_file(path: &Path, bytes: &[u8], overwrite: bool) -> Result<()> {
+    AtomicFile::new(path, overwrite)?.write(bytes)
+}
+
 impl Dataset {
     /// Writes a file, as a whole or not at all.
     ///
@@ -51,8 +59,7 @@ impl Dataset {
     /// # Panics
     /// If a variable runs along a dimension that has no coordinate before it.
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<()> {
-        let mut file = AtomicFile::new(path, overwrite)?;
-        file.write(&self.bytes(path)?)
+        write_file(path, &self.bytes(path)?, overwrite)
     }
 
     /// The bytes of a file of it.

@@ -11,7 +11,7 @@ use crate::solver::simulation::{self as stepping, Flow, Observer};
 
 /// Whoever looks on while scenes run.
 pub trait Watch: Sync {
-    /// The scene of this place is done up to a part, from 0 to 1; said at the beginning and after each step.
+    /// The scene of this place is done up to a part, from 0 to 1; said at its beginning, after each step, and at its end.
     fn done(&self, scene: usize, part: f64);
 }
 
@@ -45,7 +45,9 @@ pub fn run_many(
                     why: "the program panicked; please report this scene".into(),
                 })
             };
-            ended.push((place, catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(panicked)));
+            let end = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(panicked);
+            watch.done(place, 1.0);
+            ended.push((place, end));
         }
         ended
     };
