@@ -94,8 +94,8 @@ impl Results {
 
     /// The file that they were read from.
     #[getter]
-    fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
+    fn path(&self) -> Option<&str> {
+        self.path.as_deref().and_then(Path::to_str)
     }
 
     /// Names of the variables of a group.

@@ -40,7 +40,7 @@ pub struct Scene {
     name: String,
     /// To which the files that it names are relative.
     #[pyo3(get)]
-    folder: PathBuf,
+    folder: String,
 }
 
 #[pymethods]
@@ -73,7 +73,7 @@ impl Scene {
         };
         let name = fretwear::Scene::name_with(path, &settings);
         let scene = read.map_err(|error| of_input(py, &error))?;
-        Ok(Self { scene, name, folder: std::env::current_dir()?.join(folder) })
+        Ok(Self { scene, name, folder: std::env::current_dir()?.join(folder).display().to_string() })
     }
 
     /// The TOML text.
@@ -103,9 +103,10 @@ pub fn study(given: &Bound<PyAny>) -> PyResult<Study> {
         Ok(table) => {
             let mut table = values::table(table, "")?;
             match table.get_mut("scene") {
-                Some(base @ Value::Table(_)) => {
-                    let base = std::mem::replace(base, Value::String("scene".into()));
-                    Study::from_texts(&table.to_string(), "study", &base.to_string(), Path::new("scene"))
+                Some(Value::Table(base)) => {
+                    let base = base.to_string();
+                    table.insert("scene".into(), Value::String("scene".into()));
+                    Study::from_texts(&table.to_string(), "study", &base, Path::new("scene"))
                 }
                 _ => Study::from_toml(&table.to_string(), "study", here),
             }

@@ -16,7 +16,7 @@ import fretwear
 from test_results import BALL, same
 
 # Some ten thousand million cycles, one by one.
-ENDLESS = {"numerics.stepper": "every-cycle", "loading.cycles": 1e9}
+ENDLESS = {"numerics.stepper": "every-cycle", "loading.cycles": 1e9, "numerics.springs": 24}
 
 
 def interrupted_after(seconds, work):
@@ -74,7 +74,7 @@ def test_other_threads_of_python_go_on_meanwhile():
 
     thread = threading.Thread(target=counting)
     thread.start()
-    fretwear.run(BALL, set={"numerics.stepper": "every-cycle", "loading.cycles": 20000})
+    fretwear.run(BALL, set={"numerics.stepper": "every-cycle", "loading.cycles": 5000, "numerics.springs": 24})
     seen = count
     done.set()
     thread.join()

@@ -37,7 +37,9 @@ def run(scene: Source, set: Table | None = None, progress: bool = False) -> Run:
         SceneError: the scene cannot be used; ``key`` and ``message`` say why.
         RunError: the run cannot go on from some moment.
     """
-    return _run([_scene(scene, set)], None, progress)[0]
+    (made,) = _run([_scene(scene, set)], None, progress)
+    assert isinstance(made, Run)
+    return made
 
 
 @overload
