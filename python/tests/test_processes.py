@@ -170,8 +170,7 @@ def test_the_types_are_those_that_mypy_asks_for(tmp_path):
         "either = fretwear.run_many(['a.toml'], return_errors=True)\n"
         "wrong: int = fretwear.limit('ball.toml')  # type: ignore[assignment]\n"
     )
-    folder = os.path.dirname(fretwear.__file__)
-    for part in ([folder], [str(use)]):
+    for part in (["--package", "fretwear"], [str(use)]):
         done = subprocess.run(
             [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", *part],
             capture_output=True,

@@ -51,7 +51,8 @@ def _panel(axes: Any, panel: dict[str, Any]) -> None:
             label["at"],
             xytext=(right, -down),
             textcoords="offset pixels",
-            ha={0.0: "left", 0.5: "center", 1.0: "right"}.get(label["anchor"], "left"),
+            ha="right" if label["upwards"] else _side(label["anchor"], "left", "right"),
+            va=_side(label["anchor"], "bottom", "top") if label["upwards"] else "baseline",
             rotation=90 if label["upwards"] else 0,
             color=label["colour"],
             fontsize="small",
@@ -64,6 +65,10 @@ def _panel(axes: Any, panel: dict[str, Any]) -> None:
         norm = (LogNorm if bar["axis"]["spacing"] == "logarithmic" else Normalize)(*bar["axis"]["range"])
         shown = plt.cm.ScalarMappable(norm, ListedColormap(bar["colours"]))
         axes.figure.colorbar(shown, ax=axes, label=_mathtext(bar["axis"]["text"]))
+
+
+def _side(anchor: float, first: str, last: str) -> str:
+    return first if anchor < 0.25 else last if anchor > 0.75 else "center"
 
 
 def _series(axes: Any, series: dict[str, Any]) -> None:
