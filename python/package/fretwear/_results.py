@@ -218,6 +218,12 @@ class Run(Results):
         """energy dissipated by friction in one cycle, J, shape (time,)"""
         tangential_force: Numbers
         """largest tangential force along one fretting loop, N, shape (time,)"""
+        energy_ratio: Numbers
+        """energy of the fretting loop over 4 Q* δ*, shape (time,)"""
+        sliding_ratio: Numbers
+        """width of the fretting loop at no force over the stroke, shape (time,)"""
+        fretting_regime: NDArray[np.int32]
+        """fretting regime of the run so far: mixed where some cycles have slid as a whole and some have not, shape (time,)"""
         regime: NDArray[np.int32]
         """what the oscillation does to the contact, shape (time,); ``attributes("regime")`` tells the words"""
         radius: Numbers
