@@ -49,16 +49,16 @@ fn other_words() -> Vec<(bool, &'static str, &'static str, &'static str)> {
 
 #[test]
 fn the_same_physics_in_other_words_is_the_same_run() {
-    let plain = scene(COULOMB, ARCHARD, "", "").run().unwrap();
+    let plain = scene(COULOMB, ARCHARD, "", "").simulate().unwrap();
     for (exactly, friction, wear, more) in other_words() {
         let name = format!("{friction}{wear}{more}");
         let other = scene(friction, wear, more, "");
         let told = other.warnings().iter().filter(|it| it.contains("left out")).count();
         assert_eq!(told, usize::from(!exactly), "{name}: {:?}", other.warnings());
-        let found = other.run().unwrap();
-        let [volume, expected] = [&found, &plain].map(|it| it.summary().wear_volume);
+        let found = other.simulate().unwrap();
+        let [volume, expected] = [&found, &plain].map(|it| it.last().wear_volume);
         assert!((volume / expected - 1.0).abs() < 1e-12, "{name}: {volume:e}, {expected:e}");
-        let [steps, expected] = [&found, &plain].map(|it| it.summary().steps);
+        let [steps, expected] = [&found, &plain].map(|it| it.steps());
         assert_eq!(steps, expected, "{name}");
     }
     // Beyond a hundredth of the accuracy they are what they say.
@@ -81,12 +81,12 @@ fn laws_without_kinks_keep_the_accuracy_asked() {
     ];
     for (friction, wear) in laws {
         let at = |accuracy: f64| {
-            let found = scene(friction, wear, "", &format!("accuracy = {accuracy:e}\n")).run().unwrap();
-            (found.summary().wear_volume, found.summary().accuracy_met, found.radius().len(), found)
+            let found = scene(friction, wear, "", &format!("accuracy = {accuracy:e}\n")).simulate().unwrap();
+            (found.last().wear_volume, found.accuracy_met(), found.radius().len())
         };
         let finest = at(1e-6).0;
         for accuracy in [1e-2, 1e-3, 1e-4] {
-            let (volume, met, radii, _) = at(accuracy);
+            let (volume, met, radii) = at(accuracy);
             assert_eq!((met, radii), (Some(true), 128), "{friction}{wear} at {accuracy}");
             assert!((volume / finest - 1.0).abs() < accuracy, "{friction}{wear}: {volume:e}, {finest:e}");
         }
