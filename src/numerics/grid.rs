@@ -28,7 +28,10 @@ pub enum Clustering {
     /// For wear that is smooth along the annulus, with the edge of stick at rest: degree 5. Towards the edge of stick nodes lie nearly
     /// evenly in `ln(r² - c²)`, where wear proceeds as a front; at the contact edge their spacing is `n^-4`.
     Smooth,
-    /// For wear with kinks along the annulus: degree 3, spacing `n^-4` at the edge of stick and `n^-3` at the contact edge.
+    /// The same nodes with polynomials of degree 3, for the weak kinks that resolved cycles make along the annulus: an orbit, an oscillation of the
+    /// indentation.
+    Even,
+    /// For wear with kinks along the annulus, of blocks or a threshold: degree 3, spacing `n^-4` at the edge of stick and `n^-3` at the contact edge.
     Cubic,
     /// As [`Clustering::Cubic`] with a spacing of `n^-2` at the contact edge: less stiff, so that explicit steps may be longer.
     Quadratic,
@@ -44,11 +47,16 @@ impl Clustering {
     /// Exponents of the spacing at the edge of stick and at the contact edge.
     fn exponents(self) -> (i32, i32) {
         match self {
-            Self::Smooth => (1, 3),
+            Self::Smooth | Self::Even => (1, 3),
             Self::Cubic => (3, 2),
             Self::Quadratic => (3, 1),
             Self::CreepingStick | Self::RecedingStick => (1, 2),
         }
+    }
+
+    /// Whether the local polynomials are polynomials in `y`.
+    pub fn is_even(self) -> bool {
+        matches!(self, Self::Smooth | Self::Even)
     }
 
     /// Degree of the local polynomials.
@@ -60,7 +68,7 @@ impl Clustering {
     fn cut(self, cells: usize) -> [f64; 2] {
         let more = cells.saturating_sub(FINEST_ENDS) as f64;
         match self {
-            Self::Smooth => [CUT_AT_STICK * more, CUT_AT_CONTACT * more.cbrt()],
+            Self::Smooth | Self::Even => [CUT_AT_STICK * more, CUT_AT_CONTACT * more.cbrt()],
             _ => [0.0; 2],
         }
     }
@@ -71,7 +79,7 @@ impl Clustering {
     /// anywhere.
     pub fn stretch(self, natural: f64, grading: f64) -> f64 {
         match self {
-            Self::Smooth => (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0)),
+            Self::Smooth | Self::Even => (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0)),
             Self::RecedingStick => natural.max(RECEDING_STRETCH),
             _ => natural,
         }
@@ -86,7 +94,7 @@ impl Clustering {
 ///
 /// `ξ = (s - c²)/(a² - c²)` with `s = x²` is the fraction of the annulus' area, from 0 at the edge of stick to 1 at the contact edge. Both
 /// ends carry singularities of the worn solution, powers of the distance, which are smooth in `y` as the nodes cluster there: the local
-/// polynomials of [`Clustering::Smooth`] are polynomials in `y`, but for straight lines. With more than a thousand cells `t` runs over a little less
+/// polynomials are polynomials in `y` on meshes that [`Clustering::is_even`] names, but for straight lines. With more than a thousand cells `t` runs over a little less
 /// than (0, 1) on such a mesh, so that the last cells keep widths that numbers can tell apart. Those of the other meshes are polynomials in `ξ`: over
 /// kinks, and over ground that passes through the springs, they have proved the steadier ones.
 #[derive(Debug, Clone, PartialEq)]
@@ -280,7 +288,7 @@ impl Mesh {
 
     /// Whether the local polynomial is one of `y`.
     fn is_even(&self, stencil: &Range<usize>) -> bool {
-        self.clustering == Clustering::Smooth && stencil.len() > 2
+        self.clustering.is_even() && stencil.len() > 2
     }
 
     /// What the local polynomial is a polynomial of: `y`, or `ξ` as it is next to the edge of stick and less one next to the contact edge.
@@ -414,8 +422,9 @@ pub fn lagrange_derivative(nodes: &[f64], x: f64, values: &mut [f64]) {
 mod tests {
     use super::*;
 
-    const ALL: [Clustering; 5] = [
+    const ALL: [Clustering; 6] = [
         Clustering::Smooth,
+        Clustering::Even,
         Clustering::Cubic,
         Clustering::Quadratic,
         Clustering::CreepingStick,

@@ -74,6 +74,9 @@ pub(super) fn model(
             &[Clustering::Smooth, Clustering::CreepingStick]
         }
         _ if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
+        Stepper::Implicit if schedule.wears_nearly_smoothly() => {
+            &[Clustering::Even, Clustering::CreepingStick]
+        }
         Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
         Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
     };

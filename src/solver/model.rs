@@ -232,7 +232,7 @@ impl Model {
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
         // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
         let clustering = match clustering {
-            Clustering::Cubic if surplus > 0.0 => Clustering::CreepingStick,
+            Clustering::Cubic | Clustering::Even if surplus > 0.0 => Clustering::CreepingStick,
             clustering => clustering,
         };
         let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
@@ -245,7 +245,9 @@ impl Model {
             + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
         let depth_scale = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
         let hidden = match clustering {
-            Clustering::Smooth => operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN),
+            clustering if clustering.is_even() => {
+                operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN)
+            }
             _ => 0,
         };
         Ok(Self {

@@ -74,9 +74,9 @@ pub trait WearLaw: Debug + Send + Sync {
         None
     }
 
-    /// Whether the rate is local and has no kink, so that wear is smooth along the slip annulus.
-    fn is_smooth(&self) -> bool {
-        self.spreading().is_none()
+    /// Whether the rate has a kink at some pressure.
+    fn has_kink(&self) -> bool {
+        false
     }
 
     /// What the law differs by, at most and relatively, from Archard's with the same coefficient; infinite where that is not small.

@@ -63,8 +63,8 @@ impl WearLaw for Threshold {
         self.pressure / mean_pressure
     }
 
-    fn is_smooth(&self) -> bool {
-        false
+    fn has_kink(&self) -> bool {
+        true
     }
 
     fn keeps_from_wearing(&self, mean_pressure: f64) -> Option<(&'static str, String)> {

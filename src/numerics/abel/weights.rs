@@ -6,7 +6,7 @@ use std::ops::Range;
 use faer::Mat;
 
 use crate::error::{Error, Result};
-use crate::numerics::grid::{Clustering, MOST_POINTS, Mesh, MeshPoint, lagrange, lagrange_derivative};
+use crate::numerics::grid::{MOST_POINTS, Mesh, MeshPoint, lagrange, lagrange_derivative};
 use crate::numerics::quadrature::Rule;
 
 /// Nodes of the rule in the cell that holds the end-point singularity.
@@ -104,6 +104,8 @@ pub(super) struct Assembly<'a> {
 /// A rule on a cell, with the local polynomials that are the same in all cells well inside a mesh on which they are polynomials of `y`.
 struct LocalRule {
     rule: Rule,
+    /// Nodes of the polynomials that cells share.
+    points: usize,
     /// The polynomials and their derivatives on the nodes, where there are such cells.
     shared: Option<Vec<[Weights; 2]>>,
 }
@@ -111,7 +113,7 @@ struct LocalRule {
 impl LocalRule {
     fn new(mesh: &Mesh, rule: Rule) -> Self {
         let points = mesh.clustering().degree() + 1;
-        let shared = (mesh.clustering() == Clustering::Smooth).then(|| {
+        let shared = mesh.clustering().is_even().then(|| {
             let nodes: Vec<f64> = (0..points).map(|i| i as f64 - (points / 2 - 1) as f64).collect();
             let on_node = |y: &f64| {
                 let mut both = [[0.0; MOST_POINTS]; 2];
@@ -121,13 +123,13 @@ impl LocalRule {
             };
             rule.nodes.iter().map(on_node).collect()
         });
-        Self { rule, shared }
+        Self { rule, points, shared }
     }
 
     /// The shared polynomials, if they are those of a cell with this stencil.
     fn shared(&self, cell: usize, stencil: &Range<usize>) -> Option<&[[Weights; 2]]> {
-        let points = stencil.len();
-        self.shared.as_deref().filter(|_| points > 2 && stencil.start + points / 2 == cell + 1)
+        let fits = stencil.len() == self.points && stencil.start + self.points / 2 == cell + 1;
+        self.shared.as_deref().filter(|_| fits)
     }
 }
 
@@ -184,7 +186,7 @@ impl<'a> Assembly<'a> {
         let last = self.mesh.cells();
         match self.mesh.clustering() {
             _ if cell == 0 => 1..2,
-            Clustering::Smooth if cell + 1 == last => last - 1..last + 1,
+            clustering if clustering.is_even() && cell + 1 == last => last - 1..last + 1,
             clustering => Mesh::stencil(cell, clustering.degree() + 1, last),
         }
     }

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use super::{CycleFields, Fields, Model};
 use crate::error::{Error, Result};
-use crate::numerics::grid::{Clustering, MOST_POINTS, Mesh};
+use crate::numerics::grid::{MOST_POINTS, Mesh};
 use crate::numerics::linear::dot;
 
 /// Weights of a derivative `ξ d/dξ` at one spring.
@@ -35,7 +35,7 @@ impl Stencil {
 /// * `back` -- by how many nodes they are moved inwards, for ground that moves outwards past the springs
 pub(super) fn derivative_stencils(mesh: &Mesh, back: usize) -> Vec<Stencil> {
     let last = mesh.cells();
-    let smooth = mesh.clustering() == Clustering::Smooth;
+    let smooth = mesh.clustering().is_even();
     let points = mesh.clustering().degree() + 1;
     let stencil = |node: usize| {
         let nodes =

@@ -216,7 +216,7 @@ impl Operators {
         };
         let mesh = abel.mesh();
         let derivative_inwards = match clustering {
-            Clustering::Smooth => vec![],
+            clustering if clustering.is_even() => vec![],
             _ => derivative_stencils(mesh, 1),
         };
         Ok(Self { derivative: derivative_stencils(mesh, 0), derivative_inwards, abel, inverse })

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::{CycleFields, Fields, HIDDEN, Model, State, StickEdge};
 use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
 use crate::contact::stick_slip::Regime;
-use crate::numerics::grid::{Clustering, Mesh};
+use crate::numerics::grid::Mesh;
 use crate::numerics::linear::dot;
 
 /// Distance from the contact edge, over the annulus, that is round-off.
@@ -250,7 +250,7 @@ impl Model {
             let Some(AnnulusPoint { x, y, unworn, log_slip }) = point else { continue };
             radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
             radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
-            if mesh.clustering() == Clustering::Smooth {
+            if mesh.clustering().is_even() {
                 radial.pressure[i] = radial.pressure[i].max(0.0);
             }
         }
@@ -299,7 +299,7 @@ impl<'a> Annulus<'a> {
         let mesh = self.model.operators.abel.mesh();
         let local = mesh.local(y, self.model.springs());
         let log_slip = local.sum(&self.fields.log_slip);
-        if mesh.clustering() != Clustering::Smooth {
+        if !mesh.clustering().is_even() {
             return log_slip;
         }
         let between = local.sum(&self.limit_log_slip);
@@ -376,8 +376,8 @@ impl OutputRadii {
     /// [`SHOWN`] radii, graded as the mesh is, from [`HIDDEN`] to the contact edge.
     pub(super) fn new(unworn: &UnwornSlip, mesh: &Mesh, hidden: usize) -> Self {
         let springs = &mesh.nodes()[1 + hidden..];
-        let fractions: Vec<f64> = if mesh.clustering() == Clustering::Smooth && springs.len() < SHOWN {
-            let like = Mesh::new(SHOWN, mesh.stretch(), Clustering::Smooth);
+        let fractions: Vec<f64> = if mesh.clustering().is_even() && springs.len() < SHOWN {
+            let like = Mesh::new(SHOWN, mesh.stretch(), mesh.clustering());
             let first = like.place(HIDDEN);
             let spacing = (SHOWN as f64 - first) / (SHOWN - 1) as f64;
             (0..SHOWN).map(|i| like.at(SHOWN as f64 - spacing * (SHOWN - 1 - i) as f64).value).collect()
