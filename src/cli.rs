@@ -19,6 +19,7 @@ mod map;
 mod merge;
 mod plot;
 mod progress;
+mod rehearsal;
 mod report;
 mod run;
 mod schema;
@@ -143,9 +144,18 @@ fn threads(asked: Option<u16>) -> Option<usize> {
     asked.map(|asked| asked.min(most))
 }
 
-/// A result file, checked once for all that is read from it unless the user wants it as it is.
-fn result_file(path: &Path, unchecked: bool) -> Result<ResultPath<'_>> {
-    if unchecked { Ok(ResultPath::unchecked(path)) } else { ResultPath::checked(path) }
+/// A result file, checked once for all that is read from it; or as it is, where the user wants that and another process could read it.
+fn result_file<'a, T>(
+    path: &'a Path,
+    unchecked: bool,
+    read: impl FnOnce(ResultPath<'a>) -> Result<T>,
+) -> Result<ResultPath<'a>> {
+    if !unchecked {
+        return ResultPath::checked(path);
+    }
+    let file = ResultPath::unchecked(path);
+    rehearsal::survived(path, || drop(read(file)))?;
+    Ok(file)
 }
 
 /// Reads a scene and passes its warnings on.

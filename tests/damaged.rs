@@ -2,14 +2,19 @@
 
 mod support;
 
+use std::collections::BTreeMap;
+use std::fmt::Debug;
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use fretwear::Result;
 use fretwear::data::{
     Dataset, DatasetSummary, Format, ResultPath, ResultTables, RunFile, SweepFile, format_of,
 };
 use support::command::{done, ended, names, program, text};
+use support::results::every_kind;
 
 const SCENE: &str = r#"
 [indenter.paraboloid]
@@ -45,7 +50,7 @@ impl Chance {
         ((mixed ^ (mixed >> 31)) % end as u64) as usize
     }
 
-    fn block(&mut self, length: usize) -> std::ops::Range<usize> {
+    fn block(&mut self, length: usize) -> Range<usize> {
         let start = self.below(length);
         start..(start + 1 + self.below(2000)).min(length)
     }
@@ -56,7 +61,7 @@ fn damaged(whole: &[u8], seed: u64) -> (Vec<u8>, String) {
     let mut chance = Chance(seed);
     loop {
         let mut bytes = whole.to_vec();
-        let what = match seed % 6 {
+        let what = match seed % 8 {
             0 => {
                 let flips = 1 + chance.below(4);
                 (0..flips).for_each(|_| bytes[chance.below(whole.len())] ^= 1 << chance.below(8));
@@ -79,6 +84,17 @@ fn damaged(whole: &[u8], seed: u64) -> (Vec<u8>, String) {
             4 => {
                 drop(bytes.drain(chance.block(whole.len())));
                 "a block left out"
+            }
+            5 => {
+                let (first, second) = (chance.block(whole.len()), chance.below(whole.len()));
+                let length = first.len().min(whole.len() - second).min(first.start.abs_diff(second));
+                (0..length).for_each(|at| bytes.swap(first.start + at, second + at));
+                "blocks swapped"
+            }
+            6 => {
+                let (place, length) = (chance.below(whole.len()), 1 + chance.below(2000));
+                bytes.splice(place..place, (0..length).map(|_| chance.below(256) as u8));
+                "bytes inserted"
             }
             _ => {
                 // The first kilobytes hold most of what HDF5 follows.
@@ -197,6 +213,81 @@ fn files_of_every_layout_are_refused_where_they_are_damaged() {
         }
         assert!(!at.join("merged.h5").exists());
     }
+}
+
+/// What the program says with 1 GB and 5 s of computing: exit code and message, unless it ends by a signal, by a panic or without a word.
+fn confined(folder: &Path, arguments: &[&str]) -> std::result::Result<(i32, String), String> {
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -v 1000000; ulimit -t 5; exec \"$0\" \"$@\""]);
+    command.arg(assert_cmd::cargo::cargo_bin!("fretwear")).args(arguments).current_dir(folder);
+    let output = ended(command);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    match output.status.code() {
+        Some(code @ (0 | 3)) => Ok((code, message)),
+        Some(code @ (1 | 2)) if message.contains("error: ") => Ok((code, message)),
+        _ => Err(format!("{}: {message}", output.status)),
+    }
+}
+
+/// Damages files of every kind and has them read, with their checksum and without. Nothing is to end the program, to hold it up or to be told wrongly.
+fn survey(seeds: Range<u64>) {
+    // The name of a shard, so that `merge` reads it too.
+    const NAME: &str = "shard-0-of-2.h5";
+    const WAYS: [&[&str]; 7] = [
+        &["info", NAME, "--json"],
+        &["export", NAME],
+        &["export", NAME, "--list"],
+        &["plot", NAME, "-o", "figure.svg", "--force"],
+        &["report", NAME, "-o", "report.html", "--force"],
+        &["run", "--resume", NAME, "--quiet"],
+        &["merge", ".", "-o", "merged.h5"],
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let files: Vec<_> = every_kind(folder.path()).iter().map(|path| fs::read(path).unwrap()).collect();
+    let judge = |seed: u64| {
+        let mut chance = Chance(!seed);
+        let place = chance.below(files.len());
+        let (bytes, what) = damaged(&files[place], seed);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        fs::write(&path, bytes).unwrap();
+        let fault = |way: &[&str], end: &dyn Debug| format!("FAULT {what}, file {place}, {way:?}: {end:?}");
+        let way = WAYS[chance.below(7)];
+        match confined(folder.path(), way) {
+            Ok((2, message)) if reasonable(&message, &path) => {}
+            end => return fault(way, &end),
+        }
+        let way = [WAYS[chance.below(6)], &["--unchecked"]].concat();
+        match confined(folder.path(), &way) {
+            Ok((2, message)) => {
+                let ends = ["did not come to its end", "was ended by signal", "makes no sense"];
+                let end = ends.into_iter().find(|end| message.contains(end));
+                end.unwrap_or("refused").to_owned()
+            }
+            Ok((code, _)) => format!("exit code {code}"),
+            end => fault(&way, &end),
+        }
+    };
+    let mut tally = BTreeMap::<_, usize>::new();
+    let halves = [0, 1].map(|half| seeds.clone().skip(half).step_by(2));
+    std::thread::scope(|scope| {
+        let halves = halves.map(|half| scope.spawn(|| half.map(judge).collect::<Vec<_>>()));
+        let ends = halves.into_iter().flat_map(|half| half.join().expect("no panic"));
+        ends.for_each(|end| *tally.entry(end).or_default() += 1);
+    });
+    println!("{} damages, read without the checksum: {tally:#?}", seeds.count());
+    assert!(!tally.keys().any(|end| end.starts_with("FAULT")), "{tally:#?}");
+}
+
+#[test]
+fn no_damage_to_any_kind_of_file_ends_the_program_or_holds_it_up() {
+    survey(0..300);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn ten_thousand_damages_end_no_command() {
+    (0..4).for_each(|part| survey(1000 + 2500 * part..3500 + 2500 * part));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::data::{ResultTables, check_distinct};
+use crate::data::{ResultPath, ResultTables, check_distinct};
 use crate::report::TableFile;
 use crate::report::export::worn_surface;
 use crate::{Error, Result};
@@ -31,7 +31,7 @@ pub struct Export {
     /// Overwrite the output if it exists
     #[arg(long, requires = "output")]
     force: bool,
-    /// Read the result file even if it does not fit its checksum or has none; a damaged one may hang or end this program
+    /// Read the result file even if it does not fit its checksum or has none; what is damaged in it may go unnoticed
     #[arg(long)]
     unchecked: bool,
 }
@@ -42,18 +42,21 @@ pub fn export(arguments: &Export) -> Result<String> {
         return list(arguments);
     }
     let table = arguments.table.as_deref();
-    let source = || result_file(&arguments.file, arguments.unchecked);
-    let Some(output) = &arguments.output else { return ResultTables::csv(source()?, table) };
+    let csv = |file: ResultPath| ResultTables::csv(file, table);
+    let checked_csv = || csv(result_file(&arguments.file, arguments.unchecked, csv)?);
+    let Some(output) = &arguments.output else { return checked_csv() };
     check_distinct(output, &arguments.file)?;
     match output.extension().and_then(|it| it.to_str()) {
         Some("csv") => {
             let file = TableFile::new(output, arguments.force)?;
-            file.write(&ResultTables::csv(source()?, table)?)?;
+            file.write(&checked_csv()?)?;
         }
         Some("vtkhdf") if table.is_none() => {
             // Before the surface is made.
             drop(TableFile::new(output, arguments.force)?);
-            worn_surface(source()?, SECTORS)?.write(output, arguments.force)?;
+            let surface = |file: ResultPath| worn_surface(file, SECTORS);
+            surface(result_file(&arguments.file, arguments.unchecked, surface)?)?
+                .write(output, arguments.force)?;
         }
         Some("vtkhdf") => return Err(refused(output, "a surface has no table; leave out --table")),
         _ => {
@@ -69,7 +72,7 @@ fn refused(output: &std::path::Path, why: &str) -> Error {
 }
 
 fn list(arguments: &Export) -> Result<String> {
-    let tables = ResultTables::open(result_file(&arguments.file, arguments.unchecked)?)?;
+    let tables = ResultTables::open(result_file(&arguments.file, arguments.unchecked, ResultTables::open)?)?;
     let mut text = String::new();
     for table in tables.summaries()? {
         let usual = if table.name == tables.usual() { ", the one taken by default" } else { "" };

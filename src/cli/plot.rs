@@ -27,7 +27,7 @@ pub struct Plot {
     /// Overwrite the picture if it exists
     #[arg(long)]
     force: bool,
-    /// Read the result file even if it does not fit its checksum or has none; a damaged one may hang or end this program
+    /// Read the result file even if it does not fit its checksum or has none; what is damaged in it may go unnoticed
     #[arg(long)]
     unchecked: bool,
 }
@@ -43,7 +43,7 @@ pub fn kind(word: &str) -> std::result::Result<Kind, String> {
 pub fn plot(arguments: &Plot) -> Result<String> {
     check_distinct(&arguments.output, &arguments.file)?;
     let file = FigureFile::new(&arguments.output, arguments.force)?;
-    let results = Results::read(result_file(&arguments.file, arguments.unchecked)?)?;
+    let results = Results::read(result_file(&arguments.file, arguments.unchecked, Results::read)?)?;
     // A result file that can be read has at least one kind but for a run without a snapshot, whose profile says so.
     let kind = arguments.kind.or_else(|| results.kinds().first().copied()).unwrap_or(Kind::Profile);
     file.write(&results.figure(kind, arguments.quantity.as_deref())?)?;

@@ -23,7 +23,7 @@ pub struct Report {
     /// Overwrite the page if it exists
     #[arg(long)]
     force: bool,
-    /// Read the result file even if it does not fit its checksum or has none; a damaged one may hang or end this program
+    /// Read the result file even if it does not fit its checksum or has none; what is damaged in it may go unnoticed
     #[arg(long)]
     unchecked: bool,
 }
@@ -31,7 +31,7 @@ pub struct Report {
 pub fn report(arguments: &Report) -> Result<String> {
     check_distinct(&arguments.output, &arguments.file)?;
     let file = TableFile::new(&arguments.output, arguments.force)?;
-    let results = Results::read(result_file(&arguments.file, arguments.unchecked)?)?;
+    let results = Results::read(result_file(&arguments.file, arguments.unchecked, Results::read)?)?;
     file.write(&page::report(&results, &arguments.file)?)?;
     Ok(String::new())
 }

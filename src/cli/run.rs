@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::data::{Mark, check_distinct, check_own};
+use crate::data::{Mark, RunFile, check_distinct, check_own};
 use crate::figures::FigureFile;
 use crate::report::{self, RunReport};
 use crate::run::{self, Results, Resumed};
@@ -39,7 +39,7 @@ pub struct Run {
     /// Overwrite the result file, and the picture, if they exist
     #[arg(long)]
     force: bool,
-    /// Go on even if the result file does not fit its checksum or has none; a damaged one may hang or end this program
+    /// Go on even if the result file does not fit its checksum or has none; what is damaged in it may go unnoticed
     #[arg(long, conflicts_with = "scene")]
     unchecked: bool,
 }
@@ -86,15 +86,17 @@ pub fn run(arguments: &Run) -> End {
 /// Prepares a new run, or one that goes on.
 fn ready(arguments: &Run, stop: &Stop) -> Result<Ready> {
     match (&arguments.scene, &arguments.resume) {
-        (_, Some(file)) => match run::Run::resume(result_file(file, arguments.unchecked)?, stop)? {
-            Resumed::Run(run) => {
-                if !arguments.quiet {
-                    complain("note", &format!("goes on with the scene that is in {}", file.display()));
+        (_, Some(file)) => {
+            match run::Run::resume(result_file(file, arguments.unchecked, RunFile::open)?, stop)? {
+                Resumed::Run(run) => {
+                    if !arguments.quiet {
+                        complain("note", &format!("goes on with the scene that is in {}", file.display()));
+                    }
+                    Ok(Ready::Run(run, file.clone()))
                 }
-                Ok(Ready::Run(run, file.clone()))
+                Resumed::Complete(results) => Ok(Ready::Complete(results, file.clone())),
             }
-            Resumed::Complete(results) => Ok(Ready::Complete(results, file.clone())),
-        },
+        }
         (Some(path), None) => {
             let scene = read(path, &arguments.set)?;
             let output = arguments.output.clone().unwrap_or_else(|| default_output(path));
