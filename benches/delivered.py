@@ -23,9 +23,19 @@ FRICTION = "[friction.coulomb]\ncoefficient = 0.5\n"
 WEAR = "[wear.archard]\ncoefficient = 1.667e-13\n"
 
 
-def scene(numerics, load="indentation = 1e-6", amplitude="stick_ratio = 0.7", tau=3, grading=0, friction=FRICTION, wear=WEAR, more=""):
+def scene(
+    numerics,
+    load="indentation = 1e-6",
+    amplitude="stick_ratio = 0.7",
+    tau=3,
+    grading=0,
+    friction=FRICTION,
+    wear=WEAR,
+    more="",
+    indenter="[indenter.paraboloid]\nradius = 1.0\n",
+):
     return (
-        f"[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n"
+        f"{indenter}[half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n"
         f"{friction}{wear}[loading]\n{load}\n{amplitude}\ntau = {tau}\n{more}\n[numerics]\n{numerics}\n[output]\nsnapshots = 12\n"
     )
 
@@ -120,4 +130,5 @@ def main():
     sys.exit(1 if wrong else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()

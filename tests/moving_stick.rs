@@ -21,6 +21,7 @@ use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule, State};
 use fretwear::solver::simulation::{End, Flow, Observer, Outcome, Plan, Simulation};
 use fretwear::solver::stepper::Sdirk;
+use serde_json::Value;
 use support::reference::Table;
 use support::resume::whole_and_in_parts;
 use support::{Case, distance, laws};
@@ -632,4 +633,83 @@ fn explicit_steps_are_refused_with_a_cure() {
             );
         }
     }
+}
+
+/// The scene of a row of benches/moving_edges.csv, of which benches/moving_edges.py makes the same.
+fn judged(table: &Table, row: &[String], numerics: &str) -> String {
+    let [factor, grading, stick_ratio, tau] =
+        ["factor", "k", "c/a0", "tau"].map(|column| table.number(row, column));
+    let (indenter, depth, exponent) = match table.text(row, "indenter") {
+        "paraboloid" => ("paraboloid]\nradius = 0.5", 1e-6, 2.0),
+        "cone" => ("cone]\nslope = 1e-3", 1e-6, 1.0),
+        "n = 4" => ("power-law]\ncoefficient = 1e6\nexponent = 4", 1e-6, 4.0),
+        _ => ("sphere]\nradius = 2e-3", 5e-4, 2.0),
+    };
+    // Force of a flat punch of a radius of 1 mm over the normal stiffness of the springs and the depth.
+    let punch = 2.0 * 1e-3_f64.powf(1.0 + grading) / (1.0 + grading);
+    let force = 2e11 * punch * depth * exponent / (exponent + 1.0 + grading);
+    let (mut load, mut history, mut more) =
+        (format!("indentation = {depth:e}"), String::new(), String::new());
+    match table.text(row, "control") {
+        "normal force" => load = format!("normal_force = {force:e}"),
+        "friction" => history = format!("[friction.history]\nfinal_factor = {factor}\ntau = 1.5\n"),
+        "tangential force" => more = "tangential_control = \"force\"\n".into(),
+        "rig" => more = format!("rig_stiffness = {:e}\n", factor * 2e11 * 2.0 / 3.0 * punch),
+        _ => {
+            let block = |tau: f64, factor: f64| {
+                format!("[[loading.blocks]]\ntau = {tau}\namplitude_factor = {factor}\n")
+            };
+            more = block(0.3 * tau, 1.0) + &block(1.0, factor);
+        }
+    }
+    format!(
+        "[indenter.{indenter}\n[half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n\
+         [friction.coulomb]\ncoefficient = 0.5\n{history}[wear.archard]\ncoefficient = 1.667e-13\n\
+         [loading]\n{load}\nstick_ratio = {stick_ratio}\ntau = {tau}\n{more}[numerics]\n{numerics}[output]\nsnapshots = 12\n"
+    )
+}
+
+/// Judges every `step`-th row: the default accuracy is kept, and the order over some numbers of springs is two or more.
+fn keep_to_accuracy_and_order(step: usize, springs: &[usize]) {
+    let table = Table::at("benches/moving_edges.csv");
+    let folder = tempfile::tempdir().expect("a folder");
+    for row in table.rows.iter().step_by(step) {
+        let ended = |numerics: &str| -> Option<[f64; 4]> {
+            fs::write(folder.path().join("s.toml"), judged(&table, row, numerics)).expect("the scene");
+            let output = support::command::run(folder.path(), &["run", "s.toml", "--json", "--force"]);
+            let found: Value = serde_json::from_slice(&output.stdout).ok()?;
+            let number = |key: &str| found[key].as_f64();
+            let (volume, limit) = (number("wear_volume")?, number("wear_volume_limit"));
+            Some([volume, limit.unwrap_or(volume), number("stick_radius")?, number("contact_radius")?])
+        };
+        let [volume, limit, stick, contact] = ended("").unwrap_or_else(|| panic!("{row:?}"));
+        let by_hand = |count| ended(&format!("springs = {count}\ntolerance = 1e-6\n"));
+        let finer: Vec<[f64; 4]> = springs.iter().map_while(by_hand).collect();
+        // A held tangential force comes to no end on 480 springs at k = -0.3 and says so.
+        assert!(finer.len() >= 3, "{row:?}: {finer:?}");
+        let changes: Vec<f64> =
+            finer.windows(2).map(|pair| (pair[1][0] - pair[0][0]).abs() / limit).collect();
+        let last = finer.len() - 1;
+        let order = (changes[0] / changes[last - 1]).log2() / (last - 1) as f64;
+        let misses = [(volume - finer[last][0]).abs() / limit, (stick - finer[last][2]).abs() / contact];
+        let what =
+            format!("{row:?}: volume and edge miss {misses:.7?}, changes {changes:.7?}, order {order:.2}");
+        println!("{what}");
+        assert!(misses.iter().all(|miss| *miss < 1e-4), "{what}");
+        // Where blocks grow, errors of either sign come of where the edge that was lies in its cell: within 1.7e-5, 4e-6, 1e-6, 3e-7 at 30, 60, 120
+        // and 240 springs, of second order.
+        let grows = table.text(row, "control") == "blocks" && table.number(row, "factor") > 1.0;
+        assert!(order > if grows { 1.5 } else { 2.0 }, "{what}");
+    }
+}
+
+#[test]
+fn edges_of_stick_that_move_keep_to_accuracy_and_order() {
+    keep_to_accuracy_and_order(7, &[60, 120, 240]);
+}
+
+#[test]
+#[ignore = "twenty scenes, some minutes"]
+fn edges_of_stick_that_move_keep_to_accuracy_and_order_on_all_scenes() {
+    keep_to_accuracy_and_order(1, &[60, 120, 240, 480]);
 }

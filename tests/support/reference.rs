@@ -8,7 +8,12 @@ pub struct Table {
 
 impl Table {
     pub fn read(file: &str) -> Self {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/reference").join(file);
+        Self::at(&format!("data/reference/{file}"))
+    }
+
+    /// A table of its own elsewhere in the repository.
+    pub fn at(path: &str) -> Self {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
         let text =
             std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
