@@ -55,7 +55,7 @@ pub struct CycleLoading {
     pub response: Option<Arc<Response>>,
     /// Cycles in that period.
     pub cycles_per_period: f64,
-    /// Settled cycles that this one wears as much as: see [`FROM_REST`].
+    /// Settled cycles that this one wears as much as: `FROM_REST` in the first cycle from rest, else one.
     pub share: f64,
 }
 
