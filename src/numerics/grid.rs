@@ -28,8 +28,8 @@ pub enum Clustering {
     /// For wear that is smooth along the annulus, with the edge of stick at rest: degree 5. Towards the edge of stick nodes lie nearly
     /// evenly in `ln(r² - c²)`, where wear proceeds as a front; at the contact edge their spacing is `n^-4`.
     Smooth,
-    /// The same nodes with polynomials of degree 3, for the weak kinks that resolved cycles make along the annulus: an orbit, an oscillation of the
-    /// indentation.
+    /// The same nodes with polynomials of degree 3, for the weak kinks that resolved cycles at a constant indentation make along the annulus: an
+    /// orbit.
     Even,
     /// For wear with kinks along the annulus, of blocks or a threshold: degree 3, spacing `n^-4` at the edge of stick and `n^-3` at the contact edge.
     Cubic,

@@ -326,9 +326,9 @@ impl Model {
         self.wears_steadily() && self.schedule.wears_smoothly()
     }
 
-    /// Whether every cycle is the same and the edge of stick rests, so that wear is smooth in time but where kinks pass a spring.
+    /// Whether every cycle is the same, with weak kinks at most, and the edge of stick rests, so that wear is nearly smooth in time.
     pub fn wears_steadily(&self) -> bool {
-        self.schedule.is_steady() && self.moving.is_none() && !self.slides
+        self.schedule.wears_nearly_smoothly() && self.moving.is_none() && !self.slides
     }
 
     /// Whether wear goes on as long as the contact is moved: in gross slip under a held normal force.

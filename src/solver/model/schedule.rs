@@ -373,10 +373,10 @@ impl Schedule {
         self.wears_nearly_smoothly() && self.conditions.mode.is_tangential() && !self.resolves()
     }
 
-    /// Whether cycles are the same and wear is local, at a rate without a kink: at most resolved cycles make kinks, weak ones.
+    /// Whether cycles are the same, at a constant indentation, and wear is local, at a rate without a kink: at most resolved cycles make kinks, weak ones.
     pub fn wears_nearly_smoothly(&self) -> bool {
         let wear = &self.conditions.wear;
-        self.is_steady() && !wear.has_kink() && wear.spreading().is_none()
+        self.is_steady() && !self.lifts() && !wear.has_kink() && wear.spreading().is_none()
     }
 }
 
