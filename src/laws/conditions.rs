@@ -104,6 +104,8 @@ impl Conditions {
     /// The words for forces that are held among [`Conditions::departures`].
     pub const HELD_FORCES: [&str; 2] = ["a held tangential force", "a held normal force"];
 
+    const BLOCKS: &str = "blocks";
+    const RIG: &str = "a compliant rig";
     const CHANGING_FRICTION: &str = "friction that changes along the cycles";
     const CHANGING_WEAR: &str = "a wear coefficient that changes along the cycles";
 
@@ -141,7 +143,7 @@ impl Conditions {
         let control = match self.tangential_control {
             TangentialControl::Displacement => None,
             TangentialControl::Force => Some(Self::HELD_FORCES[0]),
-            TangentialControl::Rig { .. } => Some("a compliant rig"),
+            TangentialControl::Rig { .. } => Some(Self::RIG),
         };
         let given = |it: bool, words: &'static str| it.then_some(words);
         let changes = |history: &History, words| given(*history != History::Constant, words);
@@ -151,7 +153,7 @@ impl Conditions {
             self.wear.entry().departure,
             changes(&self.wear_history, Self::CHANGING_WEAR),
             self.mode.entry().and_then(|mode| mode.departure),
-            given(!self.blocks.is_empty(), "blocks"),
+            given(!self.blocks.is_empty(), Self::BLOCKS),
             control,
             given(self.holds_normal_force, Self::HELD_FORCES[1]),
         ];
@@ -178,7 +180,7 @@ impl Conditions {
             }
         }
         let factors = self.blocks.iter().map(|it| off([it.amplitude_factor, it.indentation_factor]));
-        if is_idle(factors.fold(0.0, f64::max), Some("blocks")) {
+        if is_idle(factors.fold(0.0, f64::max), Some(Self::BLOCKS)) {
             (self.blocks, self.repeat) = (vec![], false);
         }
         let coefficient = self.friction.reference_coefficient();
@@ -190,7 +192,7 @@ impl Conditions {
             self.mode = Arc::new(Tangential);
         }
         if let TangentialControl::Rig { stiffness } = self.tangential_control
-            && is_idle(contact.tangential_stiffness / stiffness, Some("a compliant rig"))
+            && is_idle(contact.tangential_stiffness / stiffness, Some(Self::RIG))
         {
             self.tangential_control = TangentialControl::Displacement;
         }

@@ -43,16 +43,16 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
         None => Numerics::default(),
     };
     let path = RecordedPath::of(&conditions.mode);
-    let first = || InitialContact::new(&indenter, &half_space, &friction, &wear, &loading);
+    let mut slides = false;
     if !conditions.is_plain() {
-        let first = first()
+        let first = InitialContact::new(&indenter, &half_space, &friction, &wear, &loading)
             .map_err(|error| table(root, &keys::LOADING).map_or_else(|it| it, |it| it.error(error)))?;
         let left_out = conditions.simplify(&motion::extent(&first), wear, IDLE * numerics.accuracy);
         warnings.extend(left_out.into_iter().map(|words| {
             format!("{words}: less than a hundredth of numerics.accuracy comes of it, so that it is left out")
         }));
+        slides = first.regime() == Regime::FullSliding;
     }
-    let slides = || first().is_ok_and(|it| it.regime() == Regime::FullSliding);
     warnings.extend(warning_of_another_limit(&conditions, slides));
     let output = match root.optional("output") {
         Some(entry) => output(&entry.section()?, Some(loading.duration))?,
@@ -150,7 +150,7 @@ fn one_of<'a, L: ?Sized>(
 }
 
 /// The closed form knows nothing of what is not plain.
-fn warning_of_another_limit(conditions: &Conditions, slides: impl FnOnce() -> bool) -> Option<String> {
+fn warning_of_another_limit(conditions: &Conditions, slides: bool) -> Option<String> {
     let mut departures = conditions.departures();
     if conditions.holds_both_forces() {
         // That has a closed form of its own.
@@ -159,7 +159,7 @@ fn warning_of_another_limit(conditions: &Conditions, slides: impl FnOnce() -> bo
     if departures.is_empty() {
         return None;
     }
-    let says = if slides() {
+    let says = if slides {
         "its first cycle slides as a whole, and no stick zone is left from which there would be a limit in closed form"
     } else {
         "limit takes its first cycle as plain tangential oscillation, run compares with the limit of the smallest stick radius and the \

@@ -495,7 +495,8 @@ impl Simulation {
         let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
         let interpolation = match self.model.operators().mesh().clustering() {
             Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
-            _ if self.model.schedule().wears_smoothly() => INTERPOLATION,
+            Clustering::Even => KINKED_INTERPOLATION,
+            _ if self.model.schedule().is_uniform() => INTERPOLATION,
             _ => KINKED_INTERPOLATION,
         };
         let allowed = (self.tolerance + interpolation) * self.model.depth_scale();

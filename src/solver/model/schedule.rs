@@ -349,7 +349,7 @@ impl Schedule {
     }
 
     /// Whether every cycle is the same: one amplitude at one indentation, under friction that does not change.
-    pub fn is_steady(&self) -> bool {
+    fn is_steady(&self) -> bool {
         let conditions = &self.conditions;
         conditions.blocks.is_empty()
             && *self.friction_change() == History::Constant
