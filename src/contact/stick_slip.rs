@@ -123,6 +123,14 @@ pub fn full_sliding_amplitude(stiffness_ratio: f64, friction_coefficient: f64, i
 
 /// Stick radius `c`, m, the root of `g0(c) = d - q_c` [S, Eq. (11)].
 ///
+/// ```
+/// use fretwear::{Indenter, stick_radius};
+/// let g0 = Indenter::paraboloid(10e-3)?.equivalent_profile(0.0)?; // r²/(2R) becomes x²/R
+/// let c = stick_radius(&g0, 1e-6, 0.51e-6)?;
+/// assert!((c - 70e-6).abs() < 1e-15);
+/// # Ok::<(), fretwear::Error>(())
+/// ```
+///
 /// # Arguments
 /// * `profile` -- equivalent profile `g0`
 /// * `indentation` -- `d`, m

@@ -19,6 +19,23 @@ pub trait Watch: Sync {
 ///
 /// Whoever stops them gets what there is: the runs that were begun, the last of them not complete.
 ///
+/// ```
+/// # std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"))?;
+/// use fretwear::{Scene, Stop, Watch, run_many};
+///
+/// struct Silent;
+/// impl Watch for Silent {
+///     fn done(&self, _scene: usize, _part: f64) {}
+/// }
+///
+/// let scenes = [Scene::from_path("paraboloid.toml")?, Scene::from_path("graded_ceramic.toml")?];
+/// let runs = run_many(&scenes, None, &Stop::default(), &Silent)?;
+/// for (scene, run) in scenes.iter().zip(runs) {
+///     println!("{:?}: {:e} m³", scene.title(), run?.worn_volume().last().unwrap());
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Arguments
 /// * `threads` -- each of which runs one scene at a time; at most, and by default, one for each core
 ///

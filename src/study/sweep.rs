@@ -114,6 +114,26 @@ pub fn sweep(
 }
 
 /// A shard that is ready to be done.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// # let scenes = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+/// use fretwear::{Stop, Study, Sweep, SweepOptions, merge};
+///
+/// let text = r#"
+///     scene = "paraboloid.toml"
+///     task = "limit"
+///     axes = [{ key = "loading.amplitude", from = "0.1 um", to = "0.3 um", count = 8 }]
+/// "#;
+/// let study = Study::from_toml(text, "study", scenes)?;
+/// for shard in 0..2 {
+///     let options = SweepOptions { shard, shards: 2, ..SweepOptions::default() };
+///     Sweep::new(&study, folder.path(), &options, &Stop::default())?.execute(None)?;
+/// }
+/// let merged = merge(folder.path(), &folder.path().join("all.h5"), false)?;
+/// assert_eq!((merged.scenes, merged.missing), (study.count(), 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Sweep<'a> {
     study: &'a Study,
     schema: Schema,
