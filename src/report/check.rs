@@ -17,7 +17,7 @@ use crate::scene::Scene;
 /// Steepest flank at the edge of contact that is not worth a word.
 const STEEP: f64 = 0.3;
 
-/// TextTable within the contact that describe a profile.
+/// Fewest rows within the contact that describe a measured profile well.
 const FEW_ROWS: usize = 10;
 
 /// Dimensionless time of one cycle up to which the shape hardly changes within it.

@@ -8,7 +8,7 @@ use crate::laws::loading::{Block, Clock, TangentialControl};
 /// Blocks and times of which all are listed.
 const MOST_LISTED: usize = 6;
 
-/// TextTable of a table for people.
+/// Adds what the conditions are to a table for people.
 pub(super) fn put(rows: &mut TextTable, conditions: &Conditions) {
     let clock = match conditions.clock {
         Clock::Cycles => "cycles",
