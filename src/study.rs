@@ -9,4 +9,4 @@ pub mod universality;
 pub mod wear_map;
 
 pub use batch::{Progress, most_threads};
-pub use many::{Watch, on_threads, run_many};
+pub use many::{Watch, on_threads, run_many, run_many_sharing};

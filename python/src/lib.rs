@@ -8,11 +8,13 @@ mod values;
 mod wait;
 
 use std::path::PathBuf;
-use std::sync::Mutex;
+use std::sync::{LazyLock, Mutex};
 
 use fretwear::data::{Format, format_of};
 use fretwear::report::{self, CheckReport, LimitReport};
-use fretwear::study::{on_threads, sweep::SweepReport};
+use fretwear::run::Shared;
+use fretwear::solver::model::OperatorStore;
+use fretwear::study::{on_threads, run_many_sharing, sweep::SweepReport};
 use fretwear::{Progress, Result as Outcome, Stop, SweepOptions, Watch};
 use pyo3::prelude::*;
 
@@ -55,6 +57,9 @@ impl Progress for Rows {
     }
 }
 
+/// The transforms used last, which calls one after the other share.
+static OPERATORS: LazyLock<OperatorStore> = LazyLock::new(OperatorStore::default);
+
 /// Runs scenes in memory: results or exceptions in their order, fewer of them where the user stopped it, and whether that was so.
 #[pyfunction]
 fn run<'py>(
@@ -66,7 +71,8 @@ fn run<'py>(
     let inner: Vec<fretwear::Scene> = scenes.iter().map(|scene| scene.get().scene.clone()).collect();
     let (stop, parts) = (Stop::default(), Parts(Mutex::new(vec![0.0; inner.len()])));
     let call = Call { callback: progress, value: &|| (parts.sum(), inner.len() as f64) };
-    let (ended, stopped) = waited(py, &stop, &call, || fretwear::run_many(&inner, threads, &stop, &parts))?;
+    let shared = Shared { stop: stop.clone(), operators: OPERATORS.clone(), ..Shared::default() };
+    let (ended, stopped) = waited(py, &stop, &call, || run_many_sharing(&inner, threads, &shared, &parts))?;
     let ended = ended.map_err(|error| raised(py, &error))?;
     let named = |(end, scene): (Outcome<fretwear::Results>, &Bound<'py, Scene>)| match end {
         Ok(results) => Ok(Bound::new(py, Results::of_run(results, None))?.into_any()),

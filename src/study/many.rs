@@ -47,7 +47,20 @@ pub fn run_many(
     stop: &Stop,
     watch: &dyn Watch,
 ) -> Result<Vec<Result<Results>>> {
-    let batch = Batch::new(threads, Shared { stop: stop.clone(), ..Shared::default() })?;
+    run_many_sharing(scenes, threads, &Shared { stop: stop.clone(), ..Shared::default() }, watch)
+}
+
+/// As [`run_many`], with what earlier runs of this process left behind for later ones.
+///
+/// # Errors
+/// As [`run_many`].
+pub fn run_many_sharing(
+    scenes: &[Scene],
+    threads: Option<usize>,
+    shared: &Shared,
+    watch: &dyn Watch,
+) -> Result<Vec<Result<Results>>> {
+    let (batch, stop) = (Batch::new(threads, shared.clone())?, &shared.stop);
     let next = AtomicUsize::new(0);
     let begin = || if stop.is_stopped() { None } else { Some(next.fetch_add(1, Ordering::Relaxed)) };
     let work = || {
