@@ -11,6 +11,7 @@ mod file;
 mod limit;
 mod memory;
 mod mesh;
+mod method;
 mod parts;
 mod plan;
 pub mod readings;
@@ -29,6 +30,7 @@ pub(crate) use file::{hash_of, is_of};
 pub(crate) use memory::memory_figure;
 #[cfg(feature = "hdf5")]
 pub(crate) use mesh::operator_bytes;
+pub use method::Method;
 pub use results::Results;
 pub use shared::{Shared, Stop};
 pub use simulation::Simulation;

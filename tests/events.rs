@@ -5,7 +5,7 @@ mod support;
 use std::fmt::Write;
 use std::fs;
 
-use fretwear::{Error, Results, StopReason};
+use fretwear::{CheckReport, Error, Results, StopReason};
 
 use fretwear::scene::Scene;
 use fretwear::solver::model::{Model, State};
@@ -102,6 +102,10 @@ struct Rejected {
 }
 
 impl Stepper for Rejected {
+    fn name(&self) -> &'static str {
+        "rejected"
+    }
+
     fn step(&mut self, _: &Model, state: &State, cycles: f64) -> fretwear::Result<Trial> {
         self.tried += 1;
         let rejected = self.rejects[self.tried % self.rejects.len()];
@@ -248,4 +252,24 @@ fn the_smallest_rate_that_may_be_asked_for_is_reached_under_every_law() {
         let [late, last] = [at("1e-11"), at("1e-14")];
         assert!((late / last - 1.0).abs() < 1e-3, "{name}: {late:e} and {last:e} m³");
     }
+}
+
+#[test]
+fn check_tells_how_a_scene_is_computed() {
+    let method = |name: &str| {
+        let scene = Scene::from_path(format!("data/scenes/{name}")).unwrap();
+        (scene.clone(), CheckReport::new(&scene).unwrap().method.unwrap())
+    };
+    let told = |name| {
+        let (_, it) = method(name);
+        (it.cycle, it.mesh, it.stick_edge, it.time_stepping)
+    };
+    let [bdf, sdirk] = ["BDF of order 1 to 5", "SDIRK of order 3"];
+    assert_eq!(told("paraboloid.toml"), ("closed-form", "slip-annulus", "fixed", bdf));
+    assert_eq!(told("orbit.toml"), ("resolved", "slip-annulus", "fixed", bdf));
+    assert_eq!(told("normal_force.toml"), ("closed-form", "slip-annulus", "moving", sdirk));
+    assert_eq!(told("fouvry2007.toml"), ("closed-form", "whole-contact", "none", sdirk));
+    // What it tells is what is run.
+    let (scene, told) = method("paraboloid.toml");
+    assert_eq!(scene.simulate().unwrap().springs(), told.springs);
 }

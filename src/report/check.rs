@@ -11,7 +11,7 @@ use crate::contact::stick_slip::Regime;
 use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::loading::Duration;
-use crate::run::{Expected, Simulation};
+use crate::run::{Expected, Method, Simulation};
 use crate::scene::Scene;
 
 /// Steepest flank at the edge of contact that is not worth a word.
@@ -94,6 +94,9 @@ pub struct CheckReport {
     pub tau: Option<f64>,
     /// Fraction of the first rate of wear at which the run ends.
     pub until_rate: Option<f64>,
+    /// How it is computed; none for a scene that cannot be run.
+    #[serde(flatten)]
+    pub method: Option<Method>,
     /// Wall time that a run will take, s, in order of size; none where that is short.
     pub seconds_expected: Option<f64>,
     /// What is allowed but deserves a word.
@@ -106,10 +109,10 @@ impl CheckReport {
     /// # Errors
     /// Those of [`Simulation::check`]: all that a run refuses before its first step.
     pub fn new(scene: &Scene) -> Result<Self> {
-        let Expected { seconds, warning } = Simulation::check(scene)?;
+        let Expected { method, seconds, warning } = Simulation::check(scene)?;
         let mut report = Self::derived(scene)?;
         report.warnings.extend(warning);
-        Ok(Self { seconds_expected: seconds, ..report })
+        Ok(Self { method: Some(method), seconds_expected: seconds, ..report })
     }
 
     /// Derives the quantities, also of a scene that cannot be run.
@@ -160,6 +163,7 @@ impl CheckReport {
             cycles: span.map(|[cycles, _]| cycles),
             tau: span.map(|[_, tau]| tau),
             until_rate: if let Duration::UntilRate(rate) = duration { Some(rate) } else { None },
+            method: None,
             seconds_expected: None,
             warnings,
         })
@@ -212,6 +216,16 @@ impl CheckReport {
         }
         if let Some(rate) = self.until_rate {
             rows.row("planned until", format!("the rate of wear is {} of its first value", number(rate)));
+        }
+        if let Some(method) = &self.method {
+            rows.gap();
+            rows.row("slip of a cycle", method.cycle);
+            rows.row("springs", format!("{} over the {}", method.springs, method.mesh.replace('-', " ")));
+            rows.row("edge of stick", method.stick_edge);
+            rows.row("time stepping", method.time_stepping);
+            rows.row("memory of its matrices", format!("{} MB", number(1e-6 * method.memory_expected)));
+            let seconds = self.seconds_expected.map(|it| Scale::TIME.show(it));
+            rows.row("wall time expected", seconds.unwrap_or_else(|| "below a minute".into()));
         }
         rows
     }

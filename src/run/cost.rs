@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::method::Method;
 use crate::error::{Error, Result};
 use crate::scene::Stepper as Choice;
 use crate::solver::model::{Model, State};
@@ -26,9 +27,11 @@ const STABLE: f64 = 2.5;
 /// Iterations of the power method; the estimate is one of magnitude.
 const ITERATIONS: usize = 30;
 
-/// What a run will take, where that is long.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// How a run is computed, and what it will take.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
+    /// Method and springs.
+    pub method: Method,
     /// Wall time, s, in order of size; none where it is short.
     pub seconds: Option<f64>,
     /// The same in a sentence, with its cause.
@@ -71,11 +74,12 @@ pub(super) fn expected(choice: Choice, simulation: &mut Simulation) -> Expected 
     // Where it fails, the run will say so.
     let _ = simulation.try_step(length);
     let step = begun.elapsed().as_secs_f64();
+    let method = Method::of(simulation);
     if choice == Choice::Implicit {
-        return implicit(steps, step, simulation.model());
+        return implicit(method, steps, step, simulation.model());
     }
     let seconds = steps * step;
-    Expected::of(seconds, || {
+    Expected::of(method, seconds, || {
         format!(
             "the stepper {:?} {}: at least {steps:.1e} steps, some {} as things are; \"implicit\" needs some hundred",
             choice.name(),
@@ -95,9 +99,9 @@ fn kind(choice: Choice) -> &'static str {
 }
 
 /// What an implicit run of so many steps, each of so many seconds, takes.
-fn implicit(steps: f64, step: f64, model: &Model) -> Expected {
+fn implicit(method: Method, steps: f64, step: f64, model: &Model) -> Expected {
     let seconds = WITH_COMPANION * steps * step;
-    Expected::of(seconds, || {
+    Expected::of(method, seconds, || {
         let resolved =
             if model.schedule().resolves() { ", numerics.substeps = 24 or fewer rows of a path" } else { "" };
         format!(
@@ -110,11 +114,9 @@ fn implicit(steps: f64, step: f64, model: &Model) -> Expected {
 }
 
 impl Expected {
-    fn of(seconds: f64, words: impl FnOnce() -> String) -> Self {
-        if seconds <= LONG {
-            return Self::default();
-        }
-        Self { seconds: Some(seconds.round()), warning: Some(words()) }
+    fn of(method: Method, seconds: f64, words: impl FnOnce() -> String) -> Self {
+        let is_long = seconds > LONG;
+        Self { method, seconds: is_long.then(|| seconds.round()), warning: is_long.then(words) }
     }
 }
 

@@ -214,6 +214,11 @@ impl Simulation {
         &self.model
     }
 
+    /// Name of the method of time stepping.
+    pub fn stepper_name(&self) -> &'static str {
+        self.stepper.name()
+    }
+
     /// The model alone, when nothing more is to be simulated.
     pub fn into_model(self) -> Model {
         self.model

@@ -45,6 +45,9 @@ impl Trial {
 
 /// A method of time stepping.
 pub trait Stepper {
+    /// What the method is called.
+    fn name(&self) -> &'static str;
+
     /// Tries a step of `cycles` cycles from a state.
     ///
     /// # Errors

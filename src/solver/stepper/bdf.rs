@@ -52,6 +52,10 @@ const SMALLEST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 2.0;
 
 impl Stepper for Bdf {
+    fn name(&self) -> &'static str {
+        "BDF of order 1 to 5"
+    }
+
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let past = self.past(model, state);
         let now = state.cycles + cycles;

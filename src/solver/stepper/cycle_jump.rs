@@ -20,6 +20,10 @@ struct Stage {
 }
 
 impl Stepper for CycleJump {
+    fn name(&self) -> &'static str {
+        "explicit Runge-Kutta of order 3"
+    }
+
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let mut stages: Vec<Stage> = vec![];
         let mut at = state.clone();

@@ -14,6 +14,10 @@ pub struct EveryCycle {
 }
 
 impl Stepper for EveryCycle {
+    fn name(&self) -> &'static str {
+        "every cycle"
+    }
+
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let fields = &mut self.fields;
         model.evaluate(state.slip_area, &state.compression, fields);

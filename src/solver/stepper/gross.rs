@@ -32,6 +32,10 @@ impl GrossSdirk {
 }
 
 impl Stepper for GrossSdirk {
+    fn name(&self) -> &'static str {
+        "SDIRK of order 3"
+    }
+
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let gross = model.gross().ok_or_else(|| Error::Inconsistent {
             what: "numerics.stepper",

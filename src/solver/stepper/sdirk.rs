@@ -36,6 +36,10 @@ impl Sdirk {
 }
 
 impl Stepper for Sdirk {
+    fn name(&self) -> &'static str {
+        "SDIRK of order 3"
+    }
+
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let Self { tolerance, newton, tried, stick_trial } = self;
         newton.outdate();
