@@ -9,6 +9,7 @@ use crate::study::most_threads;
 use crate::{Error, Result, Scene};
 use clap::{Args, Parser, Subcommand};
 
+mod calibrate;
 mod check;
 mod completions;
 mod end;
@@ -55,6 +56,8 @@ enum Command {
     Universality(universality::Universality),
     /// Measure error against wall time of every stepper, tolerance and number of springs on one scene
     Tradeoff(tradeoff::Tradeoff),
+    /// Find keys of a scene from measurements, with how well they are known
+    Calibrate(calibrate::Calibrate),
     /// Validate a scene and show what follows from it, without running anything
     Check(check::Check),
     /// Prepare a study for a cluster: measure, propose shards, write job scripts and hand them to the engine
@@ -103,6 +106,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Map(arguments) => map::map(&arguments).map(done).map_err(Failure::from),
         Command::Universality(arguments) => universality::universality(&arguments),
         Command::Tradeoff(arguments) => tradeoff::tradeoff(&arguments),
+        Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Check(arguments) => check::check(&arguments).map(done).map_err(Failure::from),
         Command::Submit(arguments) => submit::submit(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments).map(done).map_err(Failure::from),

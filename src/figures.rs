@@ -22,6 +22,7 @@
 //! ```
 
 mod approach;
+mod calibration;
 mod curve;
 pub mod drawing;
 mod history;
@@ -73,6 +74,8 @@ pub enum Kind {
     Universality,
     /// Error against cost.
     Tradeoff,
+    /// Data beside what is fitted to them, and how the misfit rises with each unknown.
+    Calibration,
     /// A result of a sweep over what is varied.
     Sweep,
     /// Fretting regimes over cycles and what a sweep varies.
@@ -81,7 +84,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Profile,
         Self::Pressure,
         Self::History,
@@ -92,6 +95,7 @@ impl Kind {
         Self::Optimum,
         Self::Universality,
         Self::Tradeoff,
+        Self::Calibration,
         Self::Sweep,
         Self::Regimes,
     ];
@@ -109,6 +113,7 @@ impl Kind {
             Self::Optimum => "optimum",
             Self::Universality => "universality",
             Self::Tradeoff => "tradeoff",
+            Self::Calibration => "calibration",
             Self::Sweep => "sweep",
             Self::Regimes => "regimes",
         }
@@ -128,6 +133,8 @@ pub enum Results {
     Universality(Dataset),
     /// Of `fretwear tradeoff`.
     Tradeoff(Dataset),
+    /// Of `fretwear calibrate`.
+    Calibration(Dataset),
 }
 
 impl Results {
@@ -144,6 +151,7 @@ impl Results {
             Format::Map => arrays(Self::Map),
             Format::Universality => arrays(Self::Universality),
             Format::Tradeoff => arrays(Self::Tradeoff),
+            Format::Calibration => arrays(Self::Calibration),
             Format::Sweep => SweepFile::read(file).map(Box::new).map(Self::Sweep),
         }
     }
@@ -165,6 +173,7 @@ impl Results {
             Self::Map(_) => vec![Kind::Map, Kind::WornProfiles, Kind::Optimum],
             Self::Universality(_) => vec![Kind::Universality],
             Self::Tradeoff(_) => vec![Kind::Tradeoff],
+            Self::Calibration(_) => vec![Kind::Calibration],
         }
     }
 
@@ -176,6 +185,7 @@ impl Results {
             Self::Map(_) => "a comparison of gradings",
             Self::Universality(_) => "a study of universality",
             Self::Tradeoff(_) => "a trade-off",
+            Self::Calibration(_) => "a calibration",
         }
     }
 
@@ -204,6 +214,7 @@ impl Results {
             Self::Map(file) => map::figure(file),
             Self::Universality(file) => universality::figure(file),
             Self::Tradeoff(file) => tradeoff::figure(file),
+            Self::Calibration(file) => calibration::figure(file),
         }?;
         figure.thin();
         Ok(figure)

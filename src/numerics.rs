@@ -3,6 +3,7 @@
 pub mod abel;
 pub mod chebyshev;
 pub mod grid;
+pub mod least_squares;
 pub mod linear;
 pub mod quadrature;
 pub mod roots;

@@ -43,6 +43,7 @@ use crate::laws::motion::RecordedPath;
 use crate::laws::wear::Archard;
 
 mod builder;
+mod calibration;
 mod columns;
 mod document;
 pub(crate) mod input;
@@ -62,6 +63,7 @@ mod study;
 mod universality;
 
 pub use builder::SceneBuilder;
+pub use calibration::{Calibration, DataSet, Deviation, Measured, Unknown};
 use input::{Pipes, Unread};
 pub use keys::MOST_SCENES;
 pub use map::MapScene;

@@ -1,6 +1,7 @@
 //! Many scenes: sweeps and their jobs on clusters, the universality claim, the trade-off of time and error, wear maps.
 
 mod batch;
+pub mod calibration;
 mod many;
 pub mod submit;
 pub mod sweep;

@@ -13,8 +13,8 @@ pub const SUCCESS: u8 = 0;
 /// Exit code of what failed.
 pub const FAILURE: u8 = 1;
 
-/// Exit code of a run that came to its end less accurately than was asked for; its results are kept.
-const INACCURATE: u8 = 3;
+/// Exit code of what came to its end less accurately than was asked for; its results are kept.
+pub const INACCURATE: u8 = 3;
 
 /// Exit code of a run that a signal stopped with a checkpoint written.
 const INTERRUPTED: u8 = 75;

@@ -14,7 +14,7 @@ const TEMPLATE: &str = include_str!("../../data/template/scene.toml");
 #[derive(Args)]
 pub struct Schema {
     /// What kind of file
-    #[arg(value_name = "scene|study|map|universality", default_value = "scene", value_parser = kind)]
+    #[arg(value_name = "scene|study|map|universality|calibration", default_value = "scene", value_parser = kind)]
     kind: FileKind,
     /// Print the keys of all kinds of files as a page in Markdown instead
     #[arg(long, conflicts_with = "kind")]

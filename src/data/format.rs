@@ -16,10 +16,13 @@ pub enum Format {
     Universality,
     /// A trade-off between error and cost.
     Tradeoff,
+    /// A calibration.
+    Calibration,
 }
 
 impl Format {
-    const ALL: [Self; 5] = [Self::Run, Self::Sweep, Self::Map, Self::Universality, Self::Tradeoff];
+    const ALL: [Self; 6] =
+        [Self::Run, Self::Sweep, Self::Map, Self::Universality, Self::Tradeoff, Self::Calibration];
 
     /// Value of the attribute.
     ///
@@ -35,6 +38,7 @@ impl Format {
             Self::Map => "fretwear-map",
             Self::Universality => "fretwear-universality",
             Self::Tradeoff => "fretwear-tradeoff",
+            Self::Calibration => "fretwear-calibration",
         }
     }
 

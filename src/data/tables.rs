@@ -61,6 +61,7 @@ impl ResultTables {
             Some(Format::Map) => "grading,amplitude_ratio",
             Some(Format::Universality) => "case",
             Some(Format::Tradeoff) => "candidate",
+            Some(Format::Calibration) => "parameter",
             None => return Err(open.error(format!("is no result of this program; {NOT_OURS}"))),
         };
         let (dataset, runs) = (open.dataset(&open.file, Wanted::Everything, &[RUNS])?, kept_runs(&open)?);

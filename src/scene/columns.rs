@@ -190,7 +190,7 @@ impl Kind<'_> {
 }
 
 /// The line up to a comment.
-fn without_comment(line: &str) -> &str {
+pub(super) fn without_comment(line: &str) -> &str {
     let end = ["#", "%", "//"].iter().filter_map(|mark| line.find(mark)).min().unwrap_or(line.len());
     let line = line[..end].trim();
     if line.starts_with(';') { "" } else { line }

@@ -2,6 +2,7 @@
 //! are made from these tables.
 
 mod bodies;
+mod calibration;
 mod laws;
 mod loading;
 mod numerics;
@@ -9,6 +10,7 @@ mod studies;
 mod tables;
 
 pub(super) use bodies::*;
+pub(super) use calibration::*;
 pub(super) use laws::*;
 pub(super) use loading::*;
 pub(super) use numerics::*;
@@ -124,7 +126,7 @@ mod tests {
     }
 
     fn all() -> Vec<&'static Table> {
-        [&SCENE, &STUDY, &MAP, &UNIVERSALITY].into_iter().flat_map(tables).collect()
+        [&SCENE, &STUDY, &MAP, &UNIVERSALITY, &CALIBRATION].into_iter().flat_map(tables).collect()
     }
 
     #[test]

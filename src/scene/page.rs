@@ -82,6 +82,7 @@ fn kind(key: &Key) -> String {
         Kind::KeyOfScene => "a key of a scene".into(),
         Kind::Literal => "a value".into(),
         Kind::Patch => "tables of a scene".into(),
+        Kind::Settings => "keys of a scene and their values".into(),
         Kind::List(item, _) => format!("an array of {}", plural(item)),
         Kind::Axis(item, _) => {
             format!("an array of {}, or `{{ from, to, count, spacing }}`", plural(item))

@@ -22,20 +22,22 @@ pub enum FileKind {
     Map,
     /// A universality study, as `fretwear universality` takes it.
     Universality,
+    /// A calibration, as `fretwear calibrate` takes it.
+    Calibration,
 }
 
 impl FileKind {
     /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Scene, Self::Study, Self::Map, Self::Universality];
+    pub const ALL: [Self; 5] = [Self::Scene, Self::Study, Self::Map, Self::Universality, Self::Calibration];
 
-    /// The word of the command line: `scene`, `study`, `map` or `universality`.
+    /// The word of the command line: `scene`, `study`, `map`, `universality` or `calibration`.
     pub fn name(self) -> &'static str {
-        ["scene", "study", "map", "universality"][self as usize]
+        ["scene", "study", "map", "universality", "calibration"][self as usize]
     }
 
     /// The keys of the file.
     pub(super) fn table(self) -> &'static Table {
-        [&keys::SCENE, &keys::STUDY, &keys::MAP, &keys::UNIVERSALITY][self as usize]
+        [&keys::SCENE, &keys::STUDY, &keys::MAP, &keys::UNIVERSALITY, &keys::CALIBRATION][self as usize]
     }
 
     /// The JSON Schema of the file.
@@ -65,6 +67,8 @@ const UNIT: &str = "x-unit";
 const PATCH: &str = "patch";
 /// A number as text begins so; what follows is left to the reader of units.
 const NUMBER: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)";
+/// Dotted name of a key of a scene.
+const DOTTED: &str = r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)+$";
 /// Something must follow the number.
 const AND_UNIT: &str = r"(\s+\S|[^0-9\s.+-])";
 
@@ -87,11 +91,13 @@ fn of_key(key: &Key) -> Value {
             json!({ "type": "string", "maxLength": 1000, "pattern": "^[^\u{0}-\u{1f}\u{7f}-\u{9f}]*$" })
         }
         Kind::Name => json!({ "type": "string", "minLength": 1 }),
-        Kind::KeyOfScene => {
-            json!({ "type": "string", "pattern": r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)+$", "maxLength": 199 })
-        }
+        Kind::KeyOfScene => json!({ "type": "string", "pattern": DOTTED, "maxLength": 199 }),
         Kind::Literal => json!({ "type": ["number", "string", "boolean", "array"] }),
         Kind::Patch => return json!({ "$ref": format!("#/definitions/{PATCH}") }),
+        Kind::Settings => {
+            let value = json!({ "type": ["number", "string", "boolean", "array"] });
+            json!({ "type": "object", "propertyNames": { "pattern": DOTTED }, "additionalProperties": value })
+        }
         Kind::List(item, counts) => array(of_key(item), counts),
         Kind::Axis(item, most) => {
             let steps = keys::STEPS.keys.iter().map(|key| match key.kind {

@@ -7,7 +7,7 @@ use toml::{Table, Value};
 use super::document::{Section, Source};
 use super::{Rows, Scene, base_table, keys, read_text};
 use crate::error::Result;
-use crate::units::Kind;
+use crate::units::{Key, Kind};
 
 impl Scene {
     /// Reads a scene from a file, with other values of some of its keys. What cannot stand beside a key that is set is left out: an amplitude takes
@@ -72,7 +72,15 @@ fn parsed(setting: &str) -> Result<(&str, Value)> {
     let declared = keys::find(key).map_err(|cure| wrong(format!("is not of a key of a scene; {cure}")))?;
     let literal = |text: &str| format!("value = {text}").parse::<Table>().ok()?.remove("value");
     let value = literal(value).unwrap_or_else(|| Value::String(value.into()));
-    // Shown as it would stand in a scene.
+    check(key, &value, declared)?;
+    Ok((key, value))
+}
+
+/// Checks the value of a dotted key by itself.
+///
+/// # Errors
+/// [`Error::Scene`](crate::Error::Scene) shows it as it would stand in a scene.
+pub(super) fn check(key: &str, value: &Value, declared: &Key) -> Result<()> {
     let text = format!("{key} = {value}");
     let source = outer(&text);
     let document = source.parse()?;
@@ -81,8 +89,7 @@ fn parsed(setting: &str) -> Result<(&str, Value)> {
     for table in tables.split('.').filter(|it| !it.is_empty()) {
         section = section.required(table, "")?.section()?;
     }
-    section.required(last, "")?.check(declared)?;
-    Ok((key, value))
+    section.required(last, "")?.check(declared)
 }
 
 /// Sets a dotted key of a scene, and leaves out what cannot stand beside it.

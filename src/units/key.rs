@@ -34,6 +34,8 @@ pub enum Kind {
     Literal,
     /// Any part of a scene, laid over another.
     Patch,
+    /// Keys of a scene by their dotted names, and their values.
+    Settings,
     /// An array: what each of its values is, the fewest and the most.
     List(&'static Key, [usize; 2]),
     /// Values along an axis: an array, or where they begin and end and how many they are; what each of them is, and the most.

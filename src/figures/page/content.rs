@@ -29,6 +29,7 @@ pub(super) fn of(results: &Results, path: &Path) -> Result<Content> {
         Results::Map(file) => Ok(of_map(file)),
         Results::Universality(file) => of_universality(file),
         Results::Tradeoff(file) => Ok(of_tradeoff(file)),
+        Results::Calibration(file) => of_calibration(file),
     }
 }
 
@@ -101,6 +102,37 @@ fn verdict(results: &RunResults) -> Verdict {
         None => "There is no estimate of the error.".into(),
     });
     Verdict { sentences, doubtful: missed || !run.complete }
+}
+
+fn of_calibration(file: &Dataset) -> Result<Content> {
+    let count = file.along("parameter")?.len();
+    let (keys, units) = (file.words("key", count)?, file.words("unit", count)?);
+    let [estimate, lower, upper] = ["estimate", "lower", "upper"].map(|name| file.numbers(name, &[count]));
+    let (estimate, lower, upper) = (estimate?, lower?, upper?);
+    let end = |value: f64| if value.is_finite() { number(value) } else { "not told".into() };
+    let told = (0..count).map(|i| {
+        let unit = if units.get(i) == "1" { "" } else { units.get(i) };
+        let (low, high) = (end(lower[i]), end(upper[i]));
+        (keys.get(i).to_owned(), format!("{} {unit} (95 %: {low} to {high})", number(estimate[i])))
+    });
+    let told: Vec<(String, String)> = told.collect();
+    let warnings: Vec<&str> = file.text("warnings").unwrap_or_default().lines().collect();
+    let open = (0..count).any(|i| !lower[i].is_finite() || !upper[i].is_finite());
+    let sentence = if open { "The data do not tell all unknowns." } else { "The data tell all unknowns." };
+    let text = file.text("calibration").unwrap_or_default();
+    Ok(Content {
+        title: titled(file.title(), "A calibration"),
+        program_version: file.program_version().to_owned(),
+        verdict: Verdict { sentences: vec![sentence.into()], doubtful: open },
+        above: vec![Section {
+            heading: "Outcome",
+            parts: [Part::Rows(told)]
+                .into_iter()
+                .chain(warnings.iter().map(|it| Part::Sentence(format!("Note: {it}."))))
+                .collect(),
+        }],
+        below: vec![Section { heading: "Calibration", parts: vec![Part::Text(text.into())] }],
+    })
 }
 
 fn of_map(file: &Dataset) -> Content {

@@ -1,0 +1,54 @@
+//! `fretwear calibrate`.
+
+use std::path::PathBuf;
+
+use crate::report;
+use crate::scene::Calibration;
+use crate::study::calibration::{self, CalibrationReport};
+use clap::Args;
+
+use super::end::{End, Failure, INACCURATE, SUCCESS, interrupted};
+use super::{complain, signals};
+
+/// The calibration and where its results go.
+#[derive(Args)]
+pub struct Calibrate {
+    /// The calibration, a TOML file
+    #[arg(value_name = "CALIBRATION.toml")]
+    calibration: PathBuf,
+    /// Directory for calibration.h5, parameters.csv and residuals.csv, made if it is missing
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Show no summary
+    #[arg(long)]
+    quiet: bool,
+    /// Overwrite files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+pub fn calibrate(arguments: &Calibrate) -> End {
+    let read = Calibration::read(&arguments.calibration)?;
+    let stop = signals::stop()?;
+    let ready = calibration::Ready::new(&read, &stop)?;
+    calibration::check_folder(&arguments.output, arguments.force)?;
+    let Some(outcome) = ready.run().map_err(Failure::Failed)? else {
+        complain("note", "stopped, nothing was written; the same command begins anew");
+        return Ok((String::new(), interrupted()));
+    };
+    let files =
+        calibration::write(&read, &outcome, &arguments.output, arguments.force).map_err(Failure::Failed)?;
+    let report = CalibrationReport::new(&read, &outcome, files);
+    if !arguments.json {
+        outcome.warnings.iter().for_each(|warning| complain("warning", warning));
+    }
+    let text = match (arguments.json, arguments.quiet) {
+        (true, _) => report::json(&report),
+        (false, true) => String::new(),
+        (false, false) => report.text(),
+    };
+    Ok((text, if outcome.accuracy_met { SUCCESS } else { INACCURATE }))
+}

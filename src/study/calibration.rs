@@ -1,0 +1,170 @@
+//! The inverse problem: from measurements to coefficients with their uncertainty.
+//!
+//! Least squares of the residuals over their deviations, from several starts; each unknown with the interval in which the misfit, all else fitted
+//! anew, rises by less than the square of Student's quantile (profile likelihood, 95 %). An unknown whose misfit never rises so far within its
+//! bounds is not told by the data, and the product of such unknowns that is told is named.
+//!
+//! Where deviations are not given they are estimated from the residuals; the unworn ground of a scar tells its own. Runs of the model are as
+//! accurate as a tenth of the deviations asks, and compared with finer ones at the end.
+
+mod files;
+mod fit;
+mod objective;
+mod prediction;
+mod report;
+mod uncertainty;
+
+pub use report::CalibrationReport;
+pub use uncertainty::CONFIDENCE;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::error::Result;
+use crate::run::Stop;
+use crate::scene::Calibration;
+
+/// A key that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Dotted key of the scene.
+    pub key: String,
+    /// Unit in SI.
+    pub unit: &'static str,
+    /// Value at which the misfit is least, in SI.
+    pub estimate: f64,
+    /// Ends of the interval of 95 %, none where the misfit never rises so far within the bounds.
+    pub interval: [Option<f64>; 2],
+    /// Standard deviation by the curvature of the misfit, in SI.
+    pub standard_error: f64,
+    /// Values and misfits above the least, all else fitted anew, by increasing values.
+    pub profile: Vec<[f64; 2]>,
+}
+
+impl Parameter {
+    /// Whether the data tell both ends.
+    pub fn is_identifiable(&self) -> bool {
+        self.interval.iter().all(Option::is_some)
+    }
+}
+
+/// A data set beside what is predicted of it, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedData {
+    /// What is predicted, with offset and tilt, shape `(value,)`.
+    pub predicted: Vec<f64>,
+    /// Standard deviations, shape `(value,)`.
+    pub deviations: Vec<f64>,
+    /// Differences over deviations, shape `(value,)`.
+    pub residuals: Vec<f64>,
+    /// Whether the deviations were estimated.
+    pub is_estimated: bool,
+    /// Centre of a scar or loop, m.
+    pub centre: Option<f64>,
+    /// Offset of a scar or loop, in the unit of its values, and tilt of a scar.
+    pub ground: Vec<f64>,
+}
+
+/// A product of unknowns that is known where they are not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Combination {
+    /// Keys and their exponents.
+    pub factors: Vec<(String, f64)>,
+    /// Its value in SI.
+    pub value: f64,
+    /// Half of the width of its interval of 95 %, relative.
+    pub relative: f64,
+}
+
+/// What a calibration came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The keys found, in the order of the calibration.
+    pub parameters: Vec<Parameter>,
+    /// Correlations of their estimates, shape `(parameter, parameter)`.
+    pub correlation: Vec<Vec<f64>>,
+    /// Products that are known where single unknowns are not.
+    pub combinations: Vec<Combination>,
+    /// Misfit over degrees of freedom.
+    pub reduced_chi_squared: f64,
+    /// Values less what was fitted to them.
+    pub degrees_of_freedom: f64,
+    /// The data, in the order of the calibration.
+    pub data: Vec<FittedData>,
+    /// What deserves a word, one sentence each.
+    pub warnings: Vec<String>,
+    /// Runs of the model.
+    pub runs: u64,
+    /// Largest difference of predictions from those of finer runs, in deviations.
+    pub run_error: f64,
+    /// Whether that is below a tenth.
+    pub accuracy_met: bool,
+    /// Wall time, s.
+    pub wall_seconds: f64,
+}
+
+/// Finds the unknowns of a calibration, in memory; none if it was stopped first.
+///
+/// # Errors
+/// [`Error::Scene`](crate::Error::Scene) if a scene between the bounds is not valid, [`Error::Inconsistent`](crate::Error::Inconsistent) if there
+/// are fewer values than unknowns, [`Error::NotConverged`](crate::Error::NotConverged) if the model predicts the data nowhere.
+///
+/// # Examples
+/// The regression through the origin of van Peteghem, Fouvry, Petit, Wear 271 (2011) 1535: 97,429 ± 5,311 µm³/J.
+/// ```
+/// # use std::path::Path;
+/// use fretwear::{Stop, scene::Calibration, study::calibration::calibrate};
+///
+/// let calibration = Calibration::read(Path::new("data/calibration/ti6al4v_5hz.toml"))?;
+/// let found = &calibrate(&calibration, &Stop::default())?.unwrap().parameters[0];
+/// assert!((found.estimate / 97.429e-15 - 1.0).abs() < 1e-4 && (found.standard_error / 5.311e-15 - 1.0).abs() < 1e-3);
+/// # Ok::<(), fretwear::Error>(())
+/// ```
+pub fn calibrate(calibration: &Calibration, stop: &Stop) -> Result<Option<Outcome>> {
+    Ready::new(calibration, stop)?.run()
+}
+
+/// A calibration whose scenes are valid and whose data are enough.
+pub struct Ready<'a> {
+    fit: fit::Fit<'a>,
+    started: Instant,
+}
+
+impl<'a> Ready<'a> {
+    /// # Errors
+    /// As [`calibrate`], before any run of the model.
+    pub fn new(calibration: &'a Calibration, stop: &Stop) -> Result<Self> {
+        let started = Instant::now();
+        Ok(Self { fit: fit::Fit::new(calibration, stop)?, started })
+    }
+
+    /// Finds the unknowns; none if it was stopped first.
+    ///
+    /// # Errors
+    /// As [`calibrate`].
+    pub fn run(self) -> Result<Option<Outcome>> {
+        let outcome = self.fit.outcome()?;
+        Ok(outcome.map(|it| Outcome { wall_seconds: self.started.elapsed().as_secs_f64(), ..it }))
+    }
+}
+
+/// Makes sure that results can be written into a folder.
+///
+/// # Errors
+/// [`Error::File`](crate::Error::File) if a file exists that may not be replaced, or the directory cannot be written.
+pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
+    files::check_folder(folder, overwrite)
+}
+
+/// Writes `calibration.h5`, `parameters.csv` and `residuals.csv`; their paths.
+///
+/// # Errors
+/// [`Error::File`](crate::Error::File) if they cannot be written.
+pub fn write(
+    calibration: &Calibration,
+    outcome: &Outcome,
+    folder: &Path,
+    overwrite: bool,
+) -> Result<Vec<PathBuf>> {
+    files::write(calibration, outcome, folder, overwrite)
+}
