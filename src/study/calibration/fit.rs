@@ -340,12 +340,15 @@ impl<'a> Fit<'a> {
             + self.calibration.data().iter().map(ground_count).sum::<usize>();
         let count: usize = at.iter().map(|it| it.residuals.len()).sum();
         let degrees_of_freedom = count as f64 - fitted as f64;
-        let misfit: f64 = at.iter().flat_map(|it| &it.residuals).map(|it| it * it).sum();
+        let alike: Vec<f64> = self.objective.alike.iter().map(|it| it.sqrt()).collect();
+        let plain =
+            |place: usize| at[place].residuals.iter().map(|it| it * alike[place]).collect::<Vec<f64>>();
+        let misfit: f64 = (0..at.len()).flat_map(plain).map(|it| it * it).sum();
         let centres = self.objective.centres(&minimum.place);
         let data = self.calibration.data().iter().enumerate().map(|(place, set)| FittedData {
             predicted: at[place].predicted.clone(),
             deviations: self.objective.deviations[place].clone(),
-            residuals: at[place].residuals.clone(),
+            residuals: plain(place),
             is_estimated: is_estimated(set),
             centre: has_centre(set).then(|| centres[place]),
             ground: at[place].ground.clone(),
@@ -405,6 +408,13 @@ impl<'a> Fit<'a> {
         }
         for combination in &outcome.combinations {
             warnings.push(format!("what the data do tell is {}", combination.words()));
+        }
+        for (set, alike) in data.iter().zip(&self.objective.alike).filter(|(_, alike)| **alike > 1.0) {
+            warnings.push(format!(
+                "{}: errors of neighbouring points are alike, so that {} of them count as one in the intervals",
+                set.file,
+                number(*alike)
+            ));
         }
         let estimated: Vec<bool> = data.iter().map(is_estimated).collect();
         let from_ground = |place: usize| {

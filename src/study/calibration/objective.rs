@@ -14,6 +14,8 @@ const STEPS: [f64; 3] = [1e-2, 1e-4, 1e-3];
 const OF_WIDTH: f64 = 0.2;
 /// From a median deviation to the standard deviation of normal errors.
 const OF_MEDIAN: f64 = 1.4826;
+/// Correlation of neighbours above which it is taken for this.
+const MOST_ALIKE: f64 = 0.98;
 /// Points of unworn ground that tell how rough it is.
 const FEWEST_OF_GROUND: usize = 12;
 
@@ -24,6 +26,8 @@ pub(super) struct Objective<'a> {
     pub(super) coordinates: Vec<Coordinate>,
     /// Standard deviations, shape `(data, value)`.
     pub(super) deviations: Vec<Vec<f64>>,
+    /// How many neighbouring points of a curve count as one, because their errors are alike.
+    pub(super) alike: Vec<f64>,
 }
 
 /// What a place comes to for a data set.
@@ -31,7 +35,7 @@ pub(super) struct Objective<'a> {
 pub(super) struct Comparison {
     /// With offset and tilt, in the unit of the values.
     pub(super) predicted: Vec<f64>,
-    /// Differences over the deviations.
+    /// Differences over the deviations, smaller where neighbours are alike.
     pub(super) residuals: Vec<f64>,
     /// Offset and tilt.
     pub(super) ground: Vec<f64>,
@@ -97,7 +101,8 @@ impl<'a> Objective<'a> {
             coordinates.push(Coordinate { bounds: reach, step: STEPS[2] * (high - low) });
         }
         let deviations = calibration.data().iter().map(first_deviations).collect();
-        Self { calibration, predictor, coordinates, deviations }
+        let alike = vec![1.0; calibration.data().len()];
+        Self { calibration, predictor, coordinates, deviations, alike }
     }
 
     /// Values of the unknowns at a place.
@@ -127,7 +132,10 @@ impl<'a> Objective<'a> {
         let mut found = vec![];
         for (data, set) in self.calibration.data().iter().enumerate() {
             let plain = self.predictor.predict(data, &values, centres[data])?;
-            found.push(compared(set, &plain, &self.deviations[data], self.calibration.is_robust()));
+            let mut fit = compared(set, &plain, &self.deviations[data], self.calibration.is_robust());
+            let alike = self.alike[data].sqrt();
+            fit.residuals.iter_mut().for_each(|it| *it /= alike);
+            found.push(fit);
         }
         Some(found)
     }
@@ -170,20 +178,24 @@ impl<'a> Objective<'a> {
                     fit.predicted.iter().map(|it| part * it.abs()).collect::<Vec<f64>>()
                 }
                 Deviation::Estimated => {
-                    let ground: Vec<f64> = errors
-                        .iter()
-                        .zip(&fit.is_worn)
-                        .filter(|(_, worn)| !**worn)
-                        .map(|(e, _)| *e)
-                        .collect();
+                    let is_bare = |it: &(&f64, &bool)| !*it.1;
+                    let ground: Vec<f64> =
+                        errors.iter().zip(&fit.is_worn).filter(is_bare).map(|it| *it.0).collect();
                     let bare = ground.len();
-                    let size = match bare >= FEWEST_OF_GROUND && bare < errors.len() {
+                    let own = match bare >= FEWEST_OF_GROUND && bare < errors.len() {
                         true => {
                             freedom[data] = (bare - ground_count(set)) as f64;
-                            size(ground, freedom[data])
+                            ground
                         }
-                        false => size(errors, freedom[data]),
+                        false => errors,
                     };
+                    if has_centre(set) {
+                        let alike = likeness(&own);
+                        change = change.max((alike / self.alike[data] - 1.0).abs());
+                        self.alike[data] = alike;
+                    }
+                    let size = size(own, freedom[data]);
+                    freedom[data] = (freedom[data] / self.alike[data]).max(1.0);
                     vec![size; set.values.len()]
                 }
             };
@@ -197,6 +209,14 @@ impl<'a> Objective<'a> {
         }
         change
     }
+}
+
+/// How many neighbours count as one, `(1 + ρ)/(1 - ρ)` with the correlation `ρ` of neighbours; 1 where it could be by chance.
+fn likeness(errors: &[f64]) -> f64 {
+    let together: f64 = errors.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    let correlation = together / cost(errors).max(f64::MIN_POSITIVE);
+    let by_chance = 2.0 / (errors.len() as f64).sqrt();
+    if correlation > by_chance { (1.0 + correlation) / (1.0 - correlation.min(MOST_ALIKE)) } else { 1.0 }
 }
 
 /// Whether the deviations of a data set are estimated from it.
