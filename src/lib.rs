@@ -58,7 +58,7 @@
 //! |---|---|
 //! | `cli` | the command line, one file a command |
 //! | `figures` | pictures and pages made from result files |
-//! | `study` | many scenes: sweeps and their jobs, universality, trade-off, wear maps |
+//! | `study` | many scenes: sweeps and their jobs, universality, trade-off, wear maps, calibration |
 //! | `report` | what the commands say: text, JSON, CSV |
 //! | `run` | one scene from its first cycle to its end: springs by accuracy, error estimate, checkpoints |
 //! | `scene` | the text of a scene or study: keys, units, ranges, schema |
@@ -141,7 +141,9 @@ pub use report::{CheckReport, LimitReport};
 pub use run::{Expected, Results, Simulation, Stop};
 #[cfg(feature = "hdf5")]
 pub use run::{Resumed, Run};
-pub use scene::{MapScene, Scene, SceneBuilder, Study, UniversalityStudy};
+pub use scene::{Calibration, MapScene, Scene, SceneBuilder, Study, UniversalityStudy};
+#[cfg(feature = "hdf5")]
+pub use study::calibration::{CalibrationReport, Outcome as CalibrationOutcome, calibrate};
 #[cfg(feature = "hdf5")]
 pub use study::sweep::{Sweep, SweepOptions, SweepOutcome, merge};
 #[cfg(feature = "hdf5")]

@@ -33,7 +33,7 @@ fn places(folder: &Path) -> Vec<(String, &'static str)> {
 fn every_command_refuses_what_has_no_end_and_waits_for_nothing() {
     let (folder, away) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let places = places(away.path());
-    let commands: [&[&str]; 14] = [
+    let commands: [&[&str]; 15] = [
         &["check", "@"],
         &["limit", "@"],
         &["run", "@", "-o", "run.h5"],
@@ -42,6 +42,7 @@ fn every_command_refuses_what_has_no_end_and_waits_for_nothing() {
         &["map", "@", "-o", "out"],
         &["universality", "@", "-o", "out"],
         &["tradeoff", "@", "-o", "out"],
+        &["calibrate", "@", "-o", "out"],
         &["info", "@"],
         &["export", "@"],
         &["plot", "@", "-o", "figure.svg"],

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fretwear::scene::schema::FileKind;
-use fretwear::scene::{MapScene, Scene, Study, UniversalityStudy};
+use fretwear::scene::{Calibration, MapScene, Scene, Study, UniversalityStudy};
 use jsonschema::Validator;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
@@ -48,6 +48,9 @@ fn read(kind: FileKind, text: &str) -> Result<(), String> {
             Study::from_texts(text, "study", &scene, &base).map(drop)
         }
         FileKind::Map => MapScene::from_toml(text, "map").map(drop),
+        FileKind::Calibration => {
+            Calibration::from_toml(text, "calibration", &root().join("data/calibration")).map(drop)
+        }
         FileKind::Universality => {
             UniversalityStudy::from_toml(text, "study", &root().join("data/studies")).map(drop)
         }
@@ -72,6 +75,7 @@ fn shipped() -> Vec<(FileKind, PathBuf)> {
         of(FileKind::Study, "studies", |name| !name.starts_with("universality")),
         of(FileKind::Map, "maps", |_| true),
         of(FileKind::Universality, "studies", |name| name.starts_with("universality")),
+        of(FileKind::Calibration, "calibration", |_| true),
     ]
     .concat()
 }
@@ -154,6 +158,10 @@ fn every_table() -> Vec<(FileKind, String)> {
                 .into(),
         ),
         (FileKind::Map, fs::read_to_string(root().join("data/maps/paper.toml")).expect("readable")),
+        (
+            FileKind::Calibration,
+            fs::read_to_string(root().join("data/calibration/ti6al4v_5hz.toml")).expect("readable"),
+        ),
         (
             FileKind::Universality,
             format!(
@@ -481,7 +489,11 @@ fn the_schema_is_printed_and_kept_as_a_file_for_editors() {
     assert_eq!(done(folder.path(), &["schema"]), done(folder.path(), &["schema", "scene"]));
     let output = run(folder.path(), &["schema", "scenes"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("scene, study, map, universality"), "{}", text(&output.stderr));
+    assert!(
+        text(&output.stderr).contains("scene, study, map, universality, calibration"),
+        "{}",
+        text(&output.stderr)
+    );
 }
 
 #[test]

@@ -58,6 +58,7 @@ pub fn cost(residuals: &[f64]) -> f64 {
 /// * `residuals` -- at a place, none where they do not exist; their number is always the same
 /// * `start` -- within the bounds
 /// * `held` -- coordinates that stay where they start
+/// * `least_gain` -- a step that lowers the sum by less is the last
 ///
 /// # Returns
 /// None if there are no residuals at the start.
@@ -69,7 +70,7 @@ pub fn cost(residuals: &[f64]) -> f64 {
 /// // Rosenbrock's valley: its floor is at (1, 1).
 /// let mut valley = |x: &[f64]| Some(vec![1.0 - x[0], 10.0 * (x[1] - x[0] * x[0])]);
 /// let coordinate = Coordinate { bounds: [-5.0, 5.0], step: 1e-5 };
-/// let found = minimise(&mut valley, &[-1.2, 1.0], &[coordinate; 2], &[false; 2]).unwrap();
+/// let found = minimise(&mut valley, &[-1.2, 1.0], &[coordinate; 2], &[false; 2], 0.0).unwrap();
 /// assert!(found.place.iter().all(|it| (it - 1.0).abs() < 1e-8));
 /// ```
 pub fn minimise(
@@ -77,6 +78,7 @@ pub fn minimise(
     start: &[f64],
     coordinates: &[Coordinate],
     held: &[bool],
+    least_gain: f64,
 ) -> Option<Minimum> {
     let mut place = start.to_vec();
     let mut now = residuals(&place)?;
@@ -123,7 +125,7 @@ pub fn minimise(
         let is_small = step.into_iter().all(|((it, a), b)| (b - a).abs() <= SMALLEST_STEP * it.width());
         let gain = lowest - cost(&there);
         (lowest, place, now) = (cost(&there), next, there);
-        if is_small || gain <= SMALLEST_GAIN * lowest {
+        if is_small || gain <= least_gain.max(SMALLEST_GAIN * lowest) {
             break;
         }
     }
@@ -192,7 +194,8 @@ mod tests {
             calls += 1;
             Some((0..5).map(|i| at[0] + at[1] * i as f64 - y[i]).collect())
         };
-        let found = minimise(&mut residuals, &[0.0, 0.0], &[WIDE; 2], &[false; 2]).expect("it has residuals");
+        let found =
+            minimise(&mut residuals, &[0.0, 0.0], &[WIDE; 2], &[false; 2], 0.0).expect("it has residuals");
         assert!((found.place[0] - 0.94).abs() < 1e-7 && (found.place[1] - 2.05).abs() < 1e-7, "{found:?}");
         assert!(calls <= 31, "{calls} calls");
     }
@@ -200,7 +203,8 @@ mod tests {
     #[test]
     fn a_bound_holds_what_leads_beyond_it_and_lets_the_rest_go_on() {
         let mut residuals = |at: &[f64]| Some(vec![at[0] - 20.0, at[1] - 3.0, 0.5 * (at[0] - at[1])]);
-        let found = minimise(&mut residuals, &[0.0, 0.0], &[WIDE; 2], &[false; 2]).expect("it has residuals");
+        let found =
+            minimise(&mut residuals, &[0.0, 0.0], &[WIDE; 2], &[false; 2], 0.0).expect("it has residuals");
         // With at[0] = 10: (y - 3) - 0.25 (10 - y) = 0.
         assert!(found.place[0] == 10.0 && (found.place[1] - 4.4).abs() < 1e-6, "{found:?}");
     }
@@ -208,7 +212,7 @@ mod tests {
     #[test]
     fn a_wall_of_the_residuals_is_not_stepped_over() {
         let mut residuals = |at: &[f64]| (at[0] < 2.0).then(|| vec![at[0].exp() - 4.0]);
-        let found = minimise(&mut residuals, &[-3.0], &[WIDE], &[false]).expect("it has residuals");
+        let found = minimise(&mut residuals, &[-3.0], &[WIDE], &[false], 0.0).expect("it has residuals");
         assert!((found.place[0] - 4f64.ln()).abs() < 1e-7, "{found:?}");
     }
 }

@@ -117,7 +117,7 @@ impl<'a> Fit<'a> {
     fn follow(&mut self, start: &[f64]) -> Option<Minimum> {
         let coordinates = self.objective.coordinates.clone();
         let held = vec![false; coordinates.len()];
-        minimise(&mut |place| self.objective.residuals(place), start, &coordinates, &held)
+        minimise(&mut |place| self.objective.residuals(place), start, &coordinates, &held, 0.0)
     }
 
     /// The best of several starts; none if it was stopped.
@@ -153,6 +153,7 @@ impl<'a> Fit<'a> {
             }
         }
         starts.sort_by(|one, other| one.0.total_cmp(&other.0));
+        self.objective.predictor.stay_close();
         starts.truncate(if dear.is_empty() { 1 } else { FOLLOWED });
         let mut best: Option<Minimum> = None;
         for (_, start) in starts {
@@ -434,9 +435,11 @@ impl<'a> Fit<'a> {
             for (line, residual) in
                 set.lines.iter().zip(&fitted.residuals).filter(|(_, it)| it.abs() > OUTLIER)
             {
-                outliers.push(format!("{}:{line} ({} deviations)", set.file, number(*residual)));
+                outliers.push((residual.abs(), format!("{}:{line} ({residual:.1} deviations)", set.file)));
             }
         }
+        outliers.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let outliers: Vec<String> = outliers.into_iter().map(|it| it.1).collect();
         if !outliers.is_empty() {
             let more = outliers.len().saturating_sub(MOST_NAMED);
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };

@@ -19,12 +19,11 @@ use crate::scene::{Calibration, Measured, Scene, Stepper};
 
 /// Snapshots in a factor of ten of time, between which cubics in `ln t` are right to 1e-5.
 const PER_DECADE: f64 = 16.0;
-/// How far before the first measurement they begin; before them everything goes in proportion.
-const BEFORE: f64 = 0.1;
-/// Longest stretch of time over which they are spread.
-const LONGEST: f64 = 1e7;
-/// How much longer than asked a run lasts whose clock may be asked for more.
-const BEYOND: f64 = 100.0;
+/// How far before the first and beyond the last measurement a run with a clock is looked at: as long as starts are tried, and then.
+const FAR: [f64; 2] = [0.01, 100.0];
+const CLOSE: [f64; 2] = [0.3, 3.0];
+/// How much a time may miss the first snapshot.
+const ROUNDING: f64 = 1e-9;
 /// Most numbers of cycles at which a run without a clock is looked at one by one.
 const MOST_TIMES: usize = 200;
 /// Most runs of a data set that are remembered.
@@ -38,7 +37,9 @@ pub(super) struct Predictor<'a> {
     pub(super) accuracy: Vec<f64>,
     /// The unknown that stretches the clock of a data set.
     clocks: Vec<Option<usize>>,
-    kept: Vec<HashMap<Vec<u64>, Trajectory>>,
+    kept: Vec<HashMap<Vec<u64>, Vec<Trajectory>>>,
+    /// What times of a clock a run serves, over those of the data.
+    reach: [f64; 2],
     /// Number of runs so far.
     pub(super) runs: u64,
     /// The last reason why there was no prediction.
@@ -78,6 +79,7 @@ impl<'a> Predictor<'a> {
             accuracy: vec![accuracy; count],
             clocks: vec![None; count],
             kept: vec![HashMap::new(); count],
+            reach: FAR,
             runs: 0,
             trouble: None,
             scales: vec![0.0; count],
@@ -99,6 +101,7 @@ impl<'a> Predictor<'a> {
             accuracy: self.accuracy.iter().map(|it| it * factor).collect(),
             clocks: vec![None; count],
             kept: vec![HashMap::new(); count],
+            reach: FAR,
             runs: 0,
             trouble: None,
             scales: self.scales.clone(),
@@ -113,6 +116,11 @@ impl<'a> Predictor<'a> {
                 self.kept[data].clear();
             }
         }
+    }
+
+    /// Looks no farther than near the place that was found.
+    pub(super) fn stay_close(&mut self) {
+        self.reach = CLOSE;
     }
 
     /// Whether all runs were asked to stop.
@@ -181,18 +189,18 @@ impl<'a> Predictor<'a> {
             return Ok(set.at.iter().map(|energy| slope * energy).collect());
         }
         let pace = self.clocks[data].map_or(1.0, |clock| values[clock]);
-        let last = if set.measured.is_over_cycles() { largest(&set.at) } else { set.cycles };
+        let times = self.span(data).map(|cycles| pace * cycles);
         let key = self.key(data, values);
-        let is_long_enough =
-            self.kept[data].get(&key).is_some_and(|it| it.is_over || it.times.last() >= Some(&(pace * last)));
-        if !is_long_enough {
-            let found = self.run(data, values, last)?;
+        if !self.kept[data].get(&key).is_some_and(|all| all.iter().any(|it| it.serves(times))) {
+            let found = self.run(data, values)?;
             if self.kept[data].len() >= MOST_KEPT {
                 self.kept[data].clear();
             }
-            self.kept[data].insert(key.clone(), found);
+            self.kept[data].entry(key.clone()).or_default().push(found);
         }
-        let run = &self.kept[data][&key];
+        let all = &self.kept[data][&key];
+        // The last is the one that was just made, if none did before.
+        let run = all.iter().find(|it| it.serves(times)).unwrap_or(&all[all.len() - 1]);
         self.scales[data] = run.scale;
         Ok(match set.measured {
             Measured::Scar => {
@@ -204,6 +212,18 @@ impl<'a> Predictor<'a> {
             Measured::DissipatedEnergy => set.at.iter().map(|n| run.value(pace * n) / pace).collect(),
             _ => set.at.iter().map(|n| run.value(pace * n)).collect(),
         })
+    }
+
+    /// First and last number of cycles, above zero, at which a data set was measured.
+    fn span(&self, data: usize) -> [f64; 2] {
+        let set = &self.calibration.data()[data];
+        match set.measured.is_over_cycles() {
+            true => {
+                let worn = set.at.iter().copied().filter(|it| *it > 0.0);
+                [worn.fold(f64::INFINITY, f64::min), largest(&set.at)]
+            }
+            false => [set.cycles; 2],
+        }
     }
 
     /// The values that a run depends on.
@@ -222,17 +242,14 @@ impl<'a> Predictor<'a> {
         })
     }
 
-    fn run(&mut self, data: usize, values: &[f64], last: f64) -> Result<Trajectory> {
+    fn run(&mut self, data: usize, values: &[f64]) -> Result<Trajectory> {
         let set = &self.calibration.data()[data];
-        let first = match set.measured.is_over_cycles() {
-            true => set.at.iter().copied().filter(|it| *it > 0.0).fold(f64::INFINITY, f64::min),
-            false => set.cycles,
-        };
+        let [first, last] = self.span(data);
         let cycles = match self.clocks[data] {
             Some(place) => {
-                let most = self.calibration.unknowns()[place].bounds[1] / values[place];
-                let longest = last * most.min(BEYOND).max(1.0);
-                spread(first * BEFORE, longest)
+                let [least, most] = self.calibration.unknowns()[place].bounds.map(|it| it / values[place]);
+                let [before, beyond] = self.reach;
+                spread(first * before.max(least).min(1.0), last * beyond.min(most).max(1.0))
             }
             None => {
                 let mut own: Vec<f64> = set.at.iter().copied().filter(|it| *it > 0.0).collect();
@@ -248,9 +265,7 @@ impl<'a> Predictor<'a> {
         let found = self.run_over(data, values, &cycles);
         match found {
             // What a long run cannot do a shorter one may.
-            Err(_) if cycles.last() > Some(&last) => {
-                self.run_over(data, values, &spread(first * BEFORE, last))
-            }
+            Err(_) if cycles.last() > Some(&last) => self.run_over(data, values, &spread(first, last)),
             found => found,
         }
     }
@@ -304,12 +319,17 @@ impl<'a> Predictor<'a> {
 
 /// Numbers of cycles in constant ratio.
 fn spread(first: f64, last: f64) -> Vec<f64> {
-    let first = first.max(last / LONGEST);
     let count = ((last / first).log10() * PER_DECADE).ceil().max(4.0);
     (0..=count as usize).map(|i| last * (first / last).powf(1.0 - i as f64 / count)).collect()
 }
 
 impl Trajectory {
+    /// Whether it holds all between two times.
+    fn serves(&self, [first, last]: [f64; 2]) -> bool {
+        let begins = self.times.get(1).is_some_and(|it| *it <= first * (1.0 + ROUNDING));
+        begins && (self.is_over || self.times.last().is_some_and(|it| *it >= last * (1.0 - ROUNDING)))
+    }
+
     fn value(&self, time: f64) -> f64 {
         self.weights(time).iter().map(|(place, weight)| weight * self.rows[*place][0]).sum()
     }
@@ -324,13 +344,12 @@ impl Trajectory {
 
     /// Snapshots and their weights at a time: a cubic in `ln t` through four of them, a straight line in `t` from the start to the first.
     fn weights(&self, time: f64) -> Vec<(usize, f64)> {
-        const NEAR: f64 = 1e-12;
-        let after = self.times.partition_point(|it| *it < time * (1.0 - NEAR));
+        let after = self.times.partition_point(|it| *it < time * (1.0 - ROUNDING));
         let last = self.times.len() - 1;
         if after > last {
             return vec![(last, 1.0)];
         }
-        if (self.times[after] - time).abs() <= NEAR * time {
+        if (self.times[after] - time).abs() <= ROUNDING * time {
             return vec![(after, 1.0)];
         }
         if after <= 1 {

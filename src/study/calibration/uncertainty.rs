@@ -4,7 +4,7 @@ use faer::{Mat, Side};
 use spec_math::cephes64::{ndtri, stdtri};
 
 use super::objective::Objective;
-use crate::numerics::least_squares::{Minimum, cost, minimise, normal_matrix};
+use crate::numerics::least_squares::{Minimum, cost, jacobian, minimise, normal_matrix};
 
 /// Probability that the interval holds the truth.
 pub const CONFIDENCE: f64 = 0.95;
@@ -12,6 +12,12 @@ pub const CONFIDENCE: f64 = 0.95;
 const MANY: f64 = 1e6;
 /// How near the end of an interval is found, in parts of its distance.
 const NEAR: f64 = 2e-3;
+/// Gain of misfit that is not worth another step.
+const LEAST_GAIN: f64 = 2e-3;
+/// How much lower than the least a misfit is that is no error of the runs.
+const LOWER: f64 = 0.02;
+/// Part of the rise that a bound of another unknown may be the cause of.
+const BY_BOUND: f64 = 0.1;
 /// Most places on one side.
 const MOST_PLACES: usize = 30;
 /// Eigenvalues of the correlations below this one are taken for it.
@@ -75,18 +81,25 @@ pub(super) fn profile(
             }
             start[unknown] = if distance == room { bound } else { centre + way * distance };
             let mut residuals = |place: &[f64]| objective.residuals(place);
-            let there = minimise(&mut residuals, &start, &coordinates, &held);
+            let there = minimise(&mut residuals, &start, &coordinates, &held, LEAST_GAIN);
             let rise = there.as_ref().map_or(f64::INFINITY, |it| it.cost - minimum.cost);
             if let Some(there) = &there {
                 found.points.push([there.place[unknown], rise]);
-                if rise < -NEAR {
+                if rise < -LOWER {
                     found.better = Some(there.place.clone());
                     return found;
                 }
             }
             let root = rise.max(0.0).sqrt();
+            let end = centre + way * distance;
+            let there_is_an_end = |objective: &mut Objective| {
+                let by_bound = there
+                    .as_ref()
+                    .is_some_and(|it| gain_beyond_bounds(objective, it, &held) > BY_BOUND * t * t);
+                (!by_bound).then_some(end)
+            };
             if (root - t).abs() <= NEAR * t {
-                found.ends[side] = Some(centre + way * distance);
+                found.ends[side] = there_is_an_end(objective);
                 break;
             }
             if root < t {
@@ -94,7 +107,7 @@ pub(super) fn profile(
                     break;
                 }
                 inside = (distance, root);
-                others = there.map_or(others, |it| it.place);
+                others = there.as_ref().map_or(others, |it| it.place.clone());
             } else {
                 outside = Some((distance, root));
             }
@@ -111,7 +124,7 @@ pub(super) fn profile(
             if let Some((width, root)) = bracket
                 && width <= NEAR * distance
             {
-                found.ends[side] = root.is_finite().then_some(centre + way * distance);
+                found.ends[side] = root.is_finite().then(|| there_is_an_end(objective)).flatten();
                 break;
             }
         }
@@ -120,11 +133,69 @@ pub(super) fn profile(
     found
 }
 
+/// How much lower the misfit would be if unknowns that a bound holds could go on, at most as far again as their bounds are apart.
+fn gain_beyond_bounds(objective: &mut Objective, at: &Minimum, held: &[bool]) -> f64 {
+    const AT: f64 = 1e-6;
+    let coordinates = objective.coordinates.clone();
+    let unknowns = objective.calibration.unknowns().len();
+    let is_at_bound = |i: &usize| {
+        let [low, high] = coordinates[*i].bounds;
+        !held[*i] && (at.place[*i] - low).min(high - at.place[*i]) <= AT * (high - low)
+    };
+    let stuck: Vec<usize> = (0..unknowns).filter(is_at_bound).collect();
+    if stuck.is_empty() {
+        return 0.0;
+    }
+    let slopes =
+        jacobian(&mut |place| objective.residuals(place), &at.place, &at.residuals, &coordinates, held);
+    let others: Vec<&Vec<f64>> =
+        (0..slopes.len()).filter(|i| !stuck.contains(i)).map(|i| &slopes[i]).collect();
+    let others = orthonormal(&others);
+    let gain = |i: usize| {
+        let own = without(&slopes[i], &others);
+        let [low, high] = coordinates[i].bounds;
+        let slope: f64 = own.iter().zip(&at.residuals).map(|(a, b)| a * b).sum();
+        let outwards = if at.place[i] - low < high - at.place[i] { slope } else { -slope };
+        let curvature = cost(&own);
+        if outwards <= 0.0 || curvature == 0.0 {
+            return 0.0;
+        }
+        let step = (outwards / curvature).min(high - low);
+        2.0 * outwards * step - curvature * step * step
+    };
+    stuck.into_iter().map(gain).fold(0.0, f64::max)
+}
+
+/// Columns as perpendicular ones of length 1; those that the others make up are left out.
+fn orthonormal(columns: &[&Vec<f64>]) -> Vec<Vec<f64>> {
+    const NOTHING: f64 = 1e-9;
+    let mut found: Vec<Vec<f64>> = vec![];
+    for column in columns {
+        let rest = without(column, &found);
+        let [size, whole] = [&rest, *column].map(|it| cost(it).sqrt());
+        if size > NOTHING * whole {
+            found.push(rest.iter().map(|it| it / size).collect());
+        }
+    }
+    found
+}
+
+/// A column without what perpendicular ones of length 1 make up of it.
+fn without(column: &[f64], others: &[Vec<f64>]) -> Vec<f64> {
+    let mut rest = column.to_vec();
+    // Twice, as round-off leaves a part the first time.
+    for other in others.iter().chain(others) {
+        let part: f64 = rest.iter().zip(other).map(|(a, b)| a * b).sum();
+        rest.iter_mut().zip(other).for_each(|(it, b)| *it -= part * b);
+    }
+    rest
+}
+
 /// Covariances of all coordinates, `(JᵀJ)⁻¹`, shape `(coordinate, coordinate)`; what the data do not tell has a very large one.
-pub(super) fn covariance(jacobian: &[Vec<f64>]) -> Mat<f64> {
-    let count = jacobian.len();
+pub(super) fn covariance(slopes: &[Vec<f64>]) -> Mat<f64> {
+    let count = slopes.len();
     let all: Vec<usize> = (0..count).collect();
-    let matrix = normal_matrix(jacobian, &all);
+    let matrix = normal_matrix(slopes, &all);
     let largest = (0..count).map(|i| matrix[(i, i)]).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let size: Vec<f64> = (0..count).map(|i| matrix[(i, i)].max(SMALLEST * largest).sqrt()).collect();
     let scaled = Mat::from_fn(count, count, |i, j| matrix[(i, j)] / (size[i] * size[j]));
@@ -144,27 +215,11 @@ fn eigen(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
 
 /// Exponents of the product of some unknowns that is best known, the largest of them 1, and the standard deviation of its logarithm; all else is
 /// fitted along. None if the product is not known either.
-pub(super) fn combination(jacobian: &[Vec<f64>], of: &[usize]) -> Option<(Vec<f64>, f64)> {
+pub(super) fn combination(slopes: &[Vec<f64>], of: &[usize]) -> Option<(Vec<f64>, f64)> {
     // Without what the other coordinates could do as well.
-    let mut others: Vec<Vec<f64>> = vec![];
-    let without = |column: &[f64], others: &[Vec<f64>]| {
-        let mut rest = column.to_vec();
-        for _ in 0..2 {
-            for other in others {
-                let part: f64 = rest.iter().zip(other).map(|(a, b)| a * b).sum();
-                rest.iter_mut().zip(other).for_each(|(it, b)| *it -= part * b);
-            }
-        }
-        rest
-    };
-    for column in jacobian.iter().enumerate().filter(|(i, _)| !of.contains(i)).map(|(_, column)| column) {
-        let rest = without(column, &others);
-        let [size, whole] = [&rest, column].map(|it| cost(it).sqrt());
-        if size > 1e-9 * whole {
-            others.push(rest.iter().map(|it| it / size).collect());
-        }
-    }
-    let own: Vec<Vec<f64>> = of.iter().map(|i| without(&jacobian[*i], &others)).collect();
+    let others: Vec<&Vec<f64>> = (0..slopes.len()).filter(|i| !of.contains(i)).map(|i| &slopes[i]).collect();
+    let others = orthonormal(&others);
+    let own: Vec<Vec<f64>> = of.iter().map(|i| without(&slopes[*i], &others)).collect();
     let (values, vectors) = eigen(&normal_matrix(&own, &(0..own.len()).collect::<Vec<_>>()))?;
     let last = of.len() - 1;
     let vector: Vec<f64> = (0..of.len()).map(|i| vectors[(i, last)]).collect();
