@@ -182,7 +182,7 @@ fn a_scar_tells_its_coefficient_centre_offset_tilt_and_roughness() {
     let roughness = 0.02 * results.wear_depth()[1].iter().fold(0.0, |a: f64, b| a.max(*b));
     let outcome = found(
         BALL,
-        &[("s.csv", &scar(&results, 3, roughness, 2.2e-5))],
+        &[("s.csv", &scar(&results, 11, roughness, 2.2e-5))],
         &format!("{WEAR}{SCAR}cycles = 2e5\n"),
     );
     let (it, data) = (&outcome.parameters[0], &outcome.data[0]);
@@ -205,7 +205,7 @@ fn a_measured_scar_is_read_with_its_roughness() {
     let table = fs::read_to_string(root().join("data/calibration/mccoll2004.csv")).expect("readable");
     let document = "[[unknowns]]\nkey = \"wear.archard.coefficient\"\nfrom = 1e-16\nto = 1e-10\n\
                     [[data]]\nfile = \"m.csv\"\nposition = \"position_mm [mm]\"\nheight = \"height_um [um]\"\ncycles = 18000\n\
-                    set = { \"loading.amplitude\" = \"25 um\", \"indenter.paraboloid.radius\" = \"6 mm\", \"loading.normal_force\" = 20 }\n";
+                    set = { \"loading.amplitude\" = \"25 um\", \"indenter.paraboloid.radius\" = \"13 mm\", \"loading.normal_force\" = 18 }\n";
     let outcome = found(BALL, &[("m.csv", &table)], document);
     let data = &outcome.data[0];
     assert!((1.8e-7..2.8e-7).contains(&data.deviations[0]), "{}", data.deviations[0]);
