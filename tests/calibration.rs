@@ -489,12 +489,45 @@ fn intervals_of_all_kinds_hold_the_truth_as_often_as_they_say() {
     for kind in ["energies", "partial", "gross", "scar", "loop"] {
         for part in [0.02, 0.15] {
             let (inside, bias) = coverage(kind, 500, part);
-            if !(0.93..=0.97).contains(&inside) || bias.abs() > 2.5 {
+            // Of ten biases one beyond 2.8 standard errors comes by chance in 5 % of all seeds.
+            if !(0.93..=0.97).contains(&inside) || bias.abs() > 2.8 {
                 wrong.push(format!("{kind}, {part}: {inside}, bias {bias}"));
             }
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Volumes by a power of the pressure, and Archard's law beside it: with errors of 1 % the data tell, by eight numbers.
+#[test]
+fn laws_are_told_apart_by_akaikes_criterion() {
+    let cycles = [2e3, 1e4, 3e4, 1e5, 2e5, 4e5, 7e5, 1e6];
+    let power = [
+        "wear.power-law.coefficient=3.3e-27",
+        "wear.power-law.pressure_exponent=2.5",
+        "wear.power-law.slip_exponent=1",
+    ];
+    let volumes = truth(BALL, &power, &cycles).worn_volume();
+    let noisy: Vec<f64> = volumes[1..].iter().zip(noise(4, 8)).map(|(v, e)| v * (1.0 + 0.01 * e)).collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("scene.toml"), BALL).expect("written");
+    fs::write(folder.path().join("v.csv"), csv("N,V", &[&cycles, &noisy])).expect("written");
+    let document = "scene = \"scene.toml\"\n[[data]]\nfile = \"v.csv\"\ncycles = \"N\"\nwear_volume = \"V\"\nrelative_deviation = 0.01\n\
+                    [[models]]\nname = \"Archard\"\n[[models.unknowns]]\nkey = \"wear.archard.coefficient\"\nfrom = 1e-17\nto = 1e-11\n\
+                    [[models]]\nname = \"power\"\nset = { \"wear.power-law.pressure_exponent\" = 2.5, \"wear.power-law.slip_exponent\" = 1 }\n\
+                    [[models.unknowns]]\nkey = \"wear.power-law.coefficient\"\nfrom = 1e-29\nto = 1e-25\n";
+    fs::write(folder.path().join("laws.toml"), document).expect("written");
+    let printed = done(folder.path(), &["calibrate", "laws.toml", "-o", "out", "--json"]);
+    let json: Value = serde_json::from_str(&printed).expect("one JSON object");
+    let models = json["models"].as_array().expect("two");
+    assert_eq!((models.len(), models[0]["name"].as_str()), (2, Some("power")), "{models:?}");
+    assert!(
+        models[0]["weight"].as_f64() > Some(0.99) && models[1]["aicc"].as_f64() > models[0]["aicc"].as_f64(),
+        "{models:?}"
+    );
+    let estimate = json["parameters"][0]["estimate"].as_f64().expect("a number");
+    assert!((estimate / 3.3e-27 - 1.0).abs() < 0.03, "{estimate}");
+    assert!(folder.path().join("out/models.csv").exists());
 }
 
 #[test]

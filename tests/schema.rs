@@ -160,7 +160,7 @@ fn every_table() -> Vec<(FileKind, String)> {
         (FileKind::Map, fs::read_to_string(root().join("data/maps/paper.toml")).expect("readable")),
         (
             FileKind::Calibration,
-            fs::read_to_string(root().join("data/calibration/ti6al4v_5hz.toml")).expect("readable"),
+            fs::read_to_string(root().join("data/calibration/ball_laws.toml")).expect("readable"),
         ),
         (
             FileKind::Universality,
@@ -175,14 +175,15 @@ fn every_table() -> Vec<(FileKind, String)> {
     all
 }
 
-/// The tables in a document as paths of keys and of places in arrays; patches and base scenes of universality studies are left out.
+/// The tables in a document as paths of keys and of places in arrays; patches, settings of calibrations and base scenes of universality studies are
+/// left out.
 fn tables(value: &Value, path: &[String], found: &mut Vec<Vec<String>>) {
     let inner = |key: &str| [path, &[key.to_owned()]].concat();
     match value {
         Value::Object(object) => {
             found.push(path.to_vec());
             let keys =
-                object.iter().filter(|(key, _)| !(path.is_empty() && *key == "scene") && *key != "patch");
+                object.iter().filter(|(key, _)| !(path.is_empty() && *key == "scene" || ["patch", "set"].contains(&key.as_str())));
             keys.for_each(|(key, value)| tables(value, &inner(key), found));
         }
         Value::Array(array) => {

@@ -55,8 +55,11 @@ pub(super) fn figure(file: &Dataset) -> Result<Figure> {
         rows.push(Row { height: 180.0, panels: pair.to_vec() });
     }
     let title = if file.title().is_empty() { None } else { Some(plain(file.title())) };
-    let note = "Bars: one standard deviation. Misfit: sum of squares above the least, all else fitted anew; the interval of 95 % ends at the vertical lines.";
-    Ok(Figure { title, rows, notes: vec![note.into()] })
+    let notes = [
+        "Bars: one standard deviation. Misfit: sum of squares above the least, all else fitted anew.",
+        "Vertical lines: the ends of the interval of 95 %.",
+    ];
+    Ok(Figure { title, rows, notes: notes.map(String::from).to_vec() })
 }
 
 impl Values<'_> {

@@ -30,6 +30,9 @@ use crate::error::{Error, Result};
 /// The one unknown of a calibration without a scene.
 const ALPHA: &str = "wear.dissipated-energy.coefficient";
 
+/// Keys of `[numerics]` in whose place the accuracy stands that the data ask for.
+const BY_HAND: [&str; 2] = ["springs", "tolerance"];
+
 /// What a data set holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measured {
@@ -148,6 +151,14 @@ pub struct Unknown {
     pub unit: &'static str,
 }
 
+/// A law with unknowns of its own.
+#[derive(Debug, Clone, PartialEq)]
+struct Model {
+    name: String,
+    settings: Vec<(String, Value)>,
+    unknowns: Vec<Unknown>,
+}
+
 /// A valid calibration with its measurements.
 ///
 /// # Examples
@@ -166,6 +177,9 @@ pub struct Calibration {
     title: Option<String>,
     unknowns: Vec<Unknown>,
     data: Vec<DataSet>,
+    /// Keys of the scene for all data sets.
+    settings: Vec<(String, Value)>,
+    models: Vec<Model>,
     is_robust: bool,
     base: Option<Table>,
     /// Folder of the base scene, to which files that it names are relative.
@@ -211,6 +225,19 @@ impl Calibration {
             calibration.base_text = text;
         }
         Ok(calibration)
+    }
+
+    /// The laws that are compared, each with its name and as a calibration of its own; itself without a name where none are.
+    pub fn models(&self) -> Vec<(String, Self)> {
+        let of = |model: &Model| {
+            let unknowns = [&self.unknowns[..], &model.unknowns].concat();
+            let settings = model.settings.clone();
+            (model.name.clone(), Self { unknowns, settings, models: vec![], ..self.clone() })
+        };
+        match self.models.is_empty() {
+            true => vec![(String::new(), self.clone())],
+            false => self.models.iter().map(of).collect(),
+        }
     }
 
     /// Title, one line.
@@ -264,7 +291,7 @@ impl Calibration {
     /// * `data` -- its place
     /// * `values` -- of the unknowns, in SI, shape `(unknown,)`
     /// * `cycles` -- at which snapshots are taken, increasing, above 0; the run ends with the last
-    /// * `accuracy` -- of the run, unless the scene gives springs by hand
+    /// * `accuracy` -- of the run, in place of springs and tolerance that the scene gives by hand
     ///
     /// # Errors
     /// As [`Scene::from_toml`].
@@ -277,7 +304,7 @@ impl Calibration {
         let mut put = |key: &str, value: Value| {
             set(&mut table, key, value).map_err(|why| Error::Scene(format!("{name}: {key}: {why}")))
         };
-        for (key, value) in &self.data[data].settings {
+        for (key, value) in self.settings.iter().chain(&self.data[data].settings) {
             put(key, value.clone())?;
         }
         for (unknown, value) in self.unknowns.iter().zip(values) {
@@ -288,6 +315,9 @@ impl Calibration {
         put("loading.cycles", Value::Float(end))?;
         put("output.at_cycles", Value::Array(cycles.iter().map(|it| Value::Float(*it)).collect()))?;
         put("numerics.accuracy", Value::Float(accuracy))?;
+        if let Some(numerics) = table.get_mut("numerics").and_then(Value::as_table_mut) {
+            BY_HAND.iter().for_each(|key| drop(numerics.remove(*key)));
+        }
         Scene::with_rows(&table.to_string(), &name, &Rows::In(&self.folder))
     }
 }

@@ -9,11 +9,13 @@
 
 mod files;
 mod fit;
+mod models;
 mod objective;
 mod prediction;
 mod report;
 mod uncertainty;
 
+pub use models::{Judged, judged};
 pub use report::CalibrationReport;
 pub use uncertainty::CONFIDENCE;
 
@@ -89,6 +91,8 @@ pub struct Outcome {
     pub reduced_chi_squared: f64,
     /// Values less what was fitted to them.
     pub degrees_of_freedom: f64,
+    /// Akaike's criterion with its correction for few values, to compare laws on the same data.
+    pub aicc: f64,
     /// The data, in the order of the calibration.
     pub data: Vec<FittedData>,
     /// What deserves a word, one sentence each.
@@ -156,15 +160,16 @@ pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
     files::check_folder(folder, overwrite)
 }
 
-/// Writes `calibration.h5`, `parameters.csv` and `residuals.csv`; their paths.
+/// Writes `calibration.h5`, `parameters.csv` and `residuals.csv`, and `models.csv` where laws are compared; their paths.
 ///
 /// # Errors
 /// [`Error::File`](crate::Error::File) if they cannot be written.
 pub fn write(
     calibration: &Calibration,
     outcome: &Outcome,
+    models: &[Judged],
     folder: &Path,
     overwrite: bool,
 ) -> Result<Vec<PathBuf>> {
-    files::write(calibration, outcome, folder, overwrite)
+    files::write(calibration, outcome, models, folder, overwrite)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::measurements::{Column, Measurements};
-use super::{Calibration, DataSet, Deviation, Measured, Unknown};
+use super::{Calibration, DataSet, Deviation, Measured, Model, Unknown};
 use crate::error::Result;
 use crate::scene::document::{Entry, Section};
 use crate::scene::keys;
@@ -21,11 +21,13 @@ pub(super) fn read(root: &Section, values: &Table, folder: &Path) -> Result<Cali
     root.check(&keys::CALIBRATION)?;
     let title = root.read_optional(&keys::TITLE)?;
     let is_robust = root.read::<usize>(&keys::LOSS)? == 1;
+    let compares = root.optional("models").is_some();
     let mut taken = vec![];
-    let mut unknowns = vec![];
-    for entry in not_empty(root, "unknowns", keys::MOST_UNKNOWNS)? {
-        unknowns.push(unknown(&entry.section()?, &mut taken)?);
-    }
+    let unknowns = match root.optional("unknowns") {
+        None if compares => vec![],
+        _ => unknowns(not_empty(root, "unknowns", keys::MOST_UNKNOWNS)?, &mut taken)?,
+    };
+    let models = if compares { models(root, values, &mut taken)? } else { vec![] };
     let (mut data, mut notes) = (vec![], vec![]);
     let sections = not_empty(root, "data", keys::MOST_DATA)?;
     let sections = sections.iter().map(Entry::section).collect::<Result<Vec<_>>>()?;
@@ -42,11 +44,8 @@ pub(super) fn read(root: &Section, values: &Table, folder: &Path) -> Result<Cali
                 "data[{place}] is a {what}, which needs the scene of the test; give scene = \"FILE.toml\""
             )));
         }
-        if let [Unknown { key, tied, .. }] = &unknowns[..]
-            && key == super::ALPHA
-            && tied.is_empty()
-        {
-        } else {
+        let is_alpha = |it: &Unknown| it.key == super::ALPHA && it.tied.is_empty();
+        if compares || unknowns.len() != 1 || !is_alpha(&unknowns[0]) {
             return Err(root.error(format_args!(
                 "without a scene the one unknown is {}, the worn volume over the dissipated energy",
                 super::ALPHA
@@ -57,6 +56,8 @@ pub(super) fn read(root: &Section, values: &Table, folder: &Path) -> Result<Cali
         title,
         unknowns,
         data,
+        settings: vec![],
+        models,
         is_robust,
         base: None,
         folder: PathBuf::new(),
@@ -65,6 +66,36 @@ pub(super) fn read(root: &Section, values: &Table, folder: &Path) -> Result<Cali
         base_text: String::new(),
         notes,
     })
+}
+
+fn unknowns(entries: Vec<Entry>, taken: &mut Vec<String>) -> Result<Vec<Unknown>> {
+    entries.iter().map(|entry| unknown(&entry.section()?, taken)).collect()
+}
+
+/// The laws that are compared; all their unknowns are added to those that are taken.
+fn models(root: &Section, values: &Table, taken: &mut Vec<String>) -> Result<Vec<Model>> {
+    let (common, mut found) = (taken.clone(), Vec::<Model>::new());
+    for (place, entry) in not_empty(root, "models", keys::MOST_MODELS)?.iter().enumerate() {
+        let section = entry.section()?;
+        section.check(&keys::MODEL)?;
+        let name = section.required("name", "name the law")?;
+        let title = String::read(&name, &keys::NAME)?;
+        if title.trim().is_empty() || found.iter().any(|it| it.name == title) {
+            return Err(name.error("is empty or given twice; names must differ"));
+        }
+        let mut own = common.clone();
+        let entries = section.optional("unknowns").map(|it| it.array(keys::MOST_UNKNOWNS)).transpose()?;
+        let unknowns = unknowns(entries.unwrap_or_default(), &mut own)?;
+        if own.is_empty() || own.len() > keys::MOST_UNKNOWNS {
+            let most = keys::MOST_UNKNOWNS;
+            return Err(section.error(format_args!("{title} has {} unknowns; give 1 to {most}", own.len())));
+        }
+        let set = values.get("models").and_then(|it| it.get(place)?.get("set")?.as_table());
+        let settings = settings(&section, set, &own)?;
+        taken.extend(own.into_iter().filter(|key| !common.contains(key)));
+        found.push(Model { name: title, settings, unknowns });
+    }
+    Ok(found)
 }
 
 fn not_empty<'a>(root: &Section<'a>, name: &str, most: usize) -> Result<Vec<Entry<'a>>> {

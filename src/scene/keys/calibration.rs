@@ -1,10 +1,12 @@
 //! The file of a calibration.
 
-use super::{FROM, KEY, TITLE, TO};
+use super::{FROM, KEY, NAME, TITLE, TO};
 use crate::units::{Form, Key, Kind, Range, Rule, Table};
 
 /// Most unknowns of a calibration.
 pub(in crate::scene) const MOST_UNKNOWNS: usize = 12;
+/// Most laws that are compared.
+pub(in crate::scene) const MOST_MODELS: usize = 20;
 /// Most data sets of a calibration.
 pub(in crate::scene) const MOST_DATA: usize = 1000;
 
@@ -22,10 +24,13 @@ pub(in crate::scene) const CALIBRATION: Table = Table::new(
         .example("ball.toml")
         .optional(),
         LOSS,
-        Key::new("unknowns", Kind::Tables(&UNKNOWN, [1, MOST_UNKNOWNS]), "What is found.")
-            .example("[[unknowns]] with key, from and to"),
+        Key::new("unknowns", Kind::Tables(&UNKNOWN, [1, MOST_UNKNOWNS]), "What is found, under every model.")
+            .example("[[unknowns]] with key, from and to")
+            .optional(),
         Key::new("data", Kind::Tables(&DATA, [1, MOST_DATA]), "What was measured.")
             .example("[[data]] with file, cycles and wear_volume"),
+        Key::new("models", Kind::Tables(&MODEL, [2, MOST_MODELS]), "Laws that are compared on the same data.")
+            .optional(),
     ],
 );
 pub(in crate::scene) const LOSSES: [&str; 2] = ["squares", "huber"];
@@ -88,9 +93,7 @@ pub(in crate::scene) const DATA: Table = Table::new(
             .optional(),
         DEVIATION,
         RELATIVE_DEVIATION,
-        Key::new("set", Kind::Settings, "Keys of the scene for this data set.")
-            .example("{ \"loading.amplitude\" = \"2 um\" }")
-            .optional(),
+        SET,
     ],
 )
 .rules(&[
@@ -109,6 +112,9 @@ pub(in crate::scene) const FORMS_OF_DATA: [Form; 9] = [
     Form::new(&["position", "height", "cycles"]).may(&["share"]),
     Form::new(&["displacement", "tangential_force", "cycles"]),
 ];
+const SET: Key = Key::new("set", Kind::Settings, "Keys of the scene for it.")
+    .example("{ \"loading.amplitude\" = \"2 um\" }")
+    .optional();
 pub(in crate::scene) const WHERE: Key =
     Key::new("where", Kind::Text, "Rows that are taken: those with this text in this column.")
         .example("group = 5Hz")
@@ -144,3 +150,19 @@ pub(in crate::scene) const RELATIVE_DEVIATION: Key = Key::new(
 .range(Range::above(0.0).to(10.0))
 .example("0.05")
 .optional();
+
+pub(in crate::scene) const MODEL: Table = Table::new(
+    "models",
+    "A law with unknowns of its own.",
+    &[
+        Key { about: "Name, different from all others.", ..NAME }.example("friction power"),
+        SET,
+        Key::new(
+            "unknowns",
+            Kind::Tables(&UNKNOWN, [0, MOST_UNKNOWNS]),
+            "What is found under this law besides.",
+        )
+        .example("[[models.unknowns]] with key, from and to")
+        .optional(),
+    ],
+);

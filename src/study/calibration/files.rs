@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{FittedData, Outcome, Parameter};
+use super::models::OF_MODEL;
+use super::{FittedData, Judged, Outcome, Parameter};
 use crate::data::quantity::{Quantity, Reading, csv, number, quantity, word};
 use crate::data::{self, AtomicFile, Dataset, Format, Mark, Variable};
 use crate::error::Result;
@@ -11,6 +12,7 @@ use crate::scene::{Calibration, DataSet};
 const ARRAYS: &str = "calibration.h5";
 const PARAMETERS: &str = "parameters.csv";
 const RESIDUALS: &str = "residuals.csv";
+const MODELS: &str = "models.csv";
 
 const PARAMETER: Quantity = quantity("parameter", "1", "number of the unknown in the calibration");
 const VALUE: Quantity = quantity("value", "1", "number of the measured value, through all data sets");
@@ -89,6 +91,7 @@ pub(super) fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
         (ARRAYS, Mark::Results),
         (PARAMETERS, Mark::Words("key,unit,estimate,lower,upper,")),
         (RESIDUALS, Mark::Words("data,file,line,measured,at,")),
+        (MODELS, Mark::Words("name,aicc,weight,")),
     ];
     data::check_folder(folder, &marks, overwrite)
 }
@@ -97,6 +100,7 @@ pub(super) fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
 pub(super) fn write(
     calibration: &Calibration,
     outcome: &Outcome,
+    models: &[Judged],
     folder: &Path,
     overwrite: bool,
 ) -> Result<Vec<PathBuf>> {
@@ -107,7 +111,12 @@ pub(super) fn write(
     dataset(calibration, outcome, &rows).write(&arrays, overwrite)?;
     AtomicFile::new(&parameters, overwrite)?.write(csv(&OF_PARAMETER, &outcome.parameters).as_bytes())?;
     AtomicFile::new(&residuals, overwrite)?.write(csv(&OF_VALUE, &rows).as_bytes())?;
-    Ok(vec![arrays, parameters, residuals])
+    let mut files = vec![arrays, parameters, residuals];
+    if !models.is_empty() {
+        files.push(folder.join(MODELS));
+        AtomicFile::new(&files[3], overwrite)?.write(csv(&OF_MODEL, models).as_bytes())?;
+    }
+    Ok(files)
 }
 
 fn dataset(calibration: &Calibration, outcome: &Outcome, rows: &[Row]) -> Dataset {

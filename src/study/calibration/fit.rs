@@ -7,7 +7,7 @@ use super::prediction::Predictor;
 use super::uncertainty::{combination, covariance, profile, quantile};
 use super::{Combination, FittedData, Outcome, Parameter};
 use crate::error::{Error, Result};
-use crate::numerics::least_squares::{Minimum, jacobian, minimise};
+use crate::numerics::least_squares::{Minimum, cost, jacobian, minimise};
 use crate::run::Stop;
 use crate::scene::sampling::{Method, UnitCube};
 use crate::scene::{Calibration, Deviation, Measured};
@@ -20,7 +20,7 @@ const ALLOWED: f64 = 0.1;
 /// How much finer the runs are that others are judged by.
 const FINER: f64 = 0.1;
 /// Rounds of better runs.
-const MOST_REFINEMENTS: usize = 4;
+const MOST_REFINEMENTS: usize = 5;
 /// Rounds in which deviations are estimated, and when they are steady.
 const MOST_ESTIMATES: usize = 30;
 const STEADY: f64 = 1e-4;
@@ -168,7 +168,7 @@ impl<'a> Fit<'a> {
 
     fn cost(&mut self, place: &[f64]) -> f64 {
         let residuals = self.objective.residuals(place);
-        residuals.map_or(f64::INFINITY, |it| crate::numerics::least_squares::cost(&it))
+        residuals.map_or(f64::INFINITY, |it| cost(&it))
     }
 
     /// Tries values of an unknown from below, until it only becomes worse.
@@ -362,6 +362,7 @@ impl<'a> Fit<'a> {
             combinations,
             reduced_chi_squared: misfit / degrees_of_freedom,
             degrees_of_freedom,
+            aicc: self.criterion(&data, fitted),
             data,
             warnings: vec![],
             runs: self.objective.predictor.runs,
@@ -371,6 +372,28 @@ impl<'a> Fit<'a> {
         };
         outcome.warnings = self.warnings(&outcome);
         outcome
+    }
+
+    /// Akaike's criterion with its correction for few values
+    ///
+    /// ```text
+    /// AICc = -2 ln L + 2 K + 2 K (K + 1)/(n - K - 1)
+    /// ```
+    ///
+    /// with the likelihood of normal errors, of which deviations that are estimated take the value most likely and count among the K numbers fitted.
+    fn criterion(&self, data: &[FittedData], fitted: usize) -> f64 {
+        let (mut likelihood, mut numbers, mut count) = (0.0, fitted as f64, 0.0);
+        for it in data {
+            let own = it.residuals.len() as f64;
+            let misfit = cost(&it.residuals);
+            likelihood += it.deviations.iter().map(|it| 2.0 * it.ln()).sum::<f64>();
+            likelihood += if it.is_estimated { own * (misfit / own).ln() + own } else { misfit };
+            numbers += f64::from(u8::from(it.is_estimated));
+            count += own;
+        }
+        let spare = count - numbers - 1.0;
+        let correction = if spare > 0.0 { 2.0 * numbers * (numbers + 1.0) / spare } else { f64::INFINITY };
+        likelihood + 2.0 * numbers + correction
     }
 
     /// What is known of unknowns that are not known one by one.
@@ -396,6 +419,15 @@ impl<'a> Fit<'a> {
     fn warnings(&self, outcome: &Outcome) -> Vec<String> {
         let mut warnings = self.calibration.notes().to_vec();
         let data = self.calibration.data();
+        if self.calibration.has_scene() {
+            let values: Vec<f64> = outcome.parameters.iter().map(|it| it.estimate).collect();
+            for place in 0..data.len() {
+                let scene = self.calibration.scene(place, &values, &[1.0], ACCURACY[0]);
+                let own = scene.iter().flat_map(|it| it.warnings()).filter(|it| !warnings.contains(it));
+                let own: Vec<String> = own.cloned().collect();
+                warnings.extend(own);
+            }
+        }
         for parameter in outcome.parameters.iter().filter(|it| !it.is_identifiable()) {
             let side = match parameter.interval {
                 [None, None] => "neither end",

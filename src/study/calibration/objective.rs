@@ -173,8 +173,9 @@ impl<'a> Objective<'a> {
                 Deviation::Known(_) => continue,
                 Deviation::Relative(part) => fit.predicted.iter().map(|it| part * it.abs()).collect(),
                 Deviation::EstimatedRelative => {
-                    let ratios = errors.iter().zip(&fit.predicted).map(|(e, p)| e / p).collect();
-                    let part = size(ratios, freedom[data]);
+                    let ratios =
+                        errors.iter().zip(&fit.predicted).filter(|(_, p)| **p != 0.0).map(|(e, p)| e / p);
+                    let part = size(ratios.collect(), freedom[data]);
                     fit.predicted.iter().map(|it| part * it.abs()).collect::<Vec<f64>>()
                 }
                 Deviation::Estimated => {

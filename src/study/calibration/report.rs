@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::files::{OF_VALUE, rows};
-use super::{CONFIDENCE, Combination, FittedData, Outcome, Parameter};
+use super::models::{OF_MODEL, TELLS};
+use super::{CONFIDENCE, Combination, FittedData, Judged, Outcome, Parameter};
 use crate::data::quantity::Entries;
 use crate::report::{Scale, TextTable, number};
 use crate::scene::{Calibration, DataSet};
@@ -32,6 +33,10 @@ pub struct CalibrationReport<'a> {
     combinations: Vec<Product<'a>>,
     /// Centre, offset and tilt of scars and loops.
     data: Vec<Ground<'a>>,
+    /// Akaike's criterion with its correction for few values.
+    pub aicc: f64,
+    /// The laws that were compared, the best first; all else is of the best.
+    models: Vec<Entries>,
     /// All measured values.
     residuals: Vec<Entries>,
     /// What deserves a word.
@@ -44,6 +49,8 @@ pub struct CalibrationReport<'a> {
     pub accuracy_met: bool,
     /// Wall time, s.
     pub wall_seconds: f64,
+    #[serde(skip)]
+    judged: &'a [Judged],
     #[serde(skip)]
     outcome: &'a Outcome,
     #[serde(skip)]
@@ -83,7 +90,15 @@ struct Ground<'a> {
 
 impl<'a> CalibrationReport<'a> {
     /// The summary of a calibration that is done.
-    pub fn new(calibration: &'a Calibration, outcome: &'a Outcome, files: Vec<PathBuf>) -> Self {
+    ///
+    /// # Arguments
+    /// * `models` -- the laws that were compared, if any; `calibration` and `outcome` are then of the best
+    pub fn new(
+        calibration: &'a Calibration,
+        outcome: &'a Outcome,
+        models: &'a [Judged],
+        files: Vec<PathBuf>,
+    ) -> Self {
         let told = |it: &Parameter| Told {
             key: it.key.clone(),
             unit: it.unit,
@@ -119,12 +134,15 @@ impl<'a> CalibrationReport<'a> {
             correlation: &outcome.correlation,
             combinations: outcome.combinations.iter().map(product).collect(),
             data: calibration.data().iter().zip(&outcome.data).map(ground).collect(),
+            aicc: outcome.aicc,
+            models: models.iter().map(|it| Entries::new(&OF_MODEL, it)).collect(),
             residuals: rows(calibration, outcome).iter().map(|row| Entries::new(&OF_VALUE, row)).collect(),
             warnings: &outcome.warnings,
             runs: outcome.runs,
             run_error: outcome.run_error,
             accuracy_met: outcome.accuracy_met,
             wall_seconds: outcome.wall_seconds,
+            judged: models,
             outcome,
             calibration,
         }
@@ -135,6 +153,19 @@ impl<'a> CalibrationReport<'a> {
         let mut text = self.title.as_ref().map_or(String::new(), |title| format!("{title}\n\n"));
         let width = self.parameters.iter().map(|it| it.key.len()).max().unwrap_or(0).max(7);
         // Writing to a string cannot fail.
+        if let [best, ..] = self.judged {
+            let _ = writeln!(text, "law (AICc, likelihood among these)");
+            for it in self.judged {
+                let told = match &it.outcome {
+                    Ok(outcome) => format!("{}, {}", number(outcome.aicc), number(it.weight)),
+                    Err(why) => why.clone(),
+                };
+                let _ = writeln!(text, "  {}: {told}", it.name);
+            }
+            let tell =
+                if best.weight >= TELLS { "the data prefer" } else { "the data cannot tell; the best is" };
+            let _ = writeln!(text, "{tell} {}\n", best.name);
+        }
         let _ = writeln!(text, "{:<width$}  {:>12}  interval of 95 %", "unknown", "estimate");
         for it in &self.parameters {
             let end = |end: Option<f64>| end.map_or_else(|| "not told".to_owned(), number);
