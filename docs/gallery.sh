@@ -23,6 +23,9 @@ draw "$work/universality/universality.h5" universality
 "$fretwear" tradeoff data/tradeoff/homogeneous.toml -o "$work/tradeoff" --quiet
 draw "$work/tradeoff/tradeoff.h5" tradeoff
 
+"$fretwear" calibrate data/calibration/ball.toml -o "$work/calibration" --quiet
+draw "$work/calibration/calibration.h5" calibration
+
 cat >"$work/one.toml" <<END
 title = "Limit over the amplitude"
 scene = "$PWD/data/scenes/paraboloid.toml"

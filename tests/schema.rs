@@ -182,8 +182,9 @@ fn tables(value: &Value, path: &[String], found: &mut Vec<Vec<String>>) {
     match value {
         Value::Object(object) => {
             found.push(path.to_vec());
-            let keys =
-                object.iter().filter(|(key, _)| !(path.is_empty() && *key == "scene" || ["patch", "set"].contains(&key.as_str())));
+            let keys = object.iter().filter(|(key, _)| {
+                !(path.is_empty() && *key == "scene" || ["patch", "set"].contains(&key.as_str()))
+            });
             keys.for_each(|(key, value)| tables(value, &inner(key), found));
         }
         Value::Array(array) => {
