@@ -118,7 +118,7 @@ impl Measurements {
                 return Err(format!("line {number}: there are more than {MOST_ROWS} rows; give fewer"));
             }
             if separator != Some(',') {
-                found.iter_mut().for_each(|field| decimal_point(field));
+                found.iter_mut().for_each(decimal_point);
             }
             rows.push((number, found));
         }
