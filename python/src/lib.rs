@@ -14,7 +14,7 @@ use fretwear::data::{Format, format_of};
 use fretwear::report::{self, CheckReport, LimitReport};
 use fretwear::run::Shared;
 use fretwear::solver::model::OperatorStore;
-use fretwear::study::{on_threads, run_many_sharing, sweep::SweepReport};
+use fretwear::study::{calibration, on_threads, run_many_sharing, sweep::SweepReport};
 use fretwear::{Progress, Result as Outcome, Stop, SweepOptions, Watch};
 use pyo3::prelude::*;
 
@@ -116,6 +116,28 @@ fn sweep(
     Ok(report::json(&SweepReport::new(&options, &outcome)))
 }
 
+/// Finds keys of a scene from measurements, and writes what `fretwear calibrate` writes; its JSON, or none where the user stopped it.
+#[pyfunction]
+fn calibrate(
+    py: Python,
+    calibration: &Bound<PyAny>,
+    folder: PathBuf,
+    overwrite: bool,
+) -> PyResult<Option<String>> {
+    let read = scene::calibration(calibration)?;
+    let stop = Stop::default();
+    let call = Call { callback: None, value: &|| (0.0, 0.0) };
+    let work = || {
+        let ready = calibration::Ready::new(&read, &stop)?;
+        calibration::check_folder(&folder, overwrite)?;
+        let Some(outcome) = ready.run()? else { return Ok(None) };
+        let files = calibration::write(&read, &outcome, &folder, overwrite)?;
+        Ok(Some(report::json(&calibration::CalibrationReport::new(&read, &outcome, files))))
+    };
+    let (outcome, _) = waited(py, &stop, &call, || on_threads(work).and_then(|it| it))?;
+    outcome.map_err(|error| raised(py, &error))
+}
+
 /// Opens a result file of any kind.
 ///
 /// # Arguments
@@ -147,6 +169,7 @@ fn _native(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(limit, module)?)?;
     module.add_function(wrap_pyfunction!(check, module)?)?;
     module.add_function(wrap_pyfunction!(sweep, module)?)?;
+    module.add_function(wrap_pyfunction!(calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(open, module)?)?;
     module.add_function(wrap_pyfunction!(command, module)?)
 }

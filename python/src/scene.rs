@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fretwear::scene::Calibration;
 use fretwear::{Error, Study};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -117,4 +118,13 @@ pub fn study(given: &Bound<PyAny>) -> PyResult<Study> {
         },
     };
     read.map_err(|error| raised(given.py(), &error))
+}
+
+/// A calibration; files that a dictionary or a text names are relative to the working directory.
+pub fn calibration(given: &Bound<PyAny>) -> PyResult<Calibration> {
+    let read = match Source::new(given)? {
+        Source::File(path) => Calibration::read(&path),
+        Source::Text(text) => Calibration::from_toml(&text, "calibration", Path::new("")),
+    };
+    read.map_err(|error| of_input(given.py(), &error))
 }

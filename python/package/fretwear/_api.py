@@ -12,7 +12,7 @@ from typing import Any, Literal, overload
 
 from . import _native
 from ._errors import RunError, SceneError
-from ._results import Results, Run, opened
+from ._results import Calibration, Results, Run, opened
 from ._scene import Scene, Source, Table
 
 
@@ -141,6 +141,35 @@ def sweep(
         if report["output"] is None:
             raise KeyboardInterrupt
         return opened(_native.open(report["output"], output is not None))
+
+
+def calibrate(
+    calibration: str | os.PathLike[str] | Table, output: str | os.PathLike[str] | None = None, overwrite: bool = False
+) -> Calibration:
+    """Finds keys of a scene from measurements, each with its interval of 95 %.
+
+    Args:
+        calibration: a path, TOML text, or a dictionary. Files that a text or a dictionary names are relative to the working directory.
+        output: the directory of the files that ``fretwear calibrate`` writes. By default everything stays in memory.
+        overwrite: whether files of an earlier calibration there may be replaced.
+
+    Raises:
+        SceneError: the calibration, a scene, or a file of measurements cannot be used; the message names the line and the cure.
+        RunError: the model predicts the data nowhere between the bounds.
+        KeyboardInterrupt: it was stopped; nothing is written.
+    """
+    place: AbstractContextManager[Any] = tempfile.TemporaryDirectory() if output is None else nullcontext(output)
+    with place as folder:
+        report = _native.calibrate(calibration, folder, overwrite)
+        if report is None:
+            raise KeyboardInterrupt
+        found = json.loads(report)
+        arrays = _native.open(found["files"][0], output is not None)
+    if output is None:
+        found["files"] = []
+    for warning in found["warnings"]:
+        warnings.warn(warning, RuntimeWarning, stacklevel=2)
+    return Calibration(arrays, found)
 
 
 def open(path: str | os.PathLike[str]) -> Results:

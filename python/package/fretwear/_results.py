@@ -34,7 +34,7 @@ class Results:
 
     @property
     def kind(self) -> str:
-        """What they are of: ``run``, ``sweep``, ``map``, ``universality`` or ``tradeoff``."""
+        """What they are of: ``run``, ``sweep``, ``map``, ``universality``, ``tradeoff`` or ``calibration``."""
         return self._native.format.removeprefix("fretwear-")
 
     @property
@@ -264,6 +264,49 @@ class Run(Results):
         return f"{super()._repr_html_()}<table>{rows}</table>"
 
 
+class Calibration(Results):
+    """What a calibration found: arrays over ``parameter`` and over ``value``, the measured ones. SI units throughout."""
+
+    if TYPE_CHECKING:
+        key: NDArray[np.object_]
+        """keys of the scene, shape (parameter,)"""
+        estimate: Numbers
+        """values at which the misfit is least, shape (parameter,)"""
+        lower: Numbers
+        """lower ends of the intervals of 95 %, not a number where the data tell none, shape (parameter,)"""
+        upper: Numbers
+        """upper ends of the intervals of 95 %, not a number where the data tell none, shape (parameter,)"""
+        correlation: Numbers
+        """correlation of the estimates, shape (parameter, other_parameter)"""
+        measurement: Numbers
+        """measured values, shape (value,)"""
+        prediction: Numbers
+        """what is predicted of them, shape (value,)"""
+        residual: Numbers
+        """their differences over the deviations, shape (value,)"""
+
+    def __init__(self, native: _native.Results, summary: dict[str, Any]) -> None:
+        super().__init__(native)
+        self.summary = summary
+        """What was found, with the keys of ``fretwear calibrate --json``."""
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """What was found of each key: ``estimate``, ``lower``, ``upper``, ``unit``, ``identifiable``."""
+        return {found["key"]: found for found in self.summary["parameters"]}
+
+    def _repr_html_(self) -> str:
+        row = "<tr><th style='text-align:left'>{}</th><td>{}</td><td>{} to {}</td><td>{}</td></tr>"
+        found = (
+            [html.escape(it["key"]), *(_short(it[name]) for name in ("estimate", "lower", "upper")), html.escape(it["unit"])]
+            for it in self.summary["parameters"]
+        )
+        return f"{super()._repr_html_()}<table>{''.join(row.format(*cells) for cells in found)}</table>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored_calibration, (self._native.bytes(), self.summary)
+
+
 class SVG:
     """A drawing that notebooks show."""
 
@@ -284,12 +327,20 @@ def opened(native: _native.Results) -> Results:
     return (Run if native.format == "fretwear-run" else Results)(native)
 
 
-def _restored(content: bytes) -> Results:
+def _read(content: bytes) -> _native.Results:
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "results.h5")
         with open(path, "wb") as file:
             file.write(content)
-        return opened(_native.open(path, False))
+        return _native.open(path, False)
+
+
+def _restored(content: bytes) -> Results:
+    return opened(_read(content))
+
+
+def _restored_calibration(content: bytes, summary: dict[str, Any]) -> Calibration:
+    return Calibration(_read(content), summary)
 
 
 def _short(value: object) -> str:
