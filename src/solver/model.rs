@@ -57,6 +57,10 @@ pub use stage::{Target, Unknowns};
 /// edge in a front, which is followed well as long as some springs are left before it.
 const HIDDEN: f64 = 3e-5;
 
+/// Largest stretch of the mesh of an edge of stick that creeps outwards: from a small stick zone it soon comes to a larger one, and next to finer cells
+/// errors grow.
+const MOST_STRETCHED: f64 = 3.0;
+
 /// Fewest springs for which operators are hierarchical where wear has no kinks.
 const HIERARCHICAL: usize = 1000;
 
@@ -236,6 +240,10 @@ impl Model {
             clustering => clustering,
         };
         let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
+        let natural = match &moving {
+            Some(moving) if moving.creeps() => natural.min(MOST_STRETCHED),
+            _ => natural,
+        };
         let stretch = clustering.stretch(natural, grading);
         let operators = store.get(grading, stretch, springs, clustering, backend)?;
         let radial_unworn: Vec<_> =

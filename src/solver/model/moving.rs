@@ -231,6 +231,11 @@ impl MovingStick {
         !self.outwards && !self.rests()
     }
 
+    /// Whether the edge moves outwards during steps, over worn ground.
+    pub(super) fn creeps(&self) -> bool {
+        self.outwards && !self.rests()
+    }
+
     /// Whether the edge stays where it is during a step.
     fn rests(&self) -> bool {
         self.jumps || self.deepens()

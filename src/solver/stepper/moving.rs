@@ -25,14 +25,17 @@ pub(super) struct MovingStage<'a> {
     held: f64,
     /// Corrections of the springs, relative to `q_c`, that come of the rounding of the edge of stick.
     round_off: f64,
+    /// The same of the edge of stick.
+    stick_round_off: f64,
     trial: &'a mut StickTrial,
 }
 
 impl<'a> MovingStage<'a> {
     pub fn new(stage: StickStage<'a>, tolerance: f64, model: &Model, trial: &'a mut StickTrial) -> Self {
         let tolerance = newton_tolerance(tolerance).min(MOST_LEFT);
+        let stick_round_off = STICK_ROUND_OFF * stage.magnified_rounding();
         let round_off = ROUNDINGS * stage.rounding();
-        Self { stage, tolerance, held: model.contact().indentation(), round_off, trial }
+        Self { stage, tolerance, held: model.contact().indentation(), round_off, stick_round_off, trial }
     }
 
     /// Newton's method from a guess; where the compression at the edge of stick is known, with that one: next to the edge slip is the small
@@ -75,7 +78,7 @@ impl Equations for MovingStage<'_> {
 
     fn is_last(&self, correction: &Correction) -> bool {
         correction.springs <= self.tolerance * correction.compression + 10.0 * ROUND_OFF + self.round_off
-            && correction.stick <= STICK_ROUND_OFF
+            && correction.stick <= self.stick_round_off
             && self.trial.residual.last().is_some_and(|it| it.abs() <= BALANCED)
     }
 

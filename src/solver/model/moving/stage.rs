@@ -12,6 +12,9 @@ use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknow
 const DIFFERENCE: f64 = 1e-7;
 const OF_FIRST_SPRING: f64 = 1e-4;
 
+/// Indentation over the height of the profile at the edge of stick up to which rounding is not magnified.
+const OF_STEEPNESS: f64 = 10.0;
+
 /// What a stage with an edge of stick that moves starts from.
 #[derive(Debug, Clone)]
 pub struct StickTarget {
@@ -79,6 +82,14 @@ impl StickStage<'_> {
         let target = &self.target;
         let first = target.springs.slip_area * self.model.operators.abel.nodes()[1];
         if self.moving.recedes() { f64::EPSILON * target.stick.area / first } else { 0.0 }
+    }
+
+    /// By how much rounding of the indentation is magnified in the place of an edge that moves outwards: next to the axis profiles are flat.
+    pub fn magnified_rounding(&self) -> f64 {
+        let contact = &self.model.contact;
+        let height = contact.equivalent_profile().value(self.target.stick.area.sqrt());
+        let magnified = contact.indentation() / (OF_STEEPNESS * height);
+        if self.moving.creeps() && magnified.is_finite() { magnified.max(1.0) } else { 1.0 }
     }
 
     /// Recomputes everything that follows from the unknowns; whether they are those of a contact.
