@@ -203,7 +203,7 @@ fn a_scar_tells_its_coefficient_centre_offset_tilt_and_roughness() {
 #[test]
 fn a_measured_scar_is_read_with_its_roughness() {
     let table = fs::read_to_string(root().join("data/calibration/mccoll2004.csv")).expect("readable");
-    let document = "[[unknowns]]\nkey = \"wear.archard.coefficient\"\nfrom = 1e-16\nto = 1e-10\n\
+    let document = "[[unknowns]]\nkey = \"wear.archard.coefficient\"\nfrom = 2e-15\nto = 5e-14\n\
                     [[data]]\nfile = \"m.csv\"\nposition = \"position_mm [mm]\"\nheight = \"height_um [um]\"\ncycles = 18000\n\
                     set = { \"loading.amplitude\" = \"25 um\", \"indenter.paraboloid.radius\" = \"13 mm\", \"loading.normal_force\" = 18 }\n";
     let outcome = found(BALL, &[("m.csv", &table)], document);
