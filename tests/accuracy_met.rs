@@ -120,6 +120,45 @@ fn no_kind_of_scene_misses_a_coarse_accuracy_without_a_word() {
     assert_eq!(estimates.len(), count, "{estimates:?}");
 }
 
+/// Near the end of wear its front has come to the edge of stick, and the profile there is as deep as anywhere.
+#[test]
+fn a_front_that_has_come_to_the_edge_of_stick_is_followed_where_wear_has_kinks() {
+    let plain = format!("{FRICTION}{WEAR}");
+    let threshold = format!("{FRICTION}[wear.threshold]\ncoefficient = 1.667e-13\npressure = 3e7\n");
+    let late = DEPTH.replace("tau = 3", "tau = 20");
+    let oscillation =
+        "[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1.5707963\n";
+    let blocks = "repeat = true\n[[loading.blocks]]\ntau = 0.5\n[[loading.blocks]]\ntau = 0.5\namplitude_factor = 0.5\n";
+    for (name, laws, loading) in [
+        ("normal oscillation", &plain, format!("{late}{oscillation}")),
+        ("threshold", &threshold, late.clone()),
+        ("blocks", &plain, format!("{late}{blocks}")),
+    ] {
+        let found = result(&scene(laws, &loading, "accuracy = 2e-3")).expect("an end");
+        let finer = scene(laws, &loading, "springs = 240\ntolerance = 1e-4\nsubsteps = 384");
+        let finer = result(&finer).expect("an end");
+        let exact = depth_at(&finer);
+        let deepest = finer.last().wear_depth.iter().copied().fold(0.0, f64::max);
+        let depths = found.radius().iter().zip(&found.last().wear_depth);
+        let misses = depths.filter_map(|(r, w)| Some((w - exact(*r)?).abs() / deepest));
+        let missed = misses.fold(0.0, f64::max);
+        println!("{name}: {missed:.1e} missed, {:?} estimated", found.error_estimate());
+        assert_eq!(found.accuracy_met(), Some(true), "{name}: {:?}", found.error_estimate());
+        assert!(missed < 2e-3, "{name}: the profile misses by {missed:.1e}");
+    }
+}
+
+/// Depth at the end of a run at any radius within its own, by straight lines.
+fn depth_at(run: &Results) -> impl Fn(f64) -> Option<f64> {
+    let (radii, depths) = (run.radius().to_vec(), run.last().wear_depth.clone());
+    move |radius| {
+        let above = radii.partition_point(|r| *r < radius);
+        let (low, high) = (above.checked_sub(1)?, radii.get(above).map(|_| above)?);
+        let part = (radius - radii[low]) / (radii[high] - radii[low]);
+        Some(depths[low] + part * (depths[high] - depths[low]))
+    }
+}
+
 #[test]
 #[ignore = "minutes"]
 fn no_kind_of_scene_misses_an_accuracy_without_a_word() {

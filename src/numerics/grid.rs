@@ -31,6 +31,9 @@ pub enum Clustering {
     /// The same nodes with polynomials of degree 3, for the weak kinks that resolved cycles at a constant indentation make along the annulus: an
     /// orbit.
     Even,
+    /// Nodes towards the edge of stick as of these, with polynomials of degree 3 in `ξ` and a spacing of `n^-3` at the contact edge, for wear with
+    /// kinks along the annulus: of resolved cycles that press and relieve, a threshold, a spread of wear.
+    Front,
     /// For wear with kinks along the annulus, of blocks or a threshold: degree 3, spacing `n^-4` at the edge of stick and `n^-3` at the contact edge.
     Cubic,
     /// As [`Clustering::Cubic`] with a spacing of `n^-2` at the contact edge: less stiff, so that explicit steps may be longer.
@@ -50,8 +53,13 @@ impl Clustering {
             Self::Smooth | Self::Even => (1, 3),
             Self::Cubic => (3, 2),
             Self::Quadratic => (3, 1),
-            Self::CreepingStick | Self::RecedingStick => (1, 2),
+            Self::Front | Self::CreepingStick | Self::RecedingStick => (1, 2),
         }
+    }
+
+    /// Whether the front of wear next to the edge of stick is followed.
+    pub fn follows_front(self) -> bool {
+        matches!(self, Self::Smooth | Self::Even | Self::Front)
     }
 
     /// Whether the local polynomials are polynomials in `y`.
@@ -79,7 +87,7 @@ impl Clustering {
     /// anywhere.
     pub fn stretch(self, natural: f64, grading: f64) -> f64 {
         match self {
-            Self::Smooth | Self::Even => (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0)),
+            Self::Smooth | Self::Even | Self::Front => (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0)),
             Self::RecedingStick => natural.max(RECEDING_STRETCH),
             _ => natural,
         }
@@ -110,6 +118,8 @@ pub struct Mesh {
     steepness: f64,
     ends: Vec<MeshPoint>,
     nodes: Vec<f64>,
+    /// `g` at the nodes.
+    unstretched: Vec<f64>,
 }
 
 /// A place on a [`Mesh`].
@@ -161,9 +171,11 @@ impl Mesh {
             cut,
             ends: Vec::new(),
             nodes: vec![0.0; cells + 1],
+            unstretched: vec![],
         };
         mesh.ends = (0..=cells).map(|i| mesh.at(i as f64)).collect();
         mesh.nodes = mesh.ends.iter().map(|end| end.value).collect();
+        mesh.unstretched = (0..=cells).map(|i| mesh.without_stretch(i as f64).0).collect();
         mesh
     }
 
@@ -194,7 +206,7 @@ impl Mesh {
 
     /// The place at `y` in [0, n].
     pub fn at(&self, y: f64) -> MeshPoint {
-        let (part, rest, slope) = self.unstretched(y);
+        let (part, rest, slope) = self.without_stretch(y);
         if self.stretch < NO_STRETCH {
             return MeshPoint { value: part, complement: rest, slope };
         }
@@ -207,7 +219,7 @@ impl Mesh {
     }
 
     /// `g(y/n)`, `1 - g(y/n)` and `dg/dy`.
-    fn unstretched(&self, y: f64) -> (f64, f64, f64) {
+    fn without_stretch(&self, y: f64) -> (f64, f64, f64) {
         let cells = self.cells() as f64;
         let (low, high) = self.clustering.exponents();
         let [at_stick, at_contact] = self.cut;
@@ -235,11 +247,12 @@ impl Mesh {
             stretch if stretch < NO_STRETCH => fraction,
             stretch => (fraction * stretch.exp_m1()).ln_1p() / stretch,
         };
-        let cell = self.cell(fraction) as f64;
-        let (mut low, mut high) = (cell, cell + 1.0);
-        let mut y = cell + 0.5;
+        let cell = self.cell(fraction);
+        let (mut low, mut high) = (cell as f64, cell as f64 + 1.0);
+        let [begin, end] = [self.unstretched[cell], self.unstretched[cell + 1]];
+        let mut y = low + ((wanted - begin) / (end - begin)).clamp(0.01, 0.99);
         for _ in 0..60 {
-            let (part, _, slope) = self.unstretched(y);
+            let (part, _, slope) = self.without_stretch(y);
             let off = part - wanted;
             if off.abs() <= f64::EPSILON * wanted {
                 return y;
@@ -318,8 +331,20 @@ impl Mesh {
     /// The local polynomial at `y` through what is given at `count` nodes from the first one off the edge of stick on.
     pub fn local(&self, y: f64, count: usize) -> Local {
         let cell = (y as usize).min(self.cells() - 1);
+        self.on_stencil(Self::stencil(cell, self.clustering.degree() + 1, count), y)
+    }
+
+    /// As [`Mesh::local`] for fewer nodes, at the place `y` of a local polynomial that is known.
+    pub fn local_among(&self, known: &Local, y: f64, count: usize) -> Local {
+        let cell = (y as usize).min(self.cells() - 1);
         let stencil = Self::stencil(cell, self.clustering.degree() + 1, count);
-        let weights = self.lagrange(&stencil, y, &self.at(y));
+        if stencil == known.stencil { known.clone() } else { self.on_stencil(stencil, y) }
+    }
+
+    fn on_stencil(&self, stencil: Range<usize>, y: f64) -> Local {
+        // A polynomial in `y` does not ask for the place.
+        let place = if self.is_even(&stencil) { self.ends[0] } else { self.at(y) };
+        let weights = self.lagrange(&stencil, y, &place);
         Local { stencil, weights }
     }
 }
@@ -422,9 +447,10 @@ pub fn lagrange_derivative(nodes: &[f64], x: f64, values: &mut [f64]) {
 mod tests {
     use super::*;
 
-    const ALL: [Clustering; 6] = [
+    const ALL: [Clustering; 7] = [
         Clustering::Smooth,
         Clustering::Even,
+        Clustering::Front,
         Clustering::Cubic,
         Clustering::Quadratic,
         Clustering::CreepingStick,

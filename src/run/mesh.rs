@@ -5,6 +5,7 @@ use super::memory::memory_figure;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
+use crate::laws::loading::Duration;
 use crate::numerics::abel::Backend;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Stepper};
@@ -42,6 +43,10 @@ const BYTES_PER_PAIR: f64 = 5.0 * 8.0;
 /// Bytes held per spring where operators are hierarchical.
 const BYTES_PER_SPRING: f64 = 12e3;
 
+/// Wear at the first pressures, over the compression at the edge of stick, from which on the front of wear is followed: at 3 it comes to that edge
+/// (docs/numerics.md).
+const FRONT: f64 = 2.0;
+
 /// How well a mesh carries what is known beforehand.
 struct Quality {
     /// Largest error of the unworn compressions over `q_c`.
@@ -55,6 +60,7 @@ struct Quality {
 /// The model of a scene on a mesh that carries it.
 ///
 /// # Arguments
+/// * `duration` -- of the run
 /// * `wanted` -- springs to begin with where none are given by hand, instead of those for the accuracy
 ///
 /// # Errors
@@ -62,6 +68,7 @@ struct Quality {
 pub(super) fn model(
     contact: &InitialContact,
     schedule: &Schedule,
+    duration: Duration,
     numerics: &Numerics,
     wanted: Option<usize>,
     store: &OperatorStore,
@@ -74,8 +81,11 @@ pub(super) fn model(
             &[Clustering::Smooth, Clustering::CreepingStick]
         }
         _ if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
-        Stepper::Implicit if schedule.wears_nearly_smoothly() => {
+        Stepper::Implicit if schedule.makes_weak_kinks() => {
             &[Clustering::Even, Clustering::CreepingStick]
+        }
+        Stepper::Implicit if front_comes(contact, schedule, duration) => {
+            &[Clustering::Front, Clustering::CreepingStick]
         }
         Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
         Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
@@ -117,6 +127,21 @@ pub(super) fn model(
         }
         springs = raised;
     }
+}
+
+/// Whether the front of wear comes near the edge of stick before a run ends. Where wear spreads, or a held force lets the indentation grow, cubics that
+/// are finer in the middle do better.
+fn front_comes(contact: &InitialContact, schedule: &Schedule, duration: Duration) -> bool {
+    let conditions = schedule.conditions();
+    if conditions.wear.spreading().is_some() || conditions.holds_normal_force {
+        return false;
+    }
+    let tau = match duration {
+        Duration::Cycles(cycles) => cycles * contact.tau_per_cycle(),
+        Duration::Tau(tau) => tau,
+        Duration::UntilRate(_) => return true,
+    };
+    tau * contact.slip_compression() > FRONT * contact.indentation()
 }
 
 impl Quality {

@@ -58,7 +58,7 @@ impl Parts {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
-        let model = mesh::model(&contact, &schedule, numerics, wanted, store)?;
+        let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
         let by_energy = *model.schedule().friction_along_energy() != History::Constant;
         let conditions = scene.conditions();
         let path_dependent = conditions.holds_normal_force && !conditions.holds_both_forces();
@@ -142,8 +142,10 @@ fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
 
 /// How periods are passed through.
 pub(super) fn resolution(scene: &Scene, numerics: &Numerics) -> Resolution {
-    let sampled = !scene.conditions().mode.is_tangential() && numerics.springs.is_none();
-    let chosen = sampled.then(|| budget::substeps_for(numerics.accuracy));
+    let mode = &scene.conditions().mode;
+    let sampled = !mode.is_tangential() && numerics.springs.is_none();
+    let lifts = mode.indentations() != [0.0; 2];
+    let chosen = sampled.then(|| budget::substeps_for(numerics.accuracy, lifts));
     let resolved = numerics.cycle == Some(Cycle::Resolved);
     Resolution { resolved, substeps: numerics.substeps.or(chosen) }
 }

@@ -20,8 +20,10 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
 #[derive(Debug)]
 pub(super) struct Unsampled {
     finer: Schedule,
-    /// Change of the limit's volume, relative.
-    limit: f64,
+    /// The limit's volume, m³, and its change, relative; none where the contact slides as a whole.
+    limit: Option<[f64; 2]>,
+    /// Largest part of the limit's volume that was worn.
+    reached: f64,
     cycles: f64,
     /// Rates that are left out: of the volume, m³ per cycle, and of the depth at the springs, m per cycle.
     rates: Vec<f64>,
@@ -41,14 +43,14 @@ impl Unsampled {
             Some(limit.wear_volume())
         };
         let limit = if model.slides() {
-            0.0
+            None
         } else {
             let reach = finer.envelope(&contact).ok()?.contact;
             volume(&reach)
                 .zip(volume(model.contact()))
-                .map_or(0.0, |(fine, coarse)| (fine / coarse - 1.0).abs())
+                .map(|(fine, coarse)| [coarse, (fine / coarse - 1.0).abs()])
         };
-        Some(Self { finer, limit, cycles: 0.0, rates: vec![], sums: vec![], most: [0.0; 2] })
+        Some(Self { finer, limit, reached: 0.0, cycles: 0.0, rates: vec![], sums: vec![], most: [0.0; 2] })
     }
 
     /// Takes the state of a simulation into account.
@@ -69,11 +71,22 @@ impl Unsampled {
             }
         }
         self.rates = rates;
+        if let Some([volume, change]) = self.limit {
+            // Nothing wears beyond the limit, whatever the rates next to it.
+            let worn = model.wear_volume(fields);
+            self.reached = self.reached.max(worn / volume);
+            let left = |limit: f64, worn: f64, largest: f64| (limit - worn).max(0.0) + change * largest;
+            let depths = fields.unworn.iter().zip(&fields.wear_depth);
+            let depths = depths.map(|(unworn, worn)| left(unworn.limit_depth(), *worn, model.depth_scale()));
+            let lefts = std::iter::once(left(volume, worn, volume)).chain(depths);
+            self.sums.iter_mut().zip(lefts).for_each(|(sum, left)| *sum = sum.clamp(-left, left));
+        }
         let depth = self.sums[1..].iter().map(|it| it.abs()).fold(0.0, larger);
         self.most = [larger(self.most[0], self.sums[0].abs()), larger(self.most[1], depth)];
     }
 
     pub(super) fn error(&self, [volume, depth]: [f64; 2]) -> f64 {
-        larger(self.most[0] / volume, self.most[1] / depth).max(self.limit)
+        let of_limit = self.limit.map_or(0.0, |[_, change]| change * self.reached.min(1.0));
+        larger(self.most[0] / volume, self.most[1] / depth).max(of_limit)
     }
 }

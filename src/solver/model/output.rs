@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::{CycleFields, Fields, HIDDEN, Model, State, StickEdge};
 use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
 use crate::contact::stick_slip::Regime;
-use crate::numerics::grid::Mesh;
+use crate::numerics::grid::{Local, Mesh};
 use crate::numerics::linear::dot;
 
 /// Distance from the contact edge, over the annulus, that is round-off.
@@ -247,9 +247,10 @@ impl Model {
             if annulus.sticks_at(offset) {
                 radial.pressure[i] = f64::NAN;
             }
-            let Some(AnnulusPoint { x, y, unworn, log_slip }) = point else { continue };
-            radial.slip[i] = mesh.interpolate(&per_depth, y) * unworn * log_slip.exp();
-            radial.pressure[i] = mesh.interpolate(&eased, y) * (1.0 - x).powf(nu);
+            let Some(AnnulusPoint { x, y, unworn, log_slip, local }) = point else { continue };
+            radial.slip[i] = local.sum(&per_depth) * unworn * log_slip.exp();
+            let inner = mesh.local_among(&local, y, eased.len());
+            radial.pressure[i] = inner.sum(&eased) * (1.0 - x).powf(nu);
             if mesh.clustering().is_even() {
                 radial.pressure[i] = radial.pressure[i].max(0.0);
             }
@@ -288,18 +289,19 @@ impl<'a> Annulus<'a> {
             return None;
         }
         let y = model.operators.abel.mesh().place(x);
-        Some(AnnulusPoint { x, y, unworn: unworn.slip, log_slip: self.log_slip(y, &unworn) })
+        let local = model.operators.abel.mesh().local(y, model.springs());
+        let log_slip = self.log_slip(&local, &unworn);
+        Some(AnnulusPoint { x, y, unworn: unworn.slip, log_slip, local })
     }
 
-    /// `λ` at a coordinate of the mesh where the unworn slip is known.
+    /// `λ` at a place of the mesh where the unworn slip is known.
     ///
     /// On a smooth mesh the local polynomial is corrected by its error for the limit's `λ_∞`, which is known everywhere, in the proportion in
     /// which wear has come to the limit: so the limit is met between the springs as it is at them.
-    fn log_slip(&self, y: f64, unworn: &UnwornValues) -> f64 {
+    fn log_slip(&self, local: &Local, unworn: &UnwornValues) -> f64 {
         let mesh = self.model.operators.abel.mesh();
-        let local = mesh.local(y, self.model.springs());
         let log_slip = local.sum(&self.fields.log_slip);
-        if !mesh.clustering().is_even() {
+        if !mesh.clustering().follows_front() {
             return log_slip;
         }
         let between = local.sum(&self.limit_log_slip);
@@ -348,6 +350,8 @@ struct AnnulusPoint {
     unworn: f64,
     /// `λ`.
     log_slip: f64,
+    /// The local polynomial there.
+    local: Local,
 }
 
 impl AnnulusPoint {
@@ -376,7 +380,7 @@ impl OutputRadii {
     /// [`SHOWN`] radii, graded as the mesh is, from [`HIDDEN`] to the contact edge.
     pub(super) fn new(unworn: &UnwornSlip, mesh: &Mesh, hidden: usize) -> Self {
         let springs = &mesh.nodes()[1 + hidden..];
-        let fractions: Vec<f64> = if mesh.clustering().is_even() && springs.len() < SHOWN {
+        let fractions: Vec<f64> = if mesh.clustering().follows_front() && springs.len() < SHOWN {
             let like = Mesh::new(SHOWN, mesh.stretch(), mesh.clustering());
             let first = like.place(HIDDEN);
             let spacing = (SHOWN as f64 - first) / (SHOWN - 1) as f64;

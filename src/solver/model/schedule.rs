@@ -375,8 +375,12 @@ impl Schedule {
 
     /// Whether cycles are the same, at a constant indentation, and wear is local, at a rate without a kink: at most resolved cycles make kinks, weak ones.
     pub fn wears_nearly_smoothly(&self) -> bool {
-        let wear = &self.conditions.wear;
-        self.is_steady() && !self.lifts() && !wear.has_kink() && wear.spreading().is_none()
+        self.makes_weak_kinks() && !self.conditions.wear.has_kink()
+    }
+
+    /// Whether cycles are the same, at a constant indentation, and wear is local: at most resolved cycles or a threshold make kinks along the annulus.
+    pub fn makes_weak_kinks(&self) -> bool {
+        self.is_steady() && !self.lifts() && self.conditions.wear.spreading().is_none()
     }
 }
 
