@@ -59,7 +59,7 @@ struct Kind {
     tau: f64,
     more: &'static str,
     numerics: &'static str,
-    /// Whether an edge moves over the ground, so that a radius is known to the error as well.
+    /// Whether an edge moves over the ground, or is where a sampled path says, so that a radius is known to the error as well.
     moves: bool,
 }
 
@@ -101,12 +101,12 @@ const KINDS: &[Kind] = &[
     Kind { name: "blocks that grow", more: "[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 1.3\n", ..PLAIN },
     Kind { name: "blocks repeated", more: "repeat = true\n[[loading.blocks]]\ntau = 0.5\n[[loading.blocks]]\ntau = 0.5\namplitude_factor = 0.5\n", ..PLAIN },
     Kind { name: "deeper blocks, repeated", more: "repeat = true\n[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\nindentation_factor = 1.2\n", ..PLAIN },
-    Kind { name: "normal oscillation, ratio 2", more: TWICE, ..PLAIN },
-    Kind { name: "normal oscillation, out of phase", more: OUT_OF_PHASE, ..PLAIN },
-    Kind { name: "normal oscillation, k = 0.5", more: TWICE, grading: 0.5, ..PLAIN },
-    Kind { name: "normal oscillation, τ = 20", more: OUT_OF_PHASE, tau: 20.0, ..PLAIN },
-    Kind { name: "out of phase, load-dependent friction", friction: LOAD_DEPENDENT, more: OUT_OF_PHASE, ..PLAIN },
-    Kind { name: "out of phase, threshold", wear: THRESHOLD, more: OUT_OF_PHASE, ..PLAIN },
+    Kind { name: "normal oscillation, ratio 2", more: TWICE, ..MOVING },
+    Kind { name: "normal oscillation, out of phase", more: OUT_OF_PHASE, ..MOVING },
+    Kind { name: "normal oscillation, k = 0.5", more: TWICE, grading: 0.5, ..MOVING },
+    Kind { name: "normal oscillation, τ = 20", more: OUT_OF_PHASE, tau: 20.0, ..MOVING },
+    Kind { name: "out of phase, load-dependent friction", friction: LOAD_DEPENDENT, more: OUT_OF_PHASE, ..MOVING },
+    Kind { name: "out of phase, threshold", wear: THRESHOLD, more: OUT_OF_PHASE, ..MOVING },
     Kind { name: "orbit", more: "[loading.orbit]\ntransverse_ratio = 0.6\n", ..PLAIN },
     Kind { name: "circle, k = 0.3", more: "[loading.orbit]\ntransverse_ratio = 1.0\nphase = 1.5707963\n", grading: 0.3, ..PLAIN },
     Kind { name: "orbit, static and kinetic friction", friction: STATIC, more: "[loading.orbit]\ntransverse_ratio = 0.6\n", ..PLAIN },

@@ -63,7 +63,7 @@ pub(in crate::run) struct Companions {
     gross: bool,
     /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
     every: usize,
-    /// Those radii over the contact radius, where the edge of stick moves.
+    /// Those radii over the contact radius, where the edge of stick moves, or is where a sampled path says.
     radii: Option<Vec<f64>>,
     /// Volume and depth of the limit, where there is one.
     limit: Option<[f64; 2]>,
@@ -110,7 +110,8 @@ impl Companions {
         let second = (first.is_some() && !smooth && !gross).then(|| coarser(2)).flatten();
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
-        let radii = (model.moving().is_some() || gross).then(|| shown.map(|r| r / radius).collect());
+        let sampled = model.schedule().lifts();
+        let radii = (model.moving().is_some() || sampled || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
         let recedes = model.moving().is_some_and(MovingStick::recedes);
         let order = match held || model.slides() {
@@ -191,7 +192,7 @@ impl Companions {
 
     /// The larger of the differences of volume and profile, relative.
     ///
-    /// Where the edge of stick moves, the profile is steep at places that are known to the error of that edge only: there it is the distance of
+    /// Where the edge of stick moves or follows from a sampled path, the profile is steep at places that are known to the error of that edge only: there it is the distance of
     /// the curves, of depth over the largest or of radius over that of the contact, whichever is larger.
     fn apart(&self, one: &Worn, other: &Worn, [volume, depth]: [f64; 2]) -> f64 {
         let of_volume = (one.volume - other.volume).abs() / volume;

@@ -24,6 +24,8 @@ pub(super) struct Unsampled {
     limit: Option<[f64; 2]>,
     /// Largest part of the limit's volume that was worn.
     reached: f64,
+    /// By how much the permanent edge of stick is off, over the contact radius.
+    edge: f64,
     cycles: f64,
     /// Rates that are left out: of the volume, m³ per cycle, and of the depth at the springs, m per cycle.
     rates: Vec<f64>,
@@ -42,15 +44,25 @@ impl Unsampled {
             let limit = LimitingShape::from_contact(contact).ok().flatten()?;
             Some(limit.wear_volume())
         };
-        let limit = if model.slides() {
-            None
-        } else {
+        let (mut limit, mut edge) = (None, 0.0);
+        if !model.slides() {
             let reach = finer.envelope(&contact).ok()?.contact;
-            volume(&reach)
-                .zip(volume(model.contact()))
-                .map(|(fine, coarse)| [coarse, (fine / coarse - 1.0).abs()])
+            let volumes = volume(&reach).zip(volume(model.contact()));
+            limit = volumes.map(|(fine, coarse)| [coarse, (fine / coarse - 1.0).abs()]);
+            let edges = reach.stick_radius().zip(model.contact().stick_radius());
+            edge = edges.map_or(0.0, |(fine, coarse)| (fine - coarse).abs() / contact.contact_radius());
+        }
+        let nothing = Self {
+            finer,
+            limit,
+            reached: 0.0,
+            edge,
+            cycles: 0.0,
+            rates: vec![],
+            sums: vec![],
+            most: [0.0; 2],
         };
-        Some(Self { finer, limit, reached: 0.0, cycles: 0.0, rates: vec![], sums: vec![], most: [0.0; 2] })
+        Some(nothing)
     }
 
     /// Takes the state of a simulation into account.
@@ -87,6 +99,6 @@ impl Unsampled {
 
     pub(super) fn error(&self, [volume, depth]: [f64; 2]) -> f64 {
         let of_limit = self.limit.map_or(0.0, |[_, change]| change * self.reached.min(1.0));
-        larger(self.most[0] / volume, self.most[1] / depth).max(of_limit)
+        larger(self.most[0] / volume, self.most[1] / depth).max(of_limit).max(self.edge)
     }
 }
