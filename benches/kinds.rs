@@ -82,9 +82,24 @@ const SLIDING: Kind = Kind { amplitude: "amplitude_ratio = 2.0", tau: 1.0, ..MOV
 
 const KINDS: &[Kind] = &[
     PLAIN,
-    Kind { name: "cone, k = 0.6", indenter: "[indenter.cone]\nslope = 1e-3\n", grading: 0.6, tau: 10.0, ..PLAIN },
-    Kind { name: "n = 4, k = -0.4", indenter: "[indenter.power-law]\ncoefficient = 1e6\nexponent = 4\n", grading: -0.4, ..PLAIN },
-    Kind { name: "measured profile", indenter: "[indenter.table]\nfile = \"data/scenes/measured_profile.csv\"\nradius_unit = \"mm\"\nprofile_unit = \"um\"\n", ..PLAIN },
+    Kind {
+        name: "cone, k = 0.6",
+        indenter: "[indenter.cone]\nslope = 1e-3\n",
+        grading: 0.6,
+        tau: 10.0,
+        ..PLAIN
+    },
+    Kind {
+        name: "n = 4, k = -0.4",
+        indenter: "[indenter.power-law]\ncoefficient = 1e6\nexponent = 4\n",
+        grading: -0.4,
+        ..PLAIN
+    },
+    Kind {
+        name: "measured profile",
+        indenter: "[indenter.table]\nfile = \"data/scenes/measured_profile.csv\"\nradius_unit = \"mm\"\nprofile_unit = \"um\"\n",
+        ..PLAIN
+    },
     Kind { name: "cycle-jump", numerics: "stepper = \"cycle-jump\"\n", tau: 1.0, ..PLAIN },
     Kind { name: "first cycle counted", more: "wear_from = \"first-cycle\"\n", ..PLAIN },
     Kind { name: "normal force held", load: FORCE, ..MOVING },
@@ -93,37 +108,117 @@ const KINDS: &[Kind] = &[
     Kind { name: "both forces held", load: FORCE, more: "tangential_control = \"force\"\n", ..PLAIN },
     Kind { name: "rig, half the contact's stiffness", more: "rig_stiffness = 1.3333333e8\n", ..MOVING },
     Kind { name: "rig, twice", more: "rig_stiffness = 5.3333333e8\n", ..MOVING },
-    Kind { name: "rising friction", friction: "[friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 2.0\ntau = 1.5\n", ..MOVING },
-    Kind { name: "falling friction", friction: "[friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 0.8\ntau = 1.5\n", ..MOVING },
-    Kind { name: "rig and rising friction", friction: "[friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 1.3\ntau = 1.5\n", more: "rig_stiffness = 5.3333333e8\n", ..MOVING },
-    Kind { name: "friction that grows with wear", friction: "[friction.wear-dependent]\nfirst_coefficient = 0.5\nlast_coefficient = 0.6\nenergy_density = 1e3\n", ..MOVING },
-    Kind { name: "blocks that shrink", more: "[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 0.5\n", ..MOVING },
-    Kind { name: "blocks that grow", more: "[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 1.3\n", ..PLAIN },
-    Kind { name: "blocks repeated", more: "repeat = true\n[[loading.blocks]]\ntau = 0.5\n[[loading.blocks]]\ntau = 0.5\namplitude_factor = 0.5\n", ..PLAIN },
-    Kind { name: "deeper blocks, repeated", more: "repeat = true\n[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\nindentation_factor = 1.2\n", ..PLAIN },
+    Kind {
+        name: "rising friction",
+        friction: "[friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 2.0\ntau = 1.5\n",
+        ..MOVING
+    },
+    Kind {
+        name: "falling friction",
+        friction: "[friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 0.8\ntau = 1.5\n",
+        ..MOVING
+    },
+    Kind {
+        name: "rig and rising friction",
+        friction: "[friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 1.3\ntau = 1.5\n",
+        more: "rig_stiffness = 5.3333333e8\n",
+        ..MOVING
+    },
+    Kind {
+        name: "friction that grows with wear",
+        friction: "[friction.wear-dependent]\nfirst_coefficient = 0.5\nlast_coefficient = 0.6\nenergy_density = 1e3\n",
+        ..MOVING
+    },
+    Kind {
+        name: "blocks that shrink",
+        more: "[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 0.5\n",
+        ..MOVING
+    },
+    Kind {
+        name: "blocks that grow",
+        more: "[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 1.3\n",
+        ..PLAIN
+    },
+    Kind {
+        name: "blocks repeated",
+        more: "repeat = true\n[[loading.blocks]]\ntau = 0.5\n[[loading.blocks]]\ntau = 0.5\namplitude_factor = 0.5\n",
+        ..PLAIN
+    },
+    Kind {
+        name: "deeper blocks, repeated",
+        more: "repeat = true\n[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\nindentation_factor = 1.2\n",
+        ..PLAIN
+    },
     Kind { name: "normal oscillation, ratio 2", more: TWICE, ..MOVING },
     Kind { name: "normal oscillation, out of phase", more: OUT_OF_PHASE, ..MOVING },
     Kind { name: "normal oscillation, k = 0.5", more: TWICE, grading: 0.5, ..MOVING },
     Kind { name: "normal oscillation, τ = 20", more: OUT_OF_PHASE, tau: 20.0, ..MOVING },
-    Kind { name: "out of phase, load-dependent friction", friction: LOAD_DEPENDENT, more: OUT_OF_PHASE, ..MOVING },
+    Kind {
+        name: "out of phase, load-dependent friction",
+        friction: LOAD_DEPENDENT,
+        more: OUT_OF_PHASE,
+        ..MOVING
+    },
     Kind { name: "out of phase, threshold", wear: THRESHOLD, more: OUT_OF_PHASE, ..MOVING },
     Kind { name: "orbit", more: "[loading.orbit]\ntransverse_ratio = 0.6\n", ..PLAIN },
-    Kind { name: "circle, k = 0.3", more: "[loading.orbit]\ntransverse_ratio = 1.0\nphase = 1.5707963\n", grading: 0.3, ..PLAIN },
-    Kind { name: "orbit, static and kinetic friction", friction: STATIC, more: "[loading.orbit]\ntransverse_ratio = 0.6\n", ..PLAIN },
+    Kind {
+        name: "circle, k = 0.3",
+        more: "[loading.orbit]\ntransverse_ratio = 1.0\nphase = 1.5707963\n",
+        grading: 0.3,
+        ..PLAIN
+    },
+    Kind {
+        name: "orbit, static and kinetic friction",
+        friction: STATIC,
+        more: "[loading.orbit]\ntransverse_ratio = 0.6\n",
+        ..PLAIN
+    },
     Kind { name: "load-dependent friction", friction: LOAD_DEPENDENT, ..PLAIN },
     Kind { name: "static and kinetic friction", friction: STATIC, ..PLAIN },
     Kind { name: "threshold", wear: THRESHOLD, ..PLAIN },
-    Kind { name: "threshold, three times as high, τ = 20", wear: "[wear.threshold]\ncoefficient = 1.667e-13\npressure = 3e7\n", tau: 20.0, ..PLAIN },
+    Kind {
+        name: "threshold, three times as high, τ = 20",
+        wear: "[wear.threshold]\ncoefficient = 1.667e-13\npressure = 3e7\n",
+        tau: 20.0,
+        ..PLAIN
+    },
     Kind { name: "threshold, k = -0.4", wear: THRESHOLD, grading: -0.4, ..PLAIN },
     Kind { name: "threshold, normal force held", wear: THRESHOLD, load: FORCE, ..MOVING },
     Kind { name: "non-local", wear: SPREAD, ..PLAIN },
-    Kind { name: "non-local, a tenth as wide, k = 0.3", wear: "[wear.non-local]\ncoefficient = 1.667e-13\nlength = 1e-5\n", grading: 0.3, ..PLAIN },
-    Kind { name: "p^1.5 s^0.5", wear: "[wear.power-law]\ncoefficient = 1e-22\npressure_exponent = 1.5\nslip_exponent = 0.5\n", ..PLAIN },
-    Kind { name: "p s^2", wear: "[wear.power-law]\ncoefficient = 3e-7\npressure_exponent = 1\nslip_exponent = 2\n", ..PLAIN },
-    Kind { name: "p^0.7 s^0.8", wear: "[wear.power-law]\ncoefficient = 1e-12\npressure_exponent = 0.7\nslip_exponent = 0.8\n", tau: 1.0, ..PLAIN },
+    Kind {
+        name: "non-local, a tenth as wide, k = 0.3",
+        wear: "[wear.non-local]\ncoefficient = 1.667e-13\nlength = 1e-5\n",
+        grading: 0.3,
+        ..PLAIN
+    },
+    Kind {
+        name: "p^1.5 s^0.5",
+        wear: "[wear.power-law]\ncoefficient = 1e-22\npressure_exponent = 1.5\nslip_exponent = 0.5\n",
+        ..PLAIN
+    },
+    Kind {
+        name: "p s^2",
+        wear: "[wear.power-law]\ncoefficient = 3e-7\npressure_exponent = 1\nslip_exponent = 2\n",
+        ..PLAIN
+    },
+    Kind {
+        name: "p^0.7 s^0.8",
+        wear: "[wear.power-law]\ncoefficient = 1e-12\npressure_exponent = 0.7\nslip_exponent = 0.8\n",
+        tau: 1.0,
+        ..PLAIN
+    },
     Kind { name: "dissipated energy", wear: "[wear.dissipated-energy]\ncoefficient = 3.3e-13\n", ..PLAIN },
-    Kind { name: "friction power", wear: "[wear.friction-power]\ncoefficient = 3.3e-13\nexponent = -0.25\nscope = \"local\"\n", more: "frequency = 10\n", ..PLAIN },
-    Kind { name: "wear that falls", wear: "[wear.archard]\ncoefficient = 1.667e-13\n[wear.history]\nfinal_factor = 0.2\ntau = 1.5\n", ..PLAIN },
+    Kind {
+        name: "friction power",
+        wear: "[wear.friction-power]\ncoefficient = 3.3e-13\nexponent = -0.25\nscope = \"local\"\n",
+        more: "frequency = 10\n",
+        ..PLAIN
+    },
+    Kind {
+        name: "wear that falls",
+        wear: "[wear.archard]\ncoefficient = 1.667e-13\n[wear.history]\nfinal_factor = 0.2\ntau = 1.5\n",
+        ..PLAIN
+    },
     SLIDING,
     Kind { name: "gross slip, normal force held", load: FORCE, ..SLIDING },
 ];
@@ -191,7 +286,9 @@ impl Shown {
     }
 
     fn read(text: &str) -> Option<Self> {
-        let mut lines = text.lines().map(|line| line.split(' ').filter_map(|it| it.parse::<f64>().ok()).collect::<Vec<_>>());
+        let mut lines = text
+            .lines()
+            .map(|line| line.split(' ').filter_map(|it| it.parse::<f64>().ok()).collect::<Vec<_>>());
         let head = lines.next()?;
         let [springs, volume, depth] = *head else { return None };
         let radius = lines.next()?;
@@ -218,8 +315,12 @@ impl Shown {
             };
             near.clone().map(value).sum::<f64>()
         };
-        let found = [above - 2..above + 1, above - 1..above + 2, above - 2..above + 2, above - 1..above + 1].map(through);
-        Some([found.iter().copied().fold(f64::INFINITY, f64::min), found.iter().copied().fold(f64::NEG_INFINITY, f64::max)])
+        let found = [above - 2..above + 1, above - 1..above + 2, above - 2..above + 2, above - 1..above + 1]
+            .map(through);
+        Some([
+            found.iter().copied().fold(f64::INFINITY, f64::min),
+            found.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        ])
     }
 
     /// Distance of a point from the curve, by depth over the largest or by radius over the contact radius, whichever is larger.
@@ -264,7 +365,11 @@ impl Observer for Dense {
         self.seen.push(Seen {
             tau: state.cycles * model.contact().tau_per_cycle(),
             volume: model.worn_volume(state, fields),
-            depth: if behind { model.radial_wear_depth(state, fields) } else { offsets.iter().map(depth).collect() },
+            depth: if behind {
+                model.radial_wear_depth(state, fields)
+            } else {
+                offsets.iter().map(depth).collect()
+            },
         });
         Ok(())
     }
@@ -277,7 +382,9 @@ fn errors(run: &Shown, reference: &Shown, moves: bool) -> ([f64; 2], [f64; 2]) {
     let [volume_scale, scale] = reference.limit.unwrap_or_else(|| [own(|it| it.volume), own(deepest)]);
     let (mut volume, mut profile, mut place) = (0.0_f64, 0.0_f64, [0.0; 2]);
     for it in &run.seen {
-        let Some(exact) = reference.seen.iter().find(|that| (that.tau / it.tau - 1.0).abs() < 1e-9) else { continue };
+        let Some(exact) = reference.seen.iter().find(|that| (that.tau / it.tau - 1.0).abs() < 1e-9) else {
+            continue;
+        };
         volume = volume.max((it.volume - exact.volume).abs() / volume_scale);
         for (radius, worn) in run.radius.iter().zip(&it.depth) {
             let Some([least, most]) = reference.depth_at(&exact.depth, *radius) else { continue };
@@ -366,18 +473,24 @@ fn main() {
     );
     let mut counts = [0; 5];
     for kind in KINDS {
-        let name = if kind.amplitude == SLIDING.amplitude && kind.name == "plain" { "gross slip" } else { kind.name };
+        let name = if kind.amplitude == SLIDING.amplitude && kind.name == "plain" {
+            "gross slip"
+        } else {
+            kind.name
+        };
         if !wanted.is_empty() && !wanted.iter().any(|it| name.contains(it.as_str())) {
             continue;
         }
         let runs = ACCURACIES.map(|accuracy| {
-            kind.scene(&format!("accuracy = {accuracy}")).map_err(|error| error.to_string()).and_then(|scene| {
-                let (results, mut seconds) = timed(&scene);
-                if seconds < SHORT {
-                    seconds = (1..ROUNDS).map(|_| timed(&scene).1).fold(seconds, f64::min);
-                }
-                results.map(|it| (it, seconds))
-            })
+            kind.scene(&format!("accuracy = {accuracy}")).map_err(|error| error.to_string()).and_then(
+                |scene| {
+                    let (results, mut seconds) = timed(&scene);
+                    if seconds < SHORT {
+                        seconds = (1..ROUNDS).map(|_| timed(&scene).1).fold(seconds, f64::min);
+                    }
+                    results.map(|it| (it, seconds))
+                },
+            )
         });
         let finest = runs.iter().flatten().map(|(it, _)| it.springs()).max().unwrap_or(120);
         let reference = reference(kind, finest);
@@ -424,7 +537,9 @@ fn main() {
         }
     }
     let [all, within, told, needless, near] = counts;
-    println!("\n{all} runs: {within} within, {told} others told, {needless} told without need, estimate within a factor of five in {near}");
+    println!(
+        "\n{all} runs: {within} within, {told} others told, {needless} told without need, estimate within a factor of five in {near}"
+    );
     if wanted.is_empty() {
         std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/kinds.csv"), csv).expect("writable");
     }

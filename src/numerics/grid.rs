@@ -28,13 +28,13 @@ pub enum Clustering {
     /// For wear that is smooth along the annulus, with the edge of stick at rest: degree 5. Towards the edge of stick nodes lie nearly
     /// evenly in `ln(r² - c²)`, where wear proceeds as a front; at the contact edge their spacing is `n^-4`.
     Smooth,
-    /// The same nodes with polynomials of degree 3, for the weak kinks that resolved cycles at a constant indentation make along the annulus: an
-    /// orbit.
+    /// The same nodes with polynomials of degree 3, for the weak kinks along the annulus that resolved cycles at a constant indentation make (an
+    /// orbit), or a threshold.
     Even,
     /// Nodes towards the edge of stick as of these, with polynomials of degree 3 in `ξ` and a spacing of `n^-3` at the contact edge, for wear with
-    /// kinks along the annulus: of resolved cycles that press and relieve, a threshold, a spread of wear.
+    /// kinks along the annulus, of normal oscillations or blocks, that lasts until its front comes to the edge of stick.
     Front,
-    /// For wear with kinks along the annulus, of blocks or a threshold: degree 3, spacing `n^-4` at the edge of stick and `n^-3` at the contact edge.
+    /// For wear with kinks along the annulus that ends sooner: degree 3, spacing `n^-4` at the edge of stick and `n^-3` at the contact edge.
     Cubic,
     /// As [`Clustering::Cubic`] with a spacing of `n^-2` at the contact edge: less stiff, so that explicit steps may be longer.
     Quadratic,
@@ -87,7 +87,9 @@ impl Clustering {
     /// anywhere.
     pub fn stretch(self, natural: f64, grading: f64) -> f64 {
         match self {
-            Self::Smooth | Self::Even | Self::Front => (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0)),
+            Self::Smooth | Self::Even | Self::Front => {
+                (natural + 3.0).max(SMOOTH_STRETCH + 3.0 * grading.max(0.0))
+            }
             Self::RecedingStick => natural.max(RECEDING_STRETCH),
             _ => natural,
         }

@@ -81,9 +81,7 @@ pub(super) fn model(
             &[Clustering::Smooth, Clustering::CreepingStick]
         }
         _ if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
-        Stepper::Implicit if schedule.makes_weak_kinks() => {
-            &[Clustering::Even, Clustering::CreepingStick]
-        }
+        Stepper::Implicit if schedule.makes_weak_kinks() => &[Clustering::Even, Clustering::CreepingStick],
         Stepper::Implicit if front_comes(contact, schedule, duration) => {
             &[Clustering::Front, Clustering::CreepingStick]
         }

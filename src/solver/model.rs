@@ -53,7 +53,7 @@ pub use past::{Linearised, Past, PastPoint};
 pub use schedule::{AmplitudeControl, CycleLoading, Resolution, Schedule};
 pub use stage::{Target, Unknowns};
 
-/// Part of the annulus, next to the edge of stick, whose springs the output of a [`Clustering::Smooth`] mesh leaves out. Wear proceeds towards the
+/// Part of the annulus, next to the edge of stick, whose springs the output of a mesh that [`Clustering::follows_front`] leaves out. Wear proceeds towards the
 /// edge in a front, which is followed well as long as some springs are left before it.
 const HIDDEN: f64 = 3e-5;
 
@@ -62,11 +62,8 @@ const HIDDEN: f64 = 3e-5;
 const MOST_STRETCHED: f64 = 3.0;
 
 /// Fewest springs for which operators are hierarchical where wear has no kinks: more than a run takes by itself, whose results are so those of dense
-/// ones. On 600 springs these take 2.3 times as long, on 999 ten times.
-const HIERARCHICAL: usize = 601;
-
-/// The same where a small stick zone stretches the mesh, so that fewer springs are not smooth in it, and `ln(a0/c)` from which on it does.
-const HIERARCHICAL_STRETCHED: usize = 1000;
+/// ones; and where a small stick zone, from the last number of `ln(a0/c)` on, stretches the mesh, so that fewer are not smooth in it.
+const HIERARCHICAL: [usize; 2] = [601, 1000];
 const UNSTRETCHED: f64 = 3.5;
 
 /// Fewest springs on which the local polynomials fit.
@@ -240,10 +237,8 @@ impl Model {
         let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
         // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
-        let clustering = match clustering {
-            Clustering::Cubic | Clustering::Even | Clustering::Front if surplus > 0.0 => Clustering::CreepingStick,
-            clustering => clustering,
-        };
+        let rests = matches!(clustering, Clustering::Cubic | Clustering::Even | Clustering::Front);
+        let clustering = if rests && surplus > 0.0 { Clustering::CreepingStick } else { clustering };
         let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
         let natural = match &moving {
             Some(moving) if moving.creeps() => natural.min(MOST_STRETCHED),
@@ -320,8 +315,8 @@ impl Model {
     /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
     pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
         let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
-        let nearly_even = contact.stick_logarithm().is_some_and(|logarithm| logarithm <= UNSTRETCHED);
-        let from = if nearly_even { HIERARCHICAL } else { HIERARCHICAL_STRETCHED };
+        let stretched = contact.stick_logarithm().is_none_or(|logarithm| logarithm > UNSTRETCHED);
+        let from = HIERARCHICAL[usize::from(stretched)];
         let serve = springs >= from && schedule.is_plain() && stays;
         if serve { Backend::Hierarchical } else { Backend::Dense }
     }
