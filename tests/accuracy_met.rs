@@ -129,13 +129,13 @@ fn a_front_that_has_come_to_the_edge_of_stick_is_followed_where_wear_has_kinks()
     let oscillation =
         "[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1.5707963\n";
     let blocks = "repeat = true\n[[loading.blocks]]\ntau = 0.5\n[[loading.blocks]]\ntau = 0.5\namplitude_factor = 0.5\n";
-    for (name, laws, loading) in [
-        ("normal oscillation", &plain, format!("{late}{oscillation}")),
-        ("threshold", &threshold, late.clone()),
-        ("blocks", &plain, format!("{late}{blocks}")),
+    for (name, laws, loading, substeps) in [
+        ("normal oscillation", &plain, format!("{late}{oscillation}"), "substeps = 192"),
+        ("threshold", &threshold, late.clone(), ""),
+        ("blocks", &plain, format!("{late}{blocks}"), ""),
     ] {
-        let found = result(&scene(laws, &loading, "accuracy = 2e-3\nsubsteps = 192")).expect("an end");
-        let finer = scene(laws, &loading, "springs = 240\ntolerance = 1e-4\nsubsteps = 192");
+        let found = result(&scene(laws, &loading, &format!("accuracy = 2e-3\n{substeps}"))).expect("an end");
+        let finer = scene(laws, &loading, &format!("springs = 240\ntolerance = 1e-4\n{substeps}"));
         let finer = result(&finer).expect("an end");
         let exact = depth_at(&finer);
         let deepest = finer.last().wear_depth.iter().copied().fold(0.0, f64::max);

@@ -49,6 +49,9 @@ pub(in crate::run) const SURE: f64 = 0.6;
 /// Most springs of a repeated run: more would take longer than a user may wait without having been asked.
 const MOST_REFINED: usize = 400;
 
+/// The same where periods of a changing normal load are passed through step by step.
+const MOST_REFINED_LIFTING: usize = 120;
+
 /// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
 pub(super) const CAUTIOUS_ORDER: f64 = 4.0;
 const AIM: f64 = 0.5;
@@ -212,7 +215,15 @@ pub(in crate::run) fn refined(springs: usize, error: Option<f64>, accuracy: f64)
 }
 
 /// As [`refined`] where the order of convergence was observed: only if the springs that this order asks for are within what a run may take.
-pub(in crate::run) fn refined_by_order(springs: usize, shares: Shares, accuracy: f64) -> Option<usize> {
+///
+/// # Arguments
+/// * `lifts` -- whether the normal load changes along the period, which then takes long
+pub(in crate::run) fn refined_by_order(
+    springs: usize,
+    shares: Shares,
+    accuracy: f64,
+    lifts: bool,
+) -> Option<usize> {
     let rest = shares.substeps + shares.left_out;
     let aim = AIM * accuracy - rest;
     if shares.error() <= SURE * accuracy || aim <= 0.0 || shares.springs >= UNKNOWN {
@@ -220,5 +231,6 @@ pub(in crate::run) fn refined_by_order(springs: usize, shares: Shares, accuracy:
     }
     let factor = (shares.springs / aim).powf(shares.order.recip()).max(RAISES[0]);
     let refined = (springs as f64 * factor).ceil();
-    (refined <= MOST_REFINED as f64).then_some(refined as usize)
+    let most = if lifts { MOST_REFINED_LIFTING } else { MOST_REFINED };
+    (refined <= most as f64).then_some(refined as usize)
 }

@@ -9,7 +9,7 @@ use crate::laws::loading::Duration;
 use crate::numerics::abel::Backend;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Stepper};
-use crate::solver::model::{Model, OperatorStore, Schedule};
+use crate::solver::model::{FEWEST_SPRINGS, Model, OperatorStore, Schedule};
 
 /// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
 pub(super) const SPRINGS_TO_SLIDE: usize = 60;
@@ -47,6 +47,9 @@ const BYTES_PER_SPRING: f64 = 12e3;
 /// (docs/numerics.md).
 const FRONT: f64 = 2.0;
 
+/// Most springs with which a threshold is followed on the mesh of an orbit: on 240, whose cells at the contact edge are narrower, some runs came to no end.
+const MOST_AT_THRESHOLD: usize = 128;
+
 /// How well a mesh carries what is known beforehand.
 struct Quality {
     /// Largest error of the unworn compressions over `q_c`.
@@ -76,19 +79,23 @@ pub(super) fn model(
     let given = numerics.springs;
     let grading = contact.half_space().grading();
     let concentrated = grading < STEEP_SOFTENING && smallness(contact) > SMALL_STICK;
-    let clusterings: &[Clustering] = match numerics.stepper {
-        Stepper::Implicit if schedule.wears_smoothly() && !concentrated => {
-            &[Clustering::Smooth, Clustering::CreepingStick]
+    let clusterings = |springs: usize| -> &[Clustering] {
+        match numerics.stepper {
+            Stepper::Implicit if schedule.wears_smoothly() && !concentrated => {
+                &[Clustering::Smooth, Clustering::CreepingStick]
+            }
+            _ if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
+            Stepper::Implicit if schedule.wears_nearly_smoothly() || threshold_serves(schedule, springs) => {
+                &[Clustering::Even, Clustering::CreepingStick]
+            }
+            Stepper::Implicit if front_comes(contact, schedule, duration) => {
+                &[Clustering::Front, Clustering::CreepingStick]
+            }
+            Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
+            Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
         }
-        _ if grading < STEEP_SOFTENING => &[Clustering::CreepingStick],
-        Stepper::Implicit if schedule.makes_weak_kinks() => &[Clustering::Even, Clustering::CreepingStick],
-        Stepper::Implicit if front_comes(contact, schedule, duration) => {
-            &[Clustering::Front, Clustering::CreepingStick]
-        }
-        Stepper::Implicit => &[Clustering::Cubic, Clustering::CreepingStick],
-        Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
     };
-    let chosen = || springs_for(clusterings[0], contact, schedule, numerics.accuracy);
+    let chosen = || springs_for(clusterings(FEWEST_SPRINGS)[0], contact, schedule, numerics.accuracy);
     let mut springs = given.or(wanted).unwrap_or_else(chosen);
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
     check_memory(key, springs, contact, schedule)?;
@@ -99,7 +106,7 @@ pub(super) fn model(
     let raises = given.or(wanted).is_none();
     'springs: loop {
         let mut found = None;
-        for clustering in clusterings {
+        for clustering in clusterings(springs) {
             let model = Model::under(contact, schedule.clone(), springs, *clustering, store)?;
             if model.gross().is_some() {
                 return Ok(model);
@@ -125,6 +132,11 @@ pub(super) fn model(
         }
         springs = raised;
     }
+}
+
+/// Whether kinks that a threshold makes are followed on narrow cells.
+fn threshold_serves(schedule: &Schedule, springs: usize) -> bool {
+    schedule.makes_weak_kinks() && springs <= MOST_AT_THRESHOLD
 }
 
 /// Whether the front of wear comes near the edge of stick before a run ends. Where wear spreads, or a held force lets the indentation grow, cubics that

@@ -159,7 +159,7 @@ impl Recorder {
             Ok(_) if companions.is_smooth() => budget::refined(springs, checkpoint.error_estimate, accuracy),
             Ok(_) => {
                 let shares = companions.shares(simulation, self.writer.snapshots())?;
-                budget::refined_by_order(springs, shares, accuracy)
+                budget::refined_by_order(springs, shares, accuracy, simulation.model().schedule().lifts())
             }
             // More springs may find an end where few do not.
             Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
