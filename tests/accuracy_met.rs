@@ -135,7 +135,7 @@ fn a_front_that_has_come_to_the_edge_of_stick_is_followed_where_wear_has_kinks()
         ("blocks", &plain, format!("{late}{blocks}"), ""),
     ] {
         let found = result(&scene(laws, &loading, &format!("accuracy = 2e-3\n{substeps}"))).expect("an end");
-        let finer = scene(laws, &loading, &format!("springs = 240\ntolerance = 1e-4\n{substeps}"));
+        let finer = scene(laws, &loading, &format!("springs = 120\ntolerance = 1e-4\n{substeps}"));
         let finer = result(&finer).expect("an end");
         let exact = depth_at(&finer);
         let deepest = finer.last().wear_depth.iter().copied().fold(0.0, f64::max);
