@@ -14,7 +14,7 @@ use fretwear::data::{Format, format_of};
 use fretwear::report::{self, CheckReport, LimitReport};
 use fretwear::run::Shared;
 use fretwear::solver::model::OperatorStore;
-use fretwear::study::{calibration, on_threads, run_many_sharing, sweep::SweepReport};
+use fretwear::study::{calibration::Comparison, on_threads, run_many_sharing, sweep::SweepReport};
 use fretwear::{Progress, Result as Outcome, Stop, SweepOptions, Watch};
 use pyo3::prelude::*;
 
@@ -124,15 +124,12 @@ fn calibrate(
     folder: PathBuf,
     overwrite: bool,
 ) -> PyResult<Option<String>> {
-    let read = scene::calibration(calibration)?;
+    let laws = scene::calibration(calibration)?.models();
     let stop = Stop::default();
     let call = Call { callback: None, value: &|| (0.0, 0.0) };
     let work = || {
-        let ready = calibration::Ready::new(&read, &stop)?;
-        calibration::check_folder(&folder, overwrite)?;
-        let Some(outcome) = ready.run()? else { return Ok(None) };
-        let files = calibration::write(&read, &outcome, &folder, overwrite)?;
-        Ok(Some(report::json(&calibration::CalibrationReport::new(&read, &outcome, files))))
+        let found = Comparison::new(&laws, &folder, overwrite, &stop)?.run()?;
+        Ok(found.map(|it| report::json(&it.report())))
     };
     let (outcome, _) = waited(py, &stop, &call, || on_threads(work).and_then(|it| it))?;
     outcome.map_err(|error| raised(py, &error))

@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::error::{Error, Result};
 use crate::report;
 use crate::scene::Calibration;
-use crate::study::calibration::{self, CalibrationReport};
+use crate::study::calibration::Comparison;
 use clap::Args;
 
 use super::end::{End, Failure, INACCURATE, SUCCESS, interrupted};
@@ -32,36 +31,14 @@ pub struct Calibrate {
 }
 
 pub fn calibrate(arguments: &Calibrate) -> End {
-    let read = Calibration::read(&arguments.calibration)?;
+    let laws = Calibration::read(&arguments.calibration)?.models();
     let stop = signals::stop()?;
-    let models = read.models();
-    let ready =
-        models.iter().map(|(_, it)| calibration::Ready::new(it, &stop)).collect::<Result<Vec<_>>>()?;
-    calibration::check_folder(&arguments.output, arguments.force)?;
-    let mut found = vec![];
-    for ((name, _), ready) in models.iter().zip(ready) {
-        match ready.run() {
-            Ok(Some(outcome)) => found.push((name.clone(), Ok(outcome))),
-            Ok(None) => {
-                complain("note", "stopped, nothing was written; the same command begins anew");
-                return Ok((String::new(), interrupted()));
-            }
-            // Of several laws one may fail.
-            Err(error) if models.len() > 1 => found.push((name.clone(), Err(error.to_string()))),
-            Err(error) => return Err(Failure::Failed(error)),
-        }
-    }
-    let judged = calibration::judged(found);
-    let best = &judged[0];
-    let outcome = best
-        .outcome
-        .as_ref()
-        .map_err(|why| Failure::Failed(Error::NotConverged { what: "every law", why: why.clone() }))?;
-    let (_, own) = models.iter().find(|(name, _)| *name == best.name).expect("every law has its name");
-    let compared = if models.len() > 1 { &judged[..] } else { &[] };
-    let files = calibration::write(own, outcome, compared, &arguments.output, arguments.force)
-        .map_err(Failure::Failed)?;
-    let report = CalibrationReport::new(own, outcome, compared, files);
+    let comparison = Comparison::new(&laws, &arguments.output, arguments.force, &stop)?;
+    let Some(found) = comparison.run().map_err(Failure::Failed)? else {
+        complain("note", "stopped, nothing was written; the same command begins anew");
+        return Ok((String::new(), interrupted()));
+    };
+    let (outcome, report) = (found.outcome(), found.report());
     if !arguments.json {
         outcome.warnings.iter().for_each(|warning| complain("warning", warning));
     }

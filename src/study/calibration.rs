@@ -15,14 +15,14 @@ mod prediction;
 mod report;
 mod uncertainty;
 
-pub use models::{Judged, judged};
+pub use models::Judged;
 pub use report::CalibrationReport;
 pub use uncertainty::CONFIDENCE;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::run::Stop;
 use crate::scene::Calibration;
 
@@ -110,8 +110,8 @@ pub struct Outcome {
 /// Finds the unknowns of a calibration, in memory; none if it was stopped first.
 ///
 /// # Errors
-/// [`Error::Scene`](crate::Error::Scene) if a scene between the bounds is not valid, [`Error::Inconsistent`](crate::Error::Inconsistent) if there
-/// are fewer values than unknowns, [`Error::NotConverged`](crate::Error::NotConverged) if the model predicts the data nowhere.
+/// [`Error::Scene`] if a scene between the bounds is not valid, [`Error::Inconsistent`] if there
+/// are fewer values than unknowns, [`Error::NotConverged`] if the model predicts the data nowhere.
 ///
 /// # Examples
 /// The regression through the origin of van Peteghem, Fouvry, Petit, Wear 271 (2011) 1535: 97,429 ± 5,311 µm³/J.
@@ -152,24 +152,83 @@ impl<'a> Ready<'a> {
     }
 }
 
-/// Makes sure that results can be written into a folder.
-///
-/// # Errors
-/// [`Error::File`](crate::Error::File) if a file exists that may not be replaced, or the directory cannot be written.
-pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
-    files::check_folder(folder, overwrite)
+/// A calibration under each of its laws, with a folder for what is found.
+pub struct Comparison<'a> {
+    laws: &'a [(String, Calibration)],
+    ready: Vec<Ready<'a>>,
+    folder: &'a Path,
+    overwrite: bool,
 }
 
-/// Writes `calibration.h5`, `parameters.csv` and `residuals.csv`, and `models.csv` where laws are compared; their paths.
-///
-/// # Errors
-/// [`Error::File`](crate::Error::File) if they cannot be written.
-pub fn write(
-    calibration: &Calibration,
-    outcome: &Outcome,
-    models: &[Judged],
-    folder: &Path,
-    overwrite: bool,
-) -> Result<Vec<PathBuf>> {
-    files::write(calibration, outcome, models, folder, overwrite)
+impl<'a> Comparison<'a> {
+    /// Makes sure that all can be run and written; runs and writes nothing.
+    ///
+    /// # Arguments
+    /// * `laws` -- [`Calibration::models`]
+    ///
+    /// # Errors
+    /// As [`Ready::new`]; [`Error::File`] if a file exists that may not be replaced, or the directory cannot be written.
+    pub fn new(
+        laws: &'a [(String, Calibration)],
+        folder: &'a Path,
+        overwrite: bool,
+        stop: &Stop,
+    ) -> Result<Self> {
+        let ready = laws.iter().map(|(_, it)| Ready::new(it, stop)).collect::<Result<Vec<_>>>()?;
+        files::check_folder(folder, overwrite)?;
+        Ok(Self { laws, ready, folder, overwrite })
+    }
+
+    /// Finds the unknowns under each law, and writes `calibration.h5`, `parameters.csv` and `residuals.csv` of the one that the data prefer, and
+    /// `models.csv` where several are compared; none, and nothing is written, if it was stopped first.
+    ///
+    /// # Errors
+    /// As [`calibrate`], of several laws only if all fail; [`Error::File`] if files cannot be written.
+    pub fn run(self) -> Result<Option<Found<'a>>> {
+        let several = self.laws.len() > 1;
+        let mut found = vec![];
+        for ((name, _), ready) in self.laws.iter().zip(self.ready) {
+            match ready.run() {
+                Ok(Some(outcome)) => found.push((name.clone(), Ok(outcome))),
+                Ok(None) => return Ok(None),
+                Err(error) if several => found.push((name.clone(), Err(error.to_string()))),
+                Err(error) => return Err(error),
+            }
+        }
+        let judged = models::judged(found);
+        let best = &judged[0];
+        if let Err(why) = &best.outcome {
+            return Err(Error::NotConverged { what: "every law", why: why.clone() });
+        }
+        let (_, calibration) =
+            self.laws.iter().find(|(name, _)| *name == best.name).expect("every law has its name");
+        let mut found = Found { calibration, judged, files: vec![] };
+        found.files =
+            files::write(calibration, found.outcome(), found.compared(), self.folder, self.overwrite)?;
+        Ok(Some(found))
+    }
+}
+
+/// What was found under the law that the data prefer, and what they say of the others.
+pub struct Found<'a> {
+    calibration: &'a Calibration,
+    /// The best first.
+    judged: Vec<Judged>,
+    files: Vec<PathBuf>,
+}
+
+impl Found<'_> {
+    /// That of the law that the data prefer.
+    pub fn outcome(&self) -> &Outcome {
+        self.judged[0].outcome.as_ref().expect("there is an outcome of the best")
+    }
+
+    fn compared(&self) -> &[Judged] {
+        if self.judged.len() > 1 { &self.judged } else { &[] }
+    }
+
+    /// Its summary.
+    pub fn report(&self) -> CalibrationReport<'_> {
+        CalibrationReport::new(self.calibration, self.outcome(), self.compared(), self.files.clone())
+    }
 }

@@ -53,7 +53,7 @@ fn told(it: &Parameter) -> String {
 /// ```text
 /// w_i = e^(-Δ_i/2) / Σ e^(-Δ_j/2),     Δ_i = AICc_i - min AICc
 /// ```
-pub fn judged(found: Vec<(String, Result<Outcome, String>)>) -> Vec<Judged> {
+pub(super) fn judged(found: Vec<(String, Result<Outcome, String>)>) -> Vec<Judged> {
     let criterion = |it: &Result<Outcome, String>| it.as_ref().map_or(f64::INFINITY, |it| it.aicc);
     let least = found.iter().map(|(_, it)| criterion(it)).fold(f64::INFINITY, f64::min);
     let share = |it: &Result<Outcome, String>| {
