@@ -185,7 +185,8 @@ impl Key {
     /// The example as it stands in TOML; None without one.
     pub(crate) fn example_in_toml(&self) -> Option<String> {
         let bare = !matches!(self.kind, Kind::Word(_) | Kind::Text | Kind::Name | Kind::KeyOfScene)
-            && self.example.parse::<toml::Table>().is_err()
+            // An array of one text looks like the head of a table.
+            && (matches!(self.kind, Kind::List(..)) || self.example.parse::<toml::Table>().is_err())
             && format!("x = {}", self.example).parse::<toml::Table>().is_ok();
         let quoted = || format!("{:?}", self.example);
         (!self.example.is_empty()).then(|| if bare { self.example.into() } else { quoted() })
