@@ -284,7 +284,7 @@ fn through_signals(
 
 #[test]
 fn nothing_is_lost_or_doubled_by_kills() {
-    let place = Place::new(&study(600));
+    let place = Place::new(&study(1500));
     let stopped =
         through_signals(&place, "out", libc::SIGKILL, 12, 20..150, &["--checkpoint-interval", "0.05"]);
     println!("{stopped} kills hit");
@@ -298,7 +298,7 @@ fn nothing_is_lost_or_doubled_by_kills() {
 
 #[test]
 fn signals_are_answered_with_a_checkpoint_and_75() {
-    let place = Place::new(&study(1000));
+    let place = Place::new(&study(5000));
     for signal in [libc::SIGTERM, libc::SIGINT, libc::SIGUSR1] {
         let output = format!("out{signal}");
         let stopped = through_signals(&place, &output, signal, 4, 200..600, &["--threads", "1"]);
