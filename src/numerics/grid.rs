@@ -22,6 +22,9 @@ const FINEST_ENDS: usize = 1000;
 const CUT_AT_STICK: f64 = 5e-9;
 const CUT_AT_CONTACT: f64 = 6e-5;
 
+/// Correction of a place, over its distance from the end of the mesh, that is the last one: Newton's method leaves its square.
+const LAST: f64 = 1e-8;
+
 /// How nodes cluster at the two ends of the slip annulus, and the degree of the polynomials between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clustering {
@@ -120,8 +123,8 @@ pub struct Mesh {
     steepness: f64,
     ends: Vec<MeshPoint>,
     nodes: Vec<f64>,
-    /// `g` at the nodes.
-    unstretched: Vec<f64>,
+    /// `g` and `1 - g` at the nodes.
+    unstretched: Vec<[f64; 2]>,
 }
 
 /// A place on a [`Mesh`].
@@ -177,7 +180,11 @@ impl Mesh {
         };
         mesh.ends = (0..=cells).map(|i| mesh.at(i as f64)).collect();
         mesh.nodes = mesh.ends.iter().map(|end| end.value).collect();
-        mesh.unstretched = (0..=cells).map(|i| mesh.without_stretch(i as f64).0).collect();
+        let unstretched = |i: usize| {
+            let (part, rest, _) = mesh.without_stretch(i as f64);
+            [part, rest]
+        };
+        mesh.unstretched = (0..=cells).map(unstretched).collect();
         mesh
     }
 
@@ -243,35 +250,49 @@ impl Mesh {
         self.nodes.partition_point(|node| *node <= fraction).clamp(1, self.cells()) - 1
     }
 
-    /// `y` of `ξ` in [0, 1).
+    /// `y` of `ξ` in [0, 1), by Newton's method for `g` from the nearer end.
     pub fn place(&self, fraction: f64) -> f64 {
-        let wanted = match self.stretch {
-            stretch if stretch < NO_STRETCH => fraction,
-            stretch => (fraction * stretch.exp_m1()).ln_1p() / stretch,
+        let (cells, cell) = (self.cells() as f64, self.cell(fraction));
+        let near_stick = cell < self.cells() / 2;
+        let [begin, end] = [self.from_end(near_stick, cell), self.from_end(near_stick, cell + 1)];
+        let wanted = match (self.stretch < NO_STRETCH, near_stick) {
+            (true, true) => fraction,
+            (true, false) => 1.0 - fraction,
+            (false, true) => (fraction * self.stretch.exp_m1()).ln_1p() / self.stretch,
+            (false, false) => -((1.0 - fraction) * (-self.stretch).exp_m1()).ln_1p() / self.stretch,
         };
-        let cell = self.cell(fraction);
         let (mut low, mut high) = (cell as f64, cell as f64 + 1.0);
-        let [begin, end] = [self.unstretched[cell], self.unstretched[cell + 1]];
-        let mut y = low + ((wanted - begin) / (end - begin)).clamp(0.01, 0.99);
+        let part = (wanted - begin) / (end - begin);
+        if part <= 0.0 {
+            return low;
+        }
+        let mut y = low + part.clamp(0.01, 0.99);
         for _ in 0..60 {
-            let (part, _, slope) = self.without_stretch(y);
-            let off = part - wanted;
-            if off.abs() <= f64::EPSILON * wanted {
-                return y;
-            }
+            let (part, rest, slope) = self.without_stretch(y);
+            let off = if near_stick { part - wanted } else { wanted - rest };
             if off > 0.0 {
                 high = y;
             } else {
                 low = y;
             }
             let newton = y - off / slope;
+            let from_end = if near_stick { y } else { cells - y };
+            if (newton - y).abs() <= LAST * from_end {
+                return newton.clamp(low, high);
+            }
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if (next - y).abs() <= 1e-14 * next {
-                return next;
+            if next == y {
+                return y;
             }
             y = next;
         }
         y
+    }
+
+    /// `g` at a node, or at the contact end `1 - g`.
+    fn from_end(&self, near_stick: bool, node: usize) -> f64 {
+        let [part, rest] = self.unstretched[node];
+        if near_stick { part } else { rest }
     }
 
     /// The `points` nodes of the local polynomial of cell `cell`, from 1 to `last` on: centred, shifted inwards at the ends.
@@ -282,6 +303,9 @@ impl Mesh {
 
     /// The local polynomials of a stencil at `y`, where the place `point` is.
     pub fn lagrange(&self, stencil: &Range<usize>, y: f64, point: &MeshPoint) -> [f64; MOST_POINTS] {
+        if self.is_even(stencil) {
+            return lagrange_even(stencil.len(), y - stencil.start as f64);
+        }
         let mut values = [0.0; MOST_POINTS];
         let nodes = self.coordinates(stencil);
         lagrange(&nodes[..stencil.len()], self.coordinate(stencil, y, point), &mut values);
@@ -430,6 +454,22 @@ pub fn lagrange(nodes: &[f64], x: f64, values: &mut [f64]) {
     }
 }
 
+/// Lagrange polynomials on the nodes `0, 1, ... m - 1` at `x`: as [`lagrange`], with the products of differences formed once.
+fn lagrange_even(m: usize, x: f64) -> [f64; MOST_POINTS] {
+    let mut values = [0.0; MOST_POINTS];
+    let mut before = 1.0;
+    for (a, value) in values.iter_mut().enumerate().take(m) {
+        *value = before;
+        before *= (x - a as f64) / (a + 1) as f64;
+    }
+    let mut behind = 1.0;
+    for a in (0..m).rev() {
+        values[a] *= behind;
+        behind *= (a as f64 - x) / (m - a) as f64;
+    }
+    values
+}
+
 /// Derivatives of the Lagrange polynomials of [`lagrange`].
 pub fn lagrange_derivative(nodes: &[f64], x: f64, values: &mut [f64]) {
     let m = nodes.len();
@@ -505,6 +545,13 @@ mod tests {
         lagrange(&nodes, 0.7, &mut value);
         lagrange_derivative(&nodes, 0.7, &mut slope);
         let cubic = nodes.map(|x| x * x * x);
+        let even: [f64; MOST_POINTS] = std::array::from_fn(|i| i as f64);
+        for (m, x) in [(4, 0.3), (6, 2.75), (6, 5.5)] {
+            let mut plain = [0.0; MOST_POINTS];
+            lagrange(&even[..m], x, &mut plain);
+            let quick = lagrange_even(m, x);
+            assert!(plain.iter().zip(&quick).all(|(a, b)| (a - b).abs() < 1e-14), "{plain:?} {quick:?}");
+        }
         let dot = |weights: [f64; 4]| weights.iter().zip(cubic).map(|(w, y)| w * y).sum::<f64>();
         assert!((dot(value) - 0.343).abs() < 1e-14, "{}", dot(value));
         assert!((dot(slope) - 1.47).abs() < 1e-13, "{}", dot(slope));
