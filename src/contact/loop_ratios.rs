@@ -12,6 +12,8 @@
 //! A = ∫_c^a x^k q (q_c - q) dx / (q_c T(q_c)),     D = 1 - 2 q_v/q_c,   T(q_v) = T(q_c)/2
 //! ```
 
+use std::sync::LazyLock;
+
 use super::InitialContact;
 use super::stick_slip::stick_logarithm;
 use crate::error::Result;
@@ -21,6 +23,10 @@ use crate::numerics::roots::bracketed;
 /// Nodes of a panel, of the width of the first in `ln(a/x)`; each ends at twice the place of the one before.
 const NODES: usize = 24;
 const FIRST_PANEL: f64 = 1.0 / 64.0;
+static PANEL: LazyLock<Rule> = LazyLock::new(|| Rule::legendre(NODES).expect("a rule of few nodes"));
+
+/// `ln(a/c)` below which the difference of two normal forces leaves few digits.
+const NARROW: f64 = 0.1;
 
 /// `(1+k) ln(a/x)` beyond which springs carry less than round-off.
 const FARTHEST: f64 = 45.0;
@@ -62,8 +68,8 @@ impl InitialContact {
         if whole == 0.0 {
             return Ok(0.0);
         }
-        let force = |compression: f64, logarithm: Option<f64>| Ok(self.moved(compression, logarithm)?[0]);
-        let half = 0.5 * force(whole, self.stick_logarithm())?;
+        let force = |compression: f64, logarithm: Option<f64>| self.largest_force(compression, logarithm);
+        let half = 0.5 * force(whole, self.stick_logarithm());
         let mut failed = None;
         let excess = |compression: f64| {
             let edge = match compression < depth {
@@ -71,7 +77,7 @@ impl InitialContact {
                     .map(Some),
                 false => Ok(None),
             };
-            let found = edge.and_then(|logarithm| force(compression, logarithm));
+            let found = edge.map(|logarithm| force(compression, logarithm));
             found.unwrap_or_else(|error| {
                 failed = Some(error);
                 f64::NAN
@@ -83,12 +89,27 @@ impl InitialContact {
     }
 
     fn energy_ratio_at(&self, compression: f64, logarithm: Option<f64>) -> Result<f64> {
-        let [force, work] = self.moved(compression, logarithm)?;
+        let [force, work] = self.moved(compression, logarithm);
         Ok(if compression == 0.0 { 0.0 } else { work / (compression * force) })
     }
 
+    /// `T(q_c)` for an edge of stick at `ln(a/c)`, if there is one: of a power law by the difference of two normal forces, where that has digits
+    /// enough (Ciavarella, Jäger),
+    ///
+    /// ```text
+    /// T(q_c) = (F_N(a) - F_N(c))/(2 c_N)
+    /// ```
+    fn largest_force(&self, slip_compression: f64, logarithm: Option<f64>) -> f64 {
+        let (profile, radius) = (self.equivalent_profile(), self.contact_radius());
+        if profile.exponent().is_none() || logarithm.is_some_and(|it| it < NARROW) {
+            return self.moved(slip_compression, logarithm)[0];
+        }
+        let held = logarithm.map_or(0.0, |it| profile.load_integral(radius * (-it).exp()));
+        0.5 * (profile.load_integral(radius) - held)
+    }
+
     /// `T(q_c)` and `∫_c^a x^k q (q_c - q) dx` for an edge of stick at `ln(a/c)`, if there is one.
-    fn moved(&self, slip_compression: f64, logarithm: Option<f64>) -> Result<[f64; 2]> {
+    fn moved(&self, slip_compression: f64, logarithm: Option<f64>) -> [f64; 2] {
         let (profile, radius) = (self.equivalent_profile(), self.contact_radius());
         let exponent = 1.0 + self.half_space().grading();
         let stick = logarithm.map(|end| radius * (-end).exp());
@@ -98,7 +119,7 @@ impl InitialContact {
             }
             None => self.indentation() - profile.value(radius * (-s).exp()),
         };
-        let rule = Rule::legendre(NODES)?;
+        let rule = &*PANEL;
         let end = logarithm.unwrap_or(f64::INFINITY).min(FARTHEST / exponent);
         let (mut first, mut sums) = (0.0, [0.0; 2]);
         while first < end {
@@ -113,6 +134,6 @@ impl InitialContact {
         }
         let scale = radius.powf(exponent);
         let held = stick.map_or(0.0, |stick| slip_compression * stick.powf(exponent) / exponent);
-        Ok([held + scale * sums[0], scale * sums[1]])
+        [held + scale * sums[0], scale * sums[1]]
     }
 }

@@ -1,5 +1,6 @@
 //! A TOML document walked by hand: every key and value knows its place, so that every error can show it.
 
+use std::borrow::Cow;
 use std::fmt::{Display, Write};
 use std::ops::Range;
 
@@ -92,14 +93,17 @@ fn floor(text: &str, at: usize) -> usize {
 }
 
 /// A key or a value fit for a message: short, without control characters.
-pub(super) fn printable(text: &str) -> String {
+pub(super) fn printable(text: &str) -> Cow<'_, str> {
     const LONGEST: usize = 60;
+    if text.len() <= LONGEST && !text.chars().any(char::is_control) {
+        return Cow::Borrowed(text);
+    }
     let mut shown: String =
         text.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
     if text.chars().nth(LONGEST).is_some() {
         shown.push_str("...");
     }
-    shown
+    Cow::Owned(shown)
 }
 
 /// A table of the document.
@@ -121,7 +125,7 @@ impl<'a> Section<'a> {
     /// The dotted name of a key in this table.
     pub(super) fn name(&self, key: &str) -> String {
         match self.path.is_empty() {
-            true => printable(key),
+            true => printable(key).into_owned(),
             false => format!("{}.{}", self.path, printable(key)),
         }
     }
@@ -192,23 +196,23 @@ impl<'a> Section<'a> {
 
     /// The one key given of several that exclude each other, and its value.
     pub(super) fn one_of(&self, alternatives: &[&'static str]) -> Result<(&'static str, Entry<'a>)> {
-        let (given, choice) = self.at_most_one_of(alternatives)?;
-        given.ok_or_else(|| self.error(format_args!("give exactly one of {choice}; none is there")))
+        self.at_most_one_of(alternatives)?.ok_or_else(|| {
+            self.error(format_args!("give exactly one of {}; none is there", self.listed(alternatives)))
+        })
     }
 
-    /// As [`Section::one_of`] where none may be given; the second value lists the alternatives.
+    /// As [`Section::one_of`] where none may be given.
     pub(super) fn at_most_one_of(
         &self,
         alternatives: &[&'static str],
-    ) -> Result<(Option<(&'static str, Entry<'a>)>, String)> {
-        let choice = self.listed(alternatives);
+    ) -> Result<Option<(&'static str, Entry<'a>)>> {
         let mut given: Vec<_> =
             alternatives.iter().filter_map(|&key| self.optional(key).map(|entry| (key, entry))).collect();
         given.sort_by_key(|(_, entry)| entry.key_place.start);
         if let [(_, first), (_, second), ..] = &given[..] {
-            return Err(second.excludes(first, &choice));
+            return Err(second.excludes(first, &self.listed(alternatives)));
         }
-        Ok((given.pop(), choice))
+        Ok(given.pop())
     }
 
     /// Shows an error of the library, which names a quantity as `table.key`, at that key of this table.
@@ -351,10 +355,12 @@ impl<'a> Entry<'a> {
 
     /// The value as a string.
     pub(super) fn string(&self) -> Result<&'a str> {
-        match self.value {
-            DeValue::String(text) => Ok(text),
-            _ => Err(self.wrong_type("expected a string")),
-        }
+        self.text().ok_or_else(|| self.wrong_type("expected a string"))
+    }
+
+    /// The string that the value is; None for another.
+    pub(super) fn text(&self) -> Option<&'a str> {
+        if let DeValue::String(text) = self.value { Some(text) } else { None }
     }
 
     /// The value as `true` or `false`.

@@ -85,8 +85,8 @@ impl<'a> Read<'a> for [u32; 2] {
         const LARGEST: u32 = 64;
         /// What the digits of a decimal fraction such as 1.3333333333333333 leave open.
         const ROUNDING: f64 = 1e-12;
-        let ratio = match entry.string() {
-            Ok(text) if text.contains('/') => {
+        let ratio = match entry.text() {
+            Some(text) if text.contains('/') => {
                 let whole = |part: &str| part.trim().parse::<u64>().ok().filter(|number| *number > 0);
                 let parts = text.split_once('/').and_then(|(over, under)| whole(over).zip(whole(under)));
                 parts.and_then(|(over, under)| {
@@ -215,6 +215,9 @@ impl<'a> Section<'a> {
 
     /// The value of a key that must be there.
     pub(super) fn required_key(&self, key: &Key) -> Result<Entry<'a>> {
+        if let Some(entry) = self.optional(key.name) {
+            return Ok(entry);
+        }
         let cure = match (key.kind, key.example_in_toml()) {
             (Kind::Table(_) | Kind::Tables(..), _) => format!("add for example {}", key.example),
             (_, Some(example)) => format!("for example {example}. {}", key.about),

@@ -233,10 +233,10 @@ fn reference_depth(section: &Section, grading: f64) -> Result<f64> {
 
 pub(super) fn poisson(section: &Section) -> Result<Poisson> {
     let entry = section.required_key(&keys::POISSON_RATIO)?;
-    match entry.string() {
-        Ok("similar") => Ok(Poisson::Similar),
-        Ok(_) => Err(entry.error("is neither a number nor \"similar\"")),
-        Err(_) => Ok(Poisson::Ratio(entry.quantity(Dimension::NUMBER)?)),
+    match entry.text() {
+        Some("similar") => Ok(Poisson::Similar),
+        Some(_) => Err(entry.error("is neither a number nor \"similar\"")),
+        None => Ok(Poisson::Ratio(entry.quantity(Dimension::NUMBER)?)),
     }
 }
 

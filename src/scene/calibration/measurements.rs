@@ -147,7 +147,8 @@ impl Measurements {
         };
         let place = self.header.iter().position(|(other, _)| *other == name);
         let Some(place) = place.filter(|_| !name.is_empty()) else {
-            let names: Vec<String> = self.header.iter().map(|it| printable(&whole(it))).collect();
+            let names: Vec<String> =
+                self.header.iter().map(|it| printable(&whole(it)).into_owned()).collect();
             let shown = names[..names.len().min(20)].join(", ");
             return Err(format!("is no column of {}; there are {shown}", self.path.display()));
         };
