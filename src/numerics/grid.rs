@@ -254,7 +254,7 @@ impl Mesh {
     pub fn place(&self, fraction: f64) -> f64 {
         let (cells, cell) = (self.cells() as f64, self.cell(fraction));
         let near_stick = cell < self.cells() / 2;
-        let [begin, end] = [self.from_end(near_stick, cell), self.from_end(near_stick, cell + 1)];
+        let [begin, end] = [self.end_part(near_stick, cell), self.end_part(near_stick, cell + 1)];
         let wanted = match (self.stretch < NO_STRETCH, near_stick) {
             (true, true) => fraction,
             (true, false) => 1.0 - fraction,
@@ -290,7 +290,7 @@ impl Mesh {
     }
 
     /// `g` at a node, or at the contact end `1 - g`.
-    fn from_end(&self, near_stick: bool, node: usize) -> f64 {
+    fn end_part(&self, near_stick: bool, node: usize) -> f64 {
         let [part, rest] = self.unstretched[node];
         if near_stick { part } else { rest }
     }
