@@ -235,7 +235,13 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// Largest difference of the predictions from those of finer runs, in deviations; none if it was stopped.
+    /// What finer runs change, the largest of: predictions, in deviations of the data, and estimates, in standard errors; none if it was stopped
+    ///
+    /// ```text
+    /// δθ = (JᵀJ)⁻¹ Jᵀ δr
+    /// ```
+    ///
+    /// Errors of runs are alike from value to value, so that those of the estimates may be the larger ones where there are many values.
     fn run_error(&mut self, minimum: &Minimum) -> Result<Option<f64>> {
         if !self.calibration.has_scene() {
             return Ok(Some(0.0));
@@ -243,7 +249,7 @@ impl<'a> Fit<'a> {
         let place = &minimum.place;
         let (values, centres) = (self.objective.values(place), self.objective.centres(place));
         let mut finer = self.objective.predictor.finer(FINER);
-        let mut worst = 0.0f64;
+        let (mut worst, mut changes) = (0.0f64, vec![]);
         for (data, centre) in centres.iter().enumerate() {
             let own = self.objective.predictor.predict(data, &values, *centre);
             let other = finer.predict(data, &values, *centre);
@@ -255,8 +261,19 @@ impl<'a> Fit<'a> {
             };
             let errors = own.iter().zip(&other).zip(&self.objective.deviations[data]);
             worst = errors.map(|((a, b), deviation)| (a - b).abs() / deviation).fold(worst, f64::max);
+            let [own, other] = [own, other].map(|plain| self.objective.compare_one(data, &plain).residuals);
+            changes.extend(own.iter().zip(&other).map(|(a, b)| a - b));
         }
         self.objective.predictor.runs += finer.runs;
+        let slopes = self.slopes(minimum);
+        let covariance = covariance(&slopes);
+        let right: Vec<f64> =
+            slopes.iter().map(|it| it.iter().zip(&changes).map(|(a, b)| a * b).sum()).collect();
+        for i in 0..self.calibration.unknowns().len() {
+            let shift: f64 = (0..slopes.len()).map(|j| covariance[(i, j)] * right[j]).sum();
+            let shift = shift.abs() / covariance[(i, i)].sqrt();
+            worst = if shift.is_finite() { worst.max(shift) } else { worst };
+        }
         Ok(Some(worst))
     }
 

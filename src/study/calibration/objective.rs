@@ -130,14 +130,20 @@ impl<'a> Objective<'a> {
     pub(super) fn compare(&mut self, place: &[f64]) -> Option<Vec<Comparison>> {
         let (values, centres) = (self.values(place), self.centres(place));
         let mut found = vec![];
-        for (data, set) in self.calibration.data().iter().enumerate() {
-            let plain = self.predictor.predict(data, &values, centres[data])?;
-            let mut fit = compared(set, &plain, &self.deviations[data], self.calibration.is_robust());
-            let alike = self.alike[data].sqrt();
-            fit.residuals.iter_mut().for_each(|it| *it /= alike);
-            found.push(fit);
+        for (data, centre) in centres.iter().enumerate() {
+            let plain = self.predictor.predict(data, &values, *centre)?;
+            found.push(self.compare_one(data, &plain));
         }
         Some(found)
+    }
+
+    /// What a prediction without offset and tilt comes to for a data set.
+    pub(super) fn compare_one(&self, data: usize, plain: &[f64]) -> Comparison {
+        let (set, robust) = (&self.calibration.data()[data], self.calibration.is_robust());
+        let mut fit = compared(set, plain, &self.deviations[data], robust);
+        let alike = self.alike[data].sqrt();
+        fit.residuals.iter_mut().for_each(|it| *it /= alike);
+        fit
     }
 
     /// Residuals whose squares add up to the cost; of Huber's loss, their roots with their signs.
