@@ -35,7 +35,7 @@ pub fn calibrate(arguments: &Calibrate) -> End {
     let stop = signals::stop()?;
     let comparison = Comparison::new(&laws, &arguments.output, arguments.force, &stop)?;
     let Some(found) = comparison.run().map_err(Failure::Failed)? else {
-        complain("note", "stopped, nothing was written; the same command begins anew");
+        complain("note", "stopped; the same command goes on from here");
         return Ok((String::new(), interrupted()));
     };
     let (outcome, report) = (found.outcome(), found.report());

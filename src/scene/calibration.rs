@@ -33,6 +33,20 @@ const ALPHA: &str = "wear.dissipated-energy.coefficient";
 /// Keys of `[numerics]` in whose place the accuracy stands that the data ask for.
 const BY_HAND: [&str; 2] = ["springs", "tolerance"];
 
+/// A word on numerics by hand, which the accuracy that the data ask for replaces.
+fn by_hand(base: &Table, data: &[DataSet]) -> Option<String> {
+    let numerics = base.get("numerics").and_then(Value::as_table);
+    let given = |key: &&&str| {
+        let dotted = format!("numerics.{key}");
+        numerics.is_some_and(|it| it.contains_key(**key))
+            || data.iter().any(|it| it.settings.iter().any(|(key, _)| *key == dotted))
+    };
+    let given: Vec<String> = BY_HAND.iter().filter(given).map(|key| format!("numerics.{key}")).collect();
+    (!given.is_empty()).then(|| {
+        format!("{} by hand not followed: runs are as accurate as the data ask for", given.join(" and "))
+    })
+}
+
 /// What a data set holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measured {
@@ -220,7 +234,9 @@ impl Calibration {
             let base = folder.join(entry.string()?);
             let text =
                 read_text(&base).map_err(|error| entry.error(format_args!("cannot be used: {error}")))?;
-            calibration.base = Some(base_table(&text, &base)?);
+            let table = base_table(&text, &base)?;
+            calibration.notes.extend(by_hand(&table, &calibration.data));
+            calibration.base = Some(table);
             calibration.folder = base.parent().unwrap_or(Path::new("")).to_owned();
             calibration.base_text = text;
         }
@@ -283,6 +299,17 @@ impl Calibration {
     /// What was left out of the files, one sentence each.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// All data sets of the same scene that one run serves, in their order; a data set over measured energies needs none and is by itself.
+    pub fn companions(&self, data: usize) -> Vec<usize> {
+        let runs = |it: &DataSet| it.measured != Measured::VolumeOverEnergy;
+        let one = &self.data[data];
+        let same = |it: &DataSet| runs(it) && it.settings == one.settings;
+        match runs(one) {
+            true => (0..self.data.len()).filter(|it| same(&self.data[*it])).collect(),
+            false => vec![data],
+        }
     }
 
     /// The scene of a data set.

@@ -9,10 +9,12 @@
 
 mod files;
 mod fit;
+mod journal;
 mod models;
 mod objective;
 mod prediction;
 mod report;
+mod trajectory;
 mod uncertainty;
 
 pub use models::Judged;
@@ -22,7 +24,10 @@ pub use uncertainty::CONFIDENCE;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::error::{Error, Result};
+use fit::Fit;
+use journal::{Journal, Runs};
+
+use crate::error::{Domain, Error, Result};
 use crate::run::Stop;
 use crate::scene::Calibration;
 
@@ -125,29 +130,31 @@ pub struct Outcome {
 /// # Ok::<(), fretwear::Error>(())
 /// ```
 pub fn calibrate(calibration: &Calibration, stop: &Stop) -> Result<Option<Outcome>> {
-    Ready::new(calibration, stop)?.run()
+    Ready::new(calibration, stop)?.run(None)
 }
 
 /// A calibration whose scenes are valid and whose data are enough.
-pub struct Ready<'a> {
-    fit: fit::Fit<'a>,
+struct Ready<'a> {
+    calibration: &'a Calibration,
+    stop: Stop,
     started: Instant,
 }
 
 impl<'a> Ready<'a> {
     /// # Errors
     /// As [`calibrate`], before any run of the model.
-    pub fn new(calibration: &'a Calibration, stop: &Stop) -> Result<Self> {
+    fn new(calibration: &'a Calibration, stop: &Stop) -> Result<Self> {
         let started = Instant::now();
-        Ok(Self { fit: fit::Fit::new(calibration, stop)?, started })
+        Fit::new(calibration, Runs::new(stop, None))?;
+        Ok(Self { calibration, stop: stop.clone(), started })
     }
 
     /// Finds the unknowns; none if it was stopped first.
     ///
     /// # Errors
     /// As [`calibrate`].
-    pub fn run(self) -> Result<Option<Outcome>> {
-        let outcome = self.fit.outcome()?;
+    fn run(self, journal: Option<&Journal>) -> Result<Option<Outcome>> {
+        let outcome = Fit::new(self.calibration, Runs::new(&self.stop, journal))?.outcome()?;
         Ok(outcome.map(|it| Outcome { wall_seconds: self.started.elapsed().as_secs_f64(), ..it }))
     }
 }
@@ -180,18 +187,24 @@ impl<'a> Comparison<'a> {
     }
 
     /// Finds the unknowns under each law, and writes `calibration.h5`, `parameters.csv` and `residuals.csv` of the one that the data prefer, and
-    /// `models.csv` where several are compared; none, and nothing is written, if it was stopped first.
+    /// `models.csv` where several are compared; none if it was stopped first, and the same call then goes on from the runs that it has left in the folder.
     ///
     /// # Errors
     /// As [`calibrate`], of several laws only if all fail; [`Error::File`] if files cannot be written.
     pub fn run(self) -> Result<Option<Found<'a>>> {
         let several = self.laws.len() > 1;
+        let journal = Journal::take_up(self.folder)?;
         let mut found = vec![];
         for ((name, _), ready) in self.laws.iter().zip(self.ready) {
-            match ready.run() {
+            match ready.run(Some(&journal)) {
                 Ok(Some(outcome)) => found.push((name.clone(), Ok(outcome))),
-                Ok(None) => return Ok(None),
-                Err(error) if several => found.push((name.clone(), Err(error.to_string()))),
+                Ok(None) => {
+                    journal.keep();
+                    return Ok(None);
+                }
+                Err(error) if several && error.domain() != Domain::File => {
+                    found.push((name.clone(), Err(error.to_string())))
+                }
                 Err(error) => return Err(error),
             }
         }

@@ -1,5 +1,6 @@
 //! The search: starts, deviations, accuracy of the runs, then uncertainty.
 
+use super::journal::Runs;
 use super::objective::{
     Comparison, Objective, coordinate_of, ground_count, has_centre, is_estimated, value_of,
 };
@@ -8,7 +9,6 @@ use super::uncertainty::{combination, covariance, profile, quantile};
 use super::{Combination, FittedData, Outcome, Parameter};
 use crate::error::{Error, Result};
 use crate::numerics::least_squares::{Minimum, cost, jacobian, minimise};
-use crate::run::Stop;
 use crate::scene::sampling::{Method, UnitCube};
 use crate::scene::{Calibration, Deviation, Measured};
 use crate::units::number;
@@ -46,13 +46,13 @@ pub(super) struct Fit<'a> {
 }
 
 impl<'a> Fit<'a> {
-    pub(super) fn new(calibration: &'a Calibration, stop: &Stop) -> Result<Self> {
+    pub(super) fn new(calibration: &'a Calibration, runs: Runs<'a>) -> Result<Self> {
         let middle = |it: &crate::scene::Unknown| {
             let [low, high] = it.bounds.map(|end| coordinate_of(it, end));
             value_of(it, (low + high) / 2.0)
         };
         let values: Vec<f64> = calibration.unknowns().iter().map(middle).collect();
-        let predictor = Predictor::new(calibration, &values, ACCURACY[0], stop)?;
+        let predictor = Predictor::new(calibration, &values, ACCURACY[0], runs)?;
         let objective = Objective::new(calibration, predictor);
         let fitted = objective.coordinates.len() + calibration.data().iter().map(ground_count).sum::<usize>();
         let count = calibration.data().iter().map(|set| set.values.len()).sum::<usize>();
@@ -70,7 +70,16 @@ impl<'a> Fit<'a> {
         Ok(Self { calibration, objective, freedom })
     }
 
+    /// What is found; none if it was stopped.
     pub(super) fn outcome(mut self) -> Result<Option<Outcome>> {
+        let found = self.found();
+        match self.objective.predictor.fatal.take() {
+            Some(fatal) => Err(fatal),
+            None => found,
+        }
+    }
+
+    fn found(&mut self) -> Result<Option<Outcome>> {
         let Some(mut minimum) = self.first_minimum()? else { return Ok(None) };
         let mut run_error = f64::NAN;
         for _ in 0..MOST_REFINEMENTS {
@@ -254,6 +263,7 @@ impl<'a> Fit<'a> {
             let own = self.objective.predictor.predict(data, &values, *centre);
             let other = finer.predict(data, &values, *centre);
             if finer.is_stopped() {
+                self.objective.predictor.fatal = finer.fatal.take();
                 return Ok(None);
             }
             let (Some(own), Some(other)) = (own, other) else {
@@ -323,7 +333,7 @@ impl<'a> Fit<'a> {
     }
 
     fn told(
-        mut self,
+        &mut self,
         minimum: &Minimum,
         at: &[Comparison],
         profiles: Vec<super::uncertainty::Profile>,
