@@ -4,9 +4,10 @@ use super::journal::Runs;
 use super::objective::{
     Comparison, Objective, coordinate_of, ground_count, has_centre, is_estimated, value_of,
 };
+use super::posterior::draws;
 use super::prediction::Predictor;
 use super::uncertainty::{combination, covariance, profile, quantile};
-use super::{Combination, FittedData, Outcome, Parameter};
+use super::{Combination, FittedData, Onlooker, Outcome, Parameter};
 use crate::error::{Error, Result};
 use crate::numerics::least_squares::{Minimum, cost, jacobian, minimise};
 use crate::scene::sampling::{Method, UnitCube};
@@ -39,21 +40,25 @@ const UNEXPLAINED: f64 = 2.0;
 
 /// A calibration under way.
 pub(super) struct Fit<'a> {
-    calibration: &'a Calibration,
-    objective: Objective<'a>,
+    pub(super) calibration: &'a Calibration,
+    pub(super) objective: Objective<'a>,
     /// Degrees of freedom of each data set.
     freedom: Vec<f64>,
 }
 
 impl<'a> Fit<'a> {
-    pub(super) fn new(calibration: &'a Calibration, runs: Runs<'a>) -> Result<Self> {
+    pub(super) fn new(
+        calibration: &'a Calibration,
+        runs: Runs<'a>,
+        onlooker: Option<&'a dyn Onlooker>,
+    ) -> Result<Self> {
         let middle = |it: &crate::scene::Unknown| {
             let [low, high] = it.bounds.map(|end| coordinate_of(it, end));
             value_of(it, (low + high) / 2.0)
         };
         let values: Vec<f64> = calibration.unknowns().iter().map(middle).collect();
         let predictor = Predictor::new(calibration, &values, ACCURACY[0], runs)?;
-        let objective = Objective::new(calibration, predictor);
+        let objective = Objective::new(calibration, predictor, onlooker);
         let fitted = objective.coordinates.len() + calibration.data().iter().map(ground_count).sum::<usize>();
         let count = calibration.data().iter().map(|set| set.values.len()).sum::<usize>();
         let estimates = calibration.data().iter().filter(|set| is_estimated(set)).count();
@@ -111,7 +116,18 @@ impl<'a> Fit<'a> {
             }
         };
         let at = self.objective.compare(&minimum.place).ok_or_else(|| self.trouble())?;
-        Ok(Some(self.told(&minimum, &at, profiles, &slopes, run_error)))
+        let bootstrap = match self.calibration.bootstrap() {
+            0 => vec![None; self.calibration.unknowns().len()],
+            _ => match self.bootstrap(&minimum, &at, &slopes)? {
+                Some(found) => found,
+                None => return Ok(None),
+            },
+        };
+        let mut outcome = self.told(&minimum, &at, profiles, &slopes, run_error);
+        for (parameter, interval) in outcome.parameters.iter_mut().zip(bootstrap) {
+            parameter.bootstrap = interval;
+        }
+        Ok(Some(outcome))
     }
 
     /// Why the model has no prediction.
@@ -344,6 +360,15 @@ impl<'a> Fit<'a> {
         let values = self.objective.values(&minimum.place);
         let covariance = covariance(slopes);
         let t = quantile(self.freedom_of_deviations());
+        let correlation = |i: usize, j: usize| {
+            let it = covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+            it.clamp(-1.0, 1.0)
+        };
+        let correlation: Vec<Vec<f64>> =
+            (0..unknowns.len()).map(|i| (0..unknowns.len()).map(|j| correlation(i, j)).collect()).collect();
+        let bounds: Vec<[f64; 2]> = self.objective.coordinates.iter().map(|it| it.bounds).collect();
+        let draws = draws(&profiles, &correlation, &bounds, self.freedom_of_deviations());
+        let draws = draws.iter().map(|it| self.objective.values(it)).collect();
         let parameters: Vec<Parameter> = unknowns
             .iter()
             .zip(profiles)
@@ -355,15 +380,10 @@ impl<'a> Fit<'a> {
                 interval: profile.ends.map(|end| end.map(|it| value_of(unknown, it))),
                 standard_error: covariance[(i, i)].sqrt()
                     * if unknown.is_logarithmic { values[i] } else { 1.0 },
+                bootstrap: None,
                 profile: profile.points.iter().map(|[x, rise]| [value_of(unknown, *x), *rise]).collect(),
             })
             .collect();
-        let correlation = |i: usize, j: usize| {
-            let it = covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
-            it.clamp(-1.0, 1.0)
-        };
-        let correlation =
-            (0..unknowns.len()).map(|i| (0..unknowns.len()).map(|j| correlation(i, j)).collect()).collect();
         let fitted = self.objective.coordinates.len()
             + self.calibration.data().iter().map(ground_count).sum::<usize>();
         let count: usize = at.iter().map(|it| it.residuals.len()).sum();
@@ -386,6 +406,8 @@ impl<'a> Fit<'a> {
         let mut outcome = Outcome {
             parameters,
             correlation,
+            draws,
+            forecast: None,
             combinations,
             reduced_chi_squared: misfit / degrees_of_freedom,
             degrees_of_freedom,
