@@ -168,11 +168,28 @@ fn profiles(file: &Dataset) -> Result<Vec<Panel>> {
         for end in [lower[i], upper[i]].into_iter().filter(|end| end.is_finite()) {
             panel.series.push(Series::new("", LEVEL, Colour::GREY, vec![[end, base], [end, level]]));
         }
-        panel.series.push(Series::new("", LINE, DISTINCT[0], curve.clone()));
+        panel.series.push(Series::new("", LINE, DISTINCT[0], rounded(&curve)));
         panel.series.push(Series::new("", POINT, DISTINCT[0], curve));
         panel
     };
     Ok((0..count.min(MOST)).map(panel).collect())
+}
+
+/// A profile between its points: its root, with a sign, is straight there, as that of a parabola.
+fn rounded(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    const PARTS: usize = 12;
+    let least = curve.iter().map(|it| it[1]).fold(f64::INFINITY, f64::min);
+    let lowest = curve.iter().position(|it| it[1] == least).unwrap_or(0);
+    let root = |i: usize| curve[i][1].max(0.0).sqrt() * if i < lowest { -1.0 } else { 1.0 };
+    let between = |i: usize| {
+        let ([x, _], [end, _]) = (curve[i - 1], curve[i]);
+        (0..PARTS).map(move |part| {
+            let part = part as f64 / PARTS as f64;
+            let root = root(i - 1) + part * (root(i) - root(i - 1));
+            [x + part * (end - x), root * root]
+        })
+    };
+    (1..curve.len()).flat_map(between).chain(curve.last().copied()).collect()
 }
 
 /// A corner: each unknown against those before it.
@@ -216,13 +233,13 @@ fn bands(file: &Dataset) -> Result<Vec<Row>> {
     }
     let count = file.along("forecast_snapshot")?.len();
     let cycles = file.numbers("forecast_cycles", &[count])?;
-    let panel = |name: &str, quantity: &str, unit: &str| -> Result<Panel> {
+    let panel = |name: &str, quantity: &str, unit: &str, from_zero: bool| -> Result<Panel> {
         let all = file.numbers(name, &[3, count])?;
         let known = |side: usize| -> Vec<[f64; 2]> {
             let own = points(cycles, &all[side * count..(side + 1) * count]);
             own.into_iter().filter(|it| it[1].is_finite()).collect()
         };
-        let heights = all.iter().copied().filter(|it| it.is_finite()).chain([0.0]);
+        let heights = all.iter().copied().filter(|it| it.is_finite()).chain(from_zero.then_some(0.0));
         let y = Axis { unit: unit.into(), ..Measure::NUMBER.axis(quantity, Spacing::Linear, heights, 0.05) };
         let x = Measure::NUMBER.axis("cycles", Spacing::Linear, cycles.iter().copied(), 0.02);
         let mut panel = Panel::new(x, y);
@@ -233,8 +250,8 @@ fn bands(file: &Dataset) -> Result<Vec<Row>> {
         Ok(panel)
     };
     let panels = vec![
-        panel("forecast_wear_volume", "worn volume foretold", "m³")?,
-        panel("forecast_contact_radius", "contact radius foretold", "m")?,
+        panel("forecast_wear_volume", "worn volume foretold", "m³", true)?,
+        panel("forecast_contact_radius", "contact radius foretold", "m", false)?,
     ];
     Ok(vec![Row { height: 200.0, panels }])
 }
