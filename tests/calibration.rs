@@ -507,6 +507,12 @@ fn the_command_prints_json_writes_its_files_and_overwrites_nothing() {
     done(folder.path(), &["plot", "out/calibration.h5", "-o", "fit.svg"]);
     done(folder.path(), &["report", "out/calibration.h5", "-o", "fit.html"]);
     done(folder.path(), &["info", "out/calibration.h5"]);
+    // A calibration to begin with, on the scene to begin with.
+    done(folder.path(), &["init", "calibration", "-o", "begin.toml"]);
+    done(folder.path(), &["init", "-o", "scene.toml"]);
+    fs::write(folder.path().join("volumes.csv"), "N;V [um^3]\n1000;8,1\n2000;16,4\n4000;31,9\n")
+        .expect("written");
+    done(folder.path(), &["calibrate", "begin.toml", "-o", "begun"]);
     fs::write(folder.path().join("bad.toml"), "[[unknowns]]\nkey = \"wear\"\n").expect("written");
     let bad = run(folder.path(), &["calibrate", "bad.toml", "-o", "none"]);
     assert_eq!(bad.status.code(), Some(2));
