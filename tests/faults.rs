@@ -42,9 +42,9 @@ const FOLDERS: [(&str, &str, i32); 6] = [
         "tradeoff.json",
         0,
     ),
-    ("calibrate alpha.toml --predict scene.toml --draws 20 --quiet -o @", "forecast.csv", 0),
     ("submit study.toml --engine slurm --dry-run -o @", "sweep.sbatch", 0),
     ("man -o @", "fretwear-run.1", 0),
+    ("calibrate alpha.toml --predict scene.toml --draws 20 --quiet -o @", "forecast.csv", 0),
 ];
 
 /// A folder with everything that commands read.
