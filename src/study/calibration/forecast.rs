@@ -16,8 +16,11 @@ use crate::study::batch::{Batch, Progress};
 const OF_COMPUTING: [&str; 6] =
     ["error_estimate", "accuracy_met", "steps", "rejected_steps", "rate_evaluations", "wall_seconds"];
 
+/// Numbers of a run, one for each snapshot.
+type OverTime = fn(&Results) -> Vec<f64>;
+
 /// Curves of a scene over cycles.
-pub(super) const CURVES: [(Quantity, fn(&Results) -> Vec<f64>); 3] = [
+pub(super) const CURVES: [(Quantity, OverTime); 3] = [
     (quantity("forecast_wear_volume", "m3", "worn volume that is foretold"), |it| it.worn_volume()),
     (quantity("forecast_wear_depth", "m", "largest wear depth that is foretold"), |it| {
         it.wear_depth().into_iter().map(largest).collect()
