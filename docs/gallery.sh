@@ -25,6 +25,8 @@ draw "$work/tradeoff/tradeoff.h5" tradeoff
 
 "$fretwear" calibrate data/calibration/ball.toml -o "$work/calibration" --quiet
 draw "$work/calibration/calibration.h5" calibration
+"$fretwear" calibrate data/calibration/ball_amplitude.toml -o "$work/forecast" --predict data/scenes/paraboloid.toml --quiet
+draw "$work/forecast/calibration.h5" calibration_forecast
 
 cat >"$work/one.toml" <<END
 title = "Limit over the amplitude"

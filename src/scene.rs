@@ -347,7 +347,7 @@ impl Scene {
 }
 
 /// Reads a TOML file, bounded in size.
-fn read_text(path: &Path) -> Result<String> {
+pub(crate) fn read_text(path: &Path) -> Result<String> {
     let read = input::bytes(path, LARGEST, Pipes::Read).and_then(input::text);
     read.map_err(|unread| {
         let cure = match unread {

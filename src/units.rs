@@ -13,5 +13,5 @@ pub use key::{Form, Key, Kind, Rule, Table};
 pub use quantity::parse;
 pub(crate) use quantity::split_number;
 pub use range::Range;
-pub(crate) use shown::{Scale, number};
+pub(crate) use shown::{Scale, number, unit_in_words};
 pub(crate) use unit::Unit;

@@ -5,84 +5,17 @@ mod support;
 use std::fs;
 use std::path::Path;
 
+use fretwear::Stop;
 use fretwear::scene::sampling::{Method, UnitCube};
 use fretwear::scene::{Calibration, Measured};
 use fretwear::study::calibration::{Outcome, calibrate};
-use fretwear::{Results, Scene, Stop};
 use rayon::prelude::*;
 use serde_json::Value;
-use spec_math::cephes64::ndtri;
+use support::calibration::{AMPLITUDE, BALL, FRICTION, SCAR, WEAR, csv, found, holds, noise, scar, truth};
 use support::command::{done, run, text};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Steel on steel in partial slip, as data/scenes/paraboloid.toml, at most a million cycles.
-const BALL: &str = r#"
-[indenter.paraboloid]
-radius = "10 mm"
-[half_space]
-grading = 0
-modulus = "105 GPa"
-poisson_ratio = 0.3
-[friction.coulomb]
-coefficient = 0.7
-[wear.archard]
-coefficient = 1e-14
-[loading]
-initial_force = 10
-amplitude = "0.325 um"
-cycles = 1e6
-"#;
-
-const WEAR: &str = "[[unknowns]]\nkey = \"wear.archard.coefficient\"\nfrom = 1e-17\nto = 1e-11\n";
-const AMPLITUDE: &str = "[[unknowns]]\nkey = \"loading.amplitude\"\nfrom = \"0.2 um\"\nto = \"0.45 um\"\n";
-const FRICTION: &str = "[[unknowns]]\nkey = \"friction.coulomb.coefficient\"\nfrom = 0.4\nto = 1.2\n";
-
-/// Normal numbers, the same for the same seed.
-fn noise(seed: u64, count: usize) -> Vec<f64> {
-    let cube = UnitCube::new(Method::Random, count as u64, 1, seed);
-    (0..count as u64).map(|i| ndtri(cube.coordinate(i, 0).clamp(1e-12, 1.0 - 1e-12))).collect()
-}
-
-/// The run of a scene with snapshots at these cycles, finer than any calibration of it.
-fn truth(scene: &str, settings: &[&str], cycles: &[f64]) -> Results {
-    let settings: Vec<String> = settings.iter().map(|it| (*it).to_owned()).collect();
-    let end = cycles.last().expect("some");
-    let output = [format!("output.at_cycles={cycles:?}"), format!("loading.cycles={end:e}")];
-    let settings = [&settings[..], &output, &["numerics.accuracy=1e-5".into()]].concat();
-    let scene = Scene::from_toml_with(scene, Path::new("truth"), Path::new(""), &settings);
-    scene.expect("a scene").simulate().expect("it runs")
-}
-
-/// A calibration in a folder of its own: scene, columns, document.
-fn found(scene: &str, columns: &[(&str, &str)], document: &str) -> Outcome {
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("scene.toml"), scene).expect("written");
-    for (name, text) in columns {
-        fs::write(folder.path().join(name), text).expect("written");
-    }
-    let text = if scene.is_empty() { document.into() } else { format!("scene = \"scene.toml\"\n{document}") };
-    let calibration = Calibration::from_toml(&text, "calibration", folder.path());
-    let calibration = calibration.unwrap_or_else(|error| panic!("{error}\n{text}"));
-    calibrate(&calibration, &Stop::default())
-        .unwrap_or_else(|error| panic!("{error}"))
-        .expect("it was not stopped")
-}
-
-fn csv(header: &str, columns: &[&[f64]]) -> String {
-    let rows = (0..columns[0].len()).map(|i| {
-        columns.iter().map(|column| format!("{:e}", column[i])).collect::<Vec<_>>().join(",") + "\n"
-    });
-    format!("{header}\n{}", rows.collect::<String>())
-}
-
-fn holds(outcome: &Outcome, truths: &[f64]) -> Vec<bool> {
-    let inside = |(it, truth): (&fretwear::study::calibration::Parameter, &f64)| {
-        it.interval[0].is_none_or(|low| low <= *truth) && it.interval[1].is_none_or(|high| *truth <= high)
-    };
-    outcome.parameters.iter().zip(truths).map(inside).collect()
 }
 
 /// The two regressions through the origin of van Peteghem, Fouvry, Petit, Wear 271 (2011) 1535, with their standard errors.
@@ -152,29 +85,6 @@ fn columns_are_read_however_they_are_written() {
         assert_eq!(read.notes().len(), usize::from(number == 4));
     }
 }
-
-/// Points along a line through the centre of a scar on rough ground that lies askew.
-fn scar(results: &Results, seed: u64, roughness: f64, centre: f64) -> String {
-    let (radius, depth) = (results.radius(), *results.wear_depth().last().expect("some"));
-    let x: Vec<f64> = (0..161).map(|i| -4e-4 + 5e-6 * f64::from(i)).collect();
-    let at = |x: f64| {
-        let r = (x - centre).abs();
-        let after = radius.partition_point(|it| *it < r);
-        if after == 0 || after == radius.len() {
-            return 0.0;
-        }
-        let part = (r - radius[after - 1]) / (radius[after] - radius[after - 1]);
-        depth[after - 1] + part * (depth[after] - depth[after - 1])
-    };
-    let z: Vec<f64> = x
-        .iter()
-        .zip(noise(seed, x.len()))
-        .map(|(x, noise)| 3e-7 + 1e-4 * x - at(*x) + roughness * noise)
-        .collect();
-    csv("x,z", &[&x, &z])
-}
-
-const SCAR: &str = "[[data]]\nfile = \"s.csv\"\nposition = \"x\"\nheight = \"z\"\n";
 
 #[test]
 fn a_scar_tells_its_coefficient_centre_offset_tilt_and_roughness() {
@@ -403,101 +313,6 @@ fn the_product_that_gross_slip_tells_is_named() {
     assert!(product.relative < 0.03, "{product:?}");
 }
 
-/// How often the interval holds the truth, and the mean of `(estimate - truth)/truth` over its standard error.
-fn coverage(kind: &str, sets: usize, part: f64) -> (f64, f64) {
-    let cycles = [1e4, 3e4, 1e5, 1.5e5, 2e5, 3e5, 4e5, 7e5];
-    let early = [500.0, 1e3, 2e3, 3e3, 4e3, 5e3, 6e3, 8e3];
-    let slide = ["loading.normal_force=10", "loading.amplitude=2e-6"];
-    let over = |name: &str| {
-        format!(
-            "[[data]]\nfile = \"v.csv\"\ncycles = \"N\"\n{name} = \"V\"\nrelative_deviation = \"estimated\"\n"
-        )
-    };
-    let set = "set = { \"loading.normal_force\" = 10, \"loading.amplitude\" = 2e-6 }\n";
-    let noisy = |values: &[f64], seed: u64| -> Vec<f64> {
-        values.iter().zip(noise(seed, values.len())).map(|(v, e)| v * (1.0 + part * e)).collect()
-    };
-    let results = match kind {
-        "gross" => truth(BALL, &slide, &early),
-        "scar" => truth(BALL, &[], &[2e5]),
-        "loop" => truth(BALL, &slide, &[1000.0]),
-        _ => truth(BALL, &[], &cycles),
-    };
-    let energies: Vec<f64> = (1..=8).map(f64::from).collect();
-    let roughness = part * results.wear_depth().last().expect("some").iter().fold(0.0, |a: f64, b| a.max(*b));
-    let (u, q) = (results.loop_displacement()[1], results.loop_force()[1]);
-    let (u, q): (Vec<f64>, Vec<f64>) = u.iter().zip(q).step_by(2).unzip();
-    let strength = q.iter().fold(0.0, |a: f64, b| a.max(*b));
-    let one = |seed: u64| {
-        let (table, document, truth) = match kind {
-            "partial" => (
-                csv("N,V", &[&cycles, &noisy(&results.worn_volume()[1..], seed)]),
-                format!("{WEAR}{}", over("wear_volume")),
-                1e-14,
-            ),
-            "gross" => (
-                csv("N,V", &[&early, &noisy(&results.worn_volume()[1..], seed)]),
-                format!("{WEAR}{}{set}", over("wear_volume")),
-                1e-14,
-            ),
-            "energies" => {
-                let volumes: Vec<f64> = energies.iter().map(|it| 1e-14 * it).collect();
-                let data = "[[data]]\nfile = \"v.csv\"\ndissipated_energy = \"E\"\nwear_volume = \"V\"\nrelative_deviation = \"estimated\"\n";
-                let unknown = WEAR.replace("archard", "dissipated-energy");
-                (csv("E,V", &[&energies, &noisy(&volumes, seed)]), format!("{unknown}{data}"), 1e-14)
-            }
-            "scar" => (
-                scar(&results, seed, roughness, 1e-5),
-                format!("{WEAR}{SCAR}cycles = 2e5\n").replace("s.csv", "v.csv"),
-                1e-14,
-            ),
-            _ => {
-                let forces: Vec<f64> =
-                    q.iter().zip(noise(seed, q.len())).map(|(q, e)| q + part * strength * e).collect();
-                let data = "[[data]]\nfile = \"v.csv\"\ndisplacement = \"u\"\ntangential_force = \"Q\"\ncycles = 1000\n";
-                (csv("u,Q", &[&u, &forces]), format!("{FRICTION}{data}{set}"), 0.7)
-            }
-        };
-        let scene = if kind == "energies" { "" } else { BALL };
-        let outcome = found(scene, &[("v.csv", &table)], &document);
-        (holds(&outcome, &[truth])[0], outcome.parameters[0].estimate / truth - 1.0)
-    };
-    let all: Vec<(bool, f64)> = (0..sets as u64).into_par_iter().map(|seed| one(1000 + seed)).collect();
-    let count = all.len() as f64;
-    let inside = all.iter().filter(|it| it.0).count() as f64 / count;
-    let mean = all.iter().map(|it| it.1).sum::<f64>() / count;
-    let spread = (all.iter().map(|it| (it.1 - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
-    println!(
-        "{kind}, noise {part}: {sets} sets, inside {inside:.3}, bias {mean:.2e} of standard error {:.2e}",
-        spread / count.sqrt()
-    );
-    (inside, mean / (spread / count.sqrt()))
-}
-
-#[test]
-fn intervals_of_energies_hold_the_truth_as_often_as_they_say() {
-    let (inside, bias) = coverage("energies", 400, 0.15);
-    // Three standard deviations of 400 draws are 3.3 %.
-    assert!((inside - 0.95).abs() < 0.033 && bias.abs() < 3.0, "{inside} {bias}");
-}
-
-/// Minutes: 500 sets each of five kinds at two noises.
-#[test]
-#[ignore = "some minutes"]
-fn intervals_of_all_kinds_hold_the_truth_as_often_as_they_say() {
-    let mut wrong = vec![];
-    for kind in ["energies", "partial", "gross", "scar", "loop"] {
-        for part in [0.02, 0.15] {
-            let (inside, bias) = coverage(kind, 500, part);
-            // Of ten biases one beyond 2.8 standard errors comes by chance in 5 % of all seeds.
-            if !(0.93..=0.97).contains(&inside) || bias.abs() > 2.8 {
-                wrong.push(format!("{kind}, {part}: {inside}, bias {bias}"));
-            }
-        }
-    }
-    assert!(wrong.is_empty(), "{wrong:#?}");
-}
-
 /// Volumes by a power of the pressure, and Archard's law beside it: with errors of 1 % the data tell, by eight numbers.
 #[test]
 fn laws_are_told_apart_by_akaikes_criterion() {
@@ -692,6 +507,12 @@ fn the_command_prints_json_writes_its_files_and_overwrites_nothing() {
     done(folder.path(), &["plot", "out/calibration.h5", "-o", "fit.svg"]);
     done(folder.path(), &["report", "out/calibration.h5", "-o", "fit.html"]);
     done(folder.path(), &["info", "out/calibration.h5"]);
+    // A calibration to begin with, on the scene to begin with.
+    done(folder.path(), &["init", "calibration", "-o", "begin.toml"]);
+    done(folder.path(), &["init", "-o", "scene.toml"]);
+    fs::write(folder.path().join("volumes.csv"), "N;V [um^3]\n1000;8,1\n2000;16,4\n4000;31,9\n")
+        .expect("written");
+    done(folder.path(), &["calibrate", "begin.toml", "-o", "begun"]);
     fs::write(folder.path().join("bad.toml"), "[[unknowns]]\nkey = \"wear\"\n").expect("written");
     let bad = run(folder.path(), &["calibrate", "bad.toml", "-o", "none"]);
     assert_eq!(bad.status.code(), Some(2));

@@ -15,6 +15,8 @@ const SCENE: &str = include_str!("support/base.toml");
 const STUDY: &str =
     "scene = \"scene.toml\"\n[[axes]]\nkey = \"friction.coulomb.coefficient\"\nvalues = [0.3, 0.5]\n";
 const CASES: &str = "scene = \"scene.toml\"\n[[cases]]\nname = \"one\"\npredicted = \"outside\"\n";
+const ALPHA: &str = "[[unknowns]]\nkey = \"wear.dissipated-energy.coefficient\"\nfrom = 1e-17\nto = 1e-11\n[[data]]\nfile = \"energies.csv\"\ndissipated_energy = \"E\"\nwear_volume = \"V\"\n";
+const ENERGIES: &str = "E,V\n1,2e-14\n2,3.9e-14\n3,6.1e-14\n";
 const USERS: &str = "the user's own, for years\n";
 
 /// A command that writes one file; `@` stands for it.
@@ -32,7 +34,7 @@ const FILES: [(&str, &str); 10] = [
 ];
 
 /// A command that writes several files into a directory, one of them, and its exit code.
-const FOLDERS: [(&str, &str, i32); 5] = [
+const FOLDERS: [(&str, &str, i32); 6] = [
     ("map -o @", "profiles.csv", 0),
     ("universality cases.toml --quiet -o @", "universality.csv", 0),
     (
@@ -42,6 +44,7 @@ const FOLDERS: [(&str, &str, i32); 5] = [
     ),
     ("submit study.toml --engine slurm --dry-run -o @", "sweep.sbatch", 0),
     ("man -o @", "fretwear-run.1", 0),
+    ("calibrate alpha.toml --predict scene.toml --draws 20 --quiet -o @", "forecast.csv", 0),
 ];
 
 /// A folder with everything that commands read.
@@ -50,7 +53,13 @@ struct Place(tempfile::TempDir);
 impl Place {
     fn new() -> Self {
         let place = Self(tempfile::tempdir().unwrap());
-        for (name, text) in [("scene.toml", SCENE), ("study.toml", STUDY), ("cases.toml", CASES)] {
+        for (name, text) in [
+            ("scene.toml", SCENE),
+            ("study.toml", STUDY),
+            ("cases.toml", CASES),
+            ("alpha.toml", ALPHA),
+            ("energies.csv", ENERGIES),
+        ] {
             fs::write(place.at(name), text).unwrap();
         }
         for command in ["run scene.toml -o run.h5 --quiet", "sweep study.toml -o swept --quiet"] {

@@ -71,7 +71,8 @@ fn shipped() -> Vec<(FileKind, PathBuf)> {
     [
         of(FileKind::Scene, "scenes", |_| true),
         of(FileKind::Scene, "tradeoff", |_| true),
-        of(FileKind::Scene, "template", |_| true),
+        of(FileKind::Scene, "template", |name| name == "scene.toml"),
+        of(FileKind::Calibration, "template", |name| name == "calibration.toml"),
         of(FileKind::Study, "studies", |name| !name.starts_with("universality")),
         of(FileKind::Map, "maps", |_| true),
         of(FileKind::Universality, "studies", |name| name.starts_with("universality")),

@@ -14,7 +14,11 @@ use fretwear::data::{Format, format_of};
 use fretwear::report::{self, CheckReport, LimitReport};
 use fretwear::run::Shared;
 use fretwear::solver::model::OperatorStore;
-use fretwear::study::{calibration::Comparison, on_threads, run_many_sharing, sweep::SweepReport};
+use fretwear::study::{
+    calibration::{self, Comparison},
+    on_threads, run_many_sharing,
+    sweep::SweepReport,
+};
 use fretwear::{Progress, Result as Outcome, Stop, SweepOptions, Watch};
 use pyo3::prelude::*;
 
@@ -120,15 +124,19 @@ fn sweep(
 #[pyfunction]
 fn calibrate(
     py: Python,
-    calibration: &Bound<PyAny>,
+    calibrated: &Bound<PyAny>,
     folder: PathBuf,
     overwrite: bool,
+    predict: Option<&Bound<PyAny>>,
+    draws: usize,
 ) -> PyResult<Option<String>> {
-    let laws = scene::calibration(calibration)?.models();
+    let foretold = predict.map(|it| scene::foretold(it, draws)).transpose()?;
+    let options = calibration::Options { overwrite, foretold };
+    let laws = scene::calibration(calibrated)?.models();
     let stop = Stop::default();
     let call = Call { callback: None, value: &|| (0.0, 0.0) };
     let work = || {
-        let found = Comparison::new(&laws, &folder, overwrite, &stop)?.run()?;
+        let found = Comparison::new(&laws, &folder, &options, &stop)?.run(None)?;
         Ok(found.map(|it| report::json(&it.report())))
     };
     let (outcome, _) = waited(py, &stop, &call, || on_threads(work).and_then(|it| it))?;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fretwear::scene::Calibration;
+use fretwear::study::calibration::Foretold;
 use fretwear::{Error, Study};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -120,11 +121,34 @@ pub fn study(given: &Bound<PyAny>) -> PyResult<Study> {
     read.map_err(|error| raised(given.py(), &error))
 }
 
-/// A calibration; files that a dictionary or a text names are relative to the working directory.
+/// The text of a scene that is foretold, and what messages call it.
+pub fn foretold(given: &Bound<PyAny>, draws: usize) -> PyResult<Foretold> {
+    match Source::new(given)? {
+        Source::File(path) => Foretold::read(&path, draws).map_err(|error| of_input(given.py(), &error)),
+        Source::Text(text) => Ok(Foretold { text, name: "scene".into(), draws }),
+    }
+}
+
+/// A calibration, whose scene may be a dictionary as well; files that a dictionary or a text names are relative to the working directory.
 pub fn calibration(given: &Bound<PyAny>) -> PyResult<Calibration> {
-    let read = match Source::new(given)? {
-        Source::File(path) => Calibration::read(&path),
-        Source::Text(text) => Calibration::from_toml(&text, "calibration", Path::new("")),
+    let here = Path::new("");
+    let read = match given.cast::<PyDict>() {
+        Ok(table) => {
+            let mut table = values::table(table, "")?;
+            match table.get_mut("scene") {
+                Some(Value::Table(base)) => {
+                    let base = base.to_string();
+                    table.insert("scene".into(), Value::String("scene".into()));
+                    let base = (&base[..], Path::new("scene"));
+                    Calibration::from_texts(&table.to_string(), "calibration", here, base)
+                }
+                _ => Calibration::from_toml(&table.to_string(), "calibration", here),
+            }
+        }
+        Err(_) => match Source::new(given)? {
+            Source::File(path) => Calibration::read(&path),
+            Source::Text(text) => Calibration::from_toml(&text, "calibration", here),
+        },
     };
     read.map_err(|error| of_input(given.py(), &error))
 }

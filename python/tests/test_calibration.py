@@ -55,3 +55,30 @@ def test_what_is_wrong_is_said_with_its_key(tmp_path):
     with pytest.raises(FileExistsError):
         fretwear.calibrate(PUBLISHED, output=output)
     fretwear.calibrate(PUBLISHED, output=output, overwrite=True)
+
+
+def test_a_scene_of_a_dictionary_is_calibrated_and_another_foretold(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene = {
+        "indenter": {"paraboloid": {"radius": "10 mm"}},
+        "half_space": {"grading": 0, "modulus": "105 GPa", "poisson_ratio": 0.3},
+        "friction": {"coulomb": {"coefficient": 0.7}},
+        "wear": {"archard": {"coefficient": 1e-14}},
+        "loading": {"initial_force": 10, "amplitude": "0.325 um", "cycles": 1e4},
+    }
+    run = fretwear.run({**scene, "output": {"at_cycles": [2e3, 5e3, 1e4]}})
+    factors = [1.01, 0.99, 1.0]
+    rows = "".join(f"{n},{v * f}\n" for n, v, f in zip(run.cycles[1:], run.wear_volume[1:], factors))
+    (tmp_path / "v.csv").write_text("N,V\n" + rows)
+    found = fretwear.calibrate(
+        {
+            "scene": scene,
+            "unknowns": [{"key": "wear.archard.coefficient", "from": 1e-17, "to": 1e-11}],
+            "data": [{"file": "v.csv", "cycles": "N", "wear_volume": "V", "relative_deviation": 0.01}],
+        },
+        predict=scene,
+        draws=40,
+    )
+    volume = next(it for it in found.summary["forecast"]["results"] if it["name"] == "wear_volume")
+    assert volume["lower"] < run.wear_volume[-1] < volume["upper"]
+    assert found.lower[0] < 1e-14 < found.upper[0]

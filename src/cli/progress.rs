@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::Result;
 use crate::solver::simulation::{Flow, Observer, Simulation};
 use crate::study::Progress;
+use crate::study::calibration::Onlooker;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Parts into which the bar is divided.
@@ -44,6 +45,49 @@ impl Progress for SceneProgress {
 }
 
 impl Drop for SceneProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Shows how often the model was run and the misfit, then how many runs of a scene that is foretold are done; draws nothing unless stderr is a
+/// terminal.
+#[derive(Debug)]
+pub struct CalibrationProgress {
+    bar: ProgressBar,
+}
+
+impl Default for CalibrationProgress {
+    fn default() -> Self {
+        let bar = ProgressBar::new_spinner();
+        let template = "{spinner} {elapsed}  {msg}";
+        bar.set_style(ProgressStyle::with_template(template).expect("the template is well formed"));
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar }
+    }
+}
+
+impl Onlooker for CalibrationProgress {
+    fn misfit(&self, runs: u64, reduced: f64) {
+        if !self.bar.is_hidden() {
+            self.bar.set_message(format!("{runs} runs of the model  misfit {reduced:.4e} for each value"));
+        }
+    }
+}
+
+impl Progress for CalibrationProgress {
+    fn begin(&self, scenes: u64) {
+        let template = "{bar:30} {pos}/{len} runs of the scene that is foretold  {eta} left";
+        self.bar.set_style(ProgressStyle::with_template(template).expect("the template is well formed"));
+        self.bar.set_length(scenes);
+    }
+
+    fn done(&self, _failed: bool) {
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for CalibrationProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

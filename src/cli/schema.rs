@@ -1,4 +1,4 @@
-//! `fretwear schema` and `fretwear init`: what helps to write a scene.
+//! `fretwear schema` and `fretwear init`: what helps to write a scene or a calibration.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,9 @@ use crate::scene::schema::FileKind;
 use clap::Args;
 
 /// A scene with its alternatives as comments.
-const TEMPLATE: &str = include_str!("../../data/template/scene.toml");
+const SCENE: &str = include_str!("../../data/template/scene.toml");
+/// A calibration, likewise.
+const CALIBRATION: &str = include_str!("../../data/template/calibration.toml");
 
 #[derive(Args)]
 pub struct Schema {
@@ -29,8 +31,11 @@ pub struct Schema {
 
 #[derive(Args)]
 pub struct Init {
-    /// The scene to write; without it the text goes to stdout
-    #[arg(short, long, value_name = "SCENE.toml")]
+    /// What kind of file
+    #[arg(value_name = "scene|calibration", default_value = "scene", value_parser = ["scene", "calibration"])]
+    kind: String,
+    /// The file to write; without it the text goes to stdout
+    #[arg(short, long, value_name = "FILE.toml")]
     output: Option<PathBuf>,
     /// Overwrite the file if it exists
     #[arg(long, requires = "output")]
@@ -52,9 +57,10 @@ pub fn schema(arguments: &Schema) -> Result<String> {
     write(text, arguments.output.as_deref(), arguments.force)
 }
 
-/// Writes the scene; what is left to print.
+/// Writes the scene or the calibration; what is left to print.
 pub fn init(arguments: &Init) -> Result<String> {
-    write(TEMPLATE.into(), arguments.output.as_deref(), arguments.force)
+    let text = if arguments.kind == "calibration" { CALIBRATION } else { SCENE };
+    write(text.into(), arguments.output.as_deref(), arguments.force)
 }
 
 fn write(text: String, output: Option<&Path>, overwrite: bool) -> Result<String> {

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::figures::drawing::{
     Axis, Colour, DISTINCT, Dash, Figure, Panel, Row, Series, Shape, Spacing, Style, plain,
 };
+use crate::units::unit_in_words;
 
 /// Most data sets and unknowns that are drawn.
 const MOST: usize = 6;
@@ -15,6 +16,10 @@ const POINT: Style = Style::Points { shape: Shape::Circle, radius: 2.2 };
 const LINE: Style = Style::Line { width: 1.4, dash: Dash::Solid };
 const BAR: Style = Style::Line { width: 0.8, dash: Dash::Solid };
 const LEVEL: Style = Style::Line { width: 0.9, dash: Dash::Dashed };
+const DRAW: Style = Style::Points { shape: Shape::Disc, radius: 1.1 };
+const CENTRE: Style = Style::Points { shape: Shape::Diamond, radius: 4.0 };
+/// Most unknowns of the corner.
+const MOST_OF_CORNER: usize = 5;
 /// Height of the squared quantile that is shown at most, in units of that where the interval ends.
 const ROOM: f64 = 1.6;
 
@@ -54,12 +59,20 @@ pub(super) fn figure(file: &Dataset) -> Result<Figure> {
     for pair in profiles.chunks(2) {
         rows.push(Row { height: 180.0, panels: pair.to_vec() });
     }
+    rows.extend(corner(file)?);
+    rows.extend(bands(file)?);
     let title = if file.title().is_empty() { None } else { Some(plain(file.title())) };
-    let notes = [
+    let mut notes = vec![
         "Bars: one standard deviation. Misfit: sum of squares above the least, all else fitted anew.",
         "Vertical lines: the ends of the interval of 95 %.",
     ];
-    Ok(Figure { title, rows, notes: notes.map(String::from).to_vec() })
+    if file.along("parameter")?.len() > 1 {
+        notes.push("Of pairs of unknowns: draws of what they may be by the data, the estimates, and lines at the ends of their intervals.");
+    }
+    if file.has("forecast_cycles") {
+        notes.push("Foretold: a line at the estimates, and where 95 % of the draws lie.");
+    }
+    Ok(Figure { title, rows, notes: notes.into_iter().map(String::from).collect() })
 }
 
 impl Values<'_> {
@@ -146,18 +159,99 @@ fn profiles(file: &Dataset) -> Result<Vec<Panel>> {
         };
         let level = all.iter().filter(within).map(|it| it[1]).fold(1.0, f64::max);
         let curve: Vec<[f64; 2]> = all.into_iter().filter(|it| it[1] <= ROOM * level).collect();
-        let unit = if units.get(i) == "1" { "" } else { units.get(i) };
+        let unit = unit_in_words(units.get(i));
         let x = Measure::NUMBER.axis(keys.get(i), Spacing::Linear, curve.iter().map(|it| it[0]), 0.06);
         let heights = curve.iter().map(|it| it[1]).chain([0.0]);
         let y = Measure::NUMBER.axis("misfit above the least", Spacing::Linear, heights, 0.06);
-        let mut panel = Panel::new(Axis { unit: unit.into(), ..x }, y);
+        let mut panel = Panel::new(Axis { unit, ..x }, y);
         let base = panel.y.range[0];
         for end in [lower[i], upper[i]].into_iter().filter(|end| end.is_finite()) {
             panel.series.push(Series::new("", LEVEL, Colour::GREY, vec![[end, base], [end, level]]));
         }
-        panel.series.push(Series::new("", LINE, DISTINCT[0], curve.clone()));
+        panel.series.push(Series::new("", LINE, DISTINCT[0], rounded(&curve)));
         panel.series.push(Series::new("", POINT, DISTINCT[0], curve));
         panel
     };
     Ok((0..count.min(MOST)).map(panel).collect())
+}
+
+/// A profile between its points: its root, with a sign, is straight there, as that of a parabola.
+fn rounded(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    const PARTS: usize = 12;
+    let least = curve.iter().map(|it| it[1]).fold(f64::INFINITY, f64::min);
+    let lowest = curve.iter().position(|it| it[1] == least).unwrap_or(0);
+    let root = |i: usize| curve[i][1].max(0.0).sqrt() * if i < lowest { -1.0 } else { 1.0 };
+    let between = |i: usize| {
+        let ([x, _], [end, _]) = (curve[i - 1], curve[i]);
+        (0..PARTS).map(move |part| {
+            let part = part as f64 / PARTS as f64;
+            let root = root(i - 1) + part * (root(i) - root(i - 1));
+            [x + part * (end - x), root * root]
+        })
+    };
+    (1..curve.len()).flat_map(between).chain(curve.last().copied()).collect()
+}
+
+/// A corner: each unknown against those before it.
+fn corner(file: &Dataset) -> Result<Vec<Row>> {
+    let count = file.along("parameter")?.len();
+    if count < 2 || !file.has("draw_value") {
+        return Ok(vec![]);
+    }
+    let draws = file.along("draw")?.len();
+    let (keys, units) = (file.words("key", count)?, file.words("unit", count)?);
+    let values = file.numbers("draw_value", &[draws, count])?;
+    let [estimate, lower, upper] = ["estimate", "lower", "upper"].map(|name| file.numbers(name, &[count]));
+    let (estimate, ends) = (estimate?, [lower?, upper?]);
+    let of = |i: usize| -> Vec<f64> { (0..draws).map(|draw| values[draw * count + i]).collect() };
+    let axis = |i: usize| {
+        let all = of(i).into_iter().chain([estimate[i]]);
+        let unit = unit_in_words(units.get(i));
+        Axis { unit, ..Measure::NUMBER.axis(keys.get(i), Spacing::Linear, all, 0.05) }
+    };
+    let panel = |i: usize, j: usize| {
+        let mut panel = Panel::new(axis(j), axis(i));
+        panel.series.push(Series::new("", DRAW, DISTINCT[0], points(&of(j), &of(i))));
+        let (x, y) = (panel.x.range, panel.y.range);
+        for end in ends.map(|it| it[j]).into_iter().filter(|it| it.is_finite()) {
+            panel.series.push(Series::new("", LEVEL, Colour::GREY, y.map(|it| [end, it]).to_vec()));
+        }
+        for end in ends.map(|it| it[i]).into_iter().filter(|it| it.is_finite()) {
+            panel.series.push(Series::new("", LEVEL, Colour::GREY, x.map(|it| [it, end]).to_vec()));
+        }
+        panel.series.push(Series::new("", CENTRE, Colour::BLACK, vec![[estimate[j], estimate[i]]]));
+        panel
+    };
+    let row = |i: usize| Row { height: 200.0, panels: (0..i).map(|j| panel(i, j)).collect() };
+    Ok((1..count.min(MOST_OF_CORNER)).map(row).collect())
+}
+
+/// What is foretold of another scene over its cycles.
+fn bands(file: &Dataset) -> Result<Vec<Row>> {
+    if !file.has("forecast_cycles") {
+        return Ok(vec![]);
+    }
+    let count = file.along("forecast_snapshot")?.len();
+    let cycles = file.numbers("forecast_cycles", &[count])?;
+    let panel = |name: &str, quantity: &str, unit: &str, from_zero: bool| -> Result<Panel> {
+        let all = file.numbers(name, &[3, count])?;
+        let known = |side: usize| -> Vec<[f64; 2]> {
+            let own = points(cycles, &all[side * count..(side + 1) * count]);
+            own.into_iter().filter(|it| it[1].is_finite()).collect()
+        };
+        let heights = all.iter().copied().filter(|it| it.is_finite()).chain(from_zero.then_some(0.0));
+        let y = Axis { unit: unit.into(), ..Measure::NUMBER.axis(quantity, Spacing::Linear, heights, 0.05) };
+        let x = Measure::NUMBER.axis("cycles", Spacing::Linear, cycles.iter().copied(), 0.02);
+        let mut panel = Panel::new(x, y);
+        let ring = known(1).into_iter().chain(known(2).into_iter().rev()).collect();
+        let name = "where 95 % of the draws lie";
+        panel.series.push(Series::new(name, Style::Region { opacity: 0.3 }, DISTINCT[0], ring).in_legend());
+        panel.series.push(Series::new("foretold", LINE, DISTINCT[0], known(0)).in_legend());
+        Ok(panel)
+    };
+    let panels = vec![
+        panel("forecast_wear_volume", "worn volume foretold", "m³", true)?,
+        panel("forecast_contact_radius", "contact radius foretold", "m", false)?,
+    ];
+    Ok(vec![Row { height: 200.0, panels }])
 }

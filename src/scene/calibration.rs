@@ -33,6 +33,20 @@ const ALPHA: &str = "wear.dissipated-energy.coefficient";
 /// Keys of `[numerics]` in whose place the accuracy stands that the data ask for.
 const BY_HAND: [&str; 2] = ["springs", "tolerance"];
 
+/// A word on numerics by hand, which the accuracy that the data ask for replaces.
+fn by_hand(base: &Table, data: &[DataSet]) -> Option<String> {
+    let numerics = base.get("numerics").and_then(Value::as_table);
+    let given = |key: &&&str| {
+        let dotted = format!("numerics.{key}");
+        numerics.is_some_and(|it| it.contains_key(**key))
+            || data.iter().any(|it| it.settings.iter().any(|(key, _)| *key == dotted))
+    };
+    let given: Vec<String> = BY_HAND.iter().filter(given).map(|key| format!("numerics.{key}")).collect();
+    (!given.is_empty()).then(|| {
+        format!("{} by hand not followed: runs are as accurate as the data ask for", given.join(" and "))
+    })
+}
+
 /// What a data set holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measured {
@@ -181,6 +195,8 @@ pub struct Calibration {
     settings: Vec<(String, Value)>,
     models: Vec<Model>,
     is_robust: bool,
+    bootstrap: u64,
+    seed: u64,
     base: Option<Table>,
     /// Folder of the base scene, to which files that it names are relative.
     folder: PathBuf,
@@ -206,6 +222,21 @@ impl Calibration {
     /// # Errors
     /// As [`Calibration::read`].
     pub fn from_toml(text: &str, name: &str, folder: &Path) -> Result<Self> {
+        Self::of_texts(text, name, folder, None)
+    }
+
+    /// Reads a calibration and its base scene from their texts; the calibration names the scene by any word.
+    ///
+    /// # Arguments
+    /// * `base` -- text of the scene, and the path to whose folder the files that it names are relative
+    ///
+    /// # Errors
+    /// As [`Calibration::read`].
+    pub fn from_texts(text: &str, name: &str, folder: &Path, base: (&str, &Path)) -> Result<Self> {
+        Self::of_texts(text, name, folder, Some(base))
+    }
+
+    fn of_texts(text: &str, name: &str, folder: &Path, base: Option<(&str, &Path)>) -> Result<Self> {
         let source = Source { name, text, kind: "a calibration" };
         if text.len() as u64 > LARGEST {
             return Err(
@@ -217,10 +248,18 @@ impl Calibration {
         let mut calibration = reading::read(&root, &source.values()?, folder)?;
         (calibration.name, calibration.text) = (name.into(), text.into());
         if let Some(entry) = root.optional("scene") {
-            let base = folder.join(entry.string()?);
-            let text =
-                read_text(&base).map_err(|error| entry.error(format_args!("cannot be used: {error}")))?;
-            calibration.base = Some(base_table(&text, &base)?);
+            let named = folder.join(entry.string()?);
+            let (text, base) = match base {
+                Some((text, base)) => (text.to_owned(), base.to_owned()),
+                None => {
+                    let text = read_text(&named);
+                    let wrong = |error| entry.error(format_args!("cannot be used: {error}"));
+                    (text.map_err(wrong)?, named)
+                }
+            };
+            let table = base_table(&text, &base)?;
+            calibration.notes.extend(by_hand(&table, &calibration.data));
+            calibration.base = Some(table);
             calibration.folder = base.parent().unwrap_or(Path::new("")).to_owned();
             calibration.base_text = text;
         }
@@ -260,6 +299,16 @@ impl Calibration {
         self.is_robust
     }
 
+    /// How many times the data are made anew from their residuals, to tell intervals without normal errors; 0 for never.
+    pub fn bootstrap(&self) -> u64 {
+        self.bootstrap
+    }
+
+    /// Seed of the random numbers for that.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
     /// Whether there is a base scene; without one all data are measured energies.
     pub fn has_scene(&self) -> bool {
         self.base.is_some()
@@ -285,6 +334,17 @@ impl Calibration {
         &self.notes
     }
 
+    /// All data sets of the same scene that one run serves, in their order; a data set over measured energies needs none and is by itself.
+    pub fn companions(&self, data: usize) -> Vec<usize> {
+        let runs = |it: &DataSet| it.measured != Measured::VolumeOverEnergy;
+        let one = &self.data[data];
+        let same = |it: &DataSet| runs(it) && it.settings == one.settings;
+        match runs(one) {
+            true => (0..self.data.len()).filter(|it| same(&self.data[*it])).collect(),
+            false => vec![data],
+        }
+    }
+
     /// The scene of a data set.
     ///
     /// # Arguments
@@ -307,10 +367,7 @@ impl Calibration {
         for (key, value) in self.settings.iter().chain(&self.data[data].settings) {
             put(key, value.clone())?;
         }
-        for (unknown, value) in self.unknowns.iter().zip(values) {
-            put(&unknown.key, Value::Float(*value))?;
-            unknown.tied.iter().try_for_each(|key| put(key, Value::Float(*value)))?;
-        }
+        self.pairs(values).try_for_each(|(key, value)| put(key, Value::Float(value)))?;
         let end = *cycles.last().expect("a run lasts for some cycles");
         put("loading.cycles", Value::Float(end))?;
         put("output.at_cycles", Value::Array(cycles.iter().map(|it| Value::Float(*it)).collect()))?;
@@ -319,5 +376,32 @@ impl Calibration {
             BY_HAND.iter().for_each(|key| drop(numerics.remove(*key)));
         }
         Scene::with_rows(&table.to_string(), &name, &Rows::In(&self.folder))
+    }
+
+    /// All keys that are found or tied to one that is, with their values.
+    fn pairs(&self, values: &[f64]) -> impl Iterator<Item = (&str, f64)> {
+        self.unknowns.iter().zip(values.to_vec()).flat_map(|(unknown, value)| {
+            std::iter::once(&unknown.key).chain(&unknown.tied).map(move |key| (key.as_str(), value))
+        })
+    }
+
+    /// Another scene with the keys of the law and of the unknowns.
+    ///
+    /// # Arguments
+    /// * `text` -- of the scene, in TOML
+    /// * `name` -- what messages call it
+    /// * `folder` -- that to which the files it names are relative
+    /// * `values` -- of the unknowns, in SI, shape `(unknown,)`
+    ///
+    /// # Errors
+    /// As [`Scene::from_toml`].
+    pub fn scene_with(&self, text: &str, name: &Path, folder: &Path, values: &[f64]) -> Result<Scene> {
+        let mut table = base_table(text, name)?;
+        let name = name.display().to_string();
+        let own = self.settings.iter().map(|(key, value)| (key.as_str(), value.clone()));
+        for (key, value) in own.chain(self.pairs(values).map(|(key, it)| (key, Value::Float(it)))) {
+            set(&mut table, key, value).map_err(|why| Error::Scene(format!("{name}: {key}: {why}")))?;
+        }
+        Scene::with_rows(&table.to_string(), &name, &Rows::In(folder))
     }
 }

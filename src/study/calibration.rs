@@ -7,14 +7,20 @@
 //! Where deviations are not given they are estimated from the residuals; the unworn ground of a scar tells its own. Runs of the model are as
 //! accurate as a tenth of the deviations asks, and compared with finer ones at the end.
 
+mod bootstrap;
 mod files;
 mod fit;
+mod forecast;
+mod journal;
 mod models;
 mod objective;
+mod posterior;
 mod prediction;
 mod report;
+mod trajectory;
 mod uncertainty;
 
+pub use forecast::{Band, Forecast, Foretold};
 pub use models::Judged;
 pub use report::CalibrationReport;
 pub use uncertainty::CONFIDENCE;
@@ -22,9 +28,28 @@ pub use uncertainty::CONFIDENCE;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::error::{Error, Result};
+use fit::Fit;
+use journal::{Journal, Runs};
+
+use crate::error::{Domain, Error, Result};
 use crate::run::Stop;
 use crate::scene::Calibration;
+use crate::study::batch::Progress;
+
+/// Whoever looks on while unknowns are looked for; and while a scene is foretold, run by run.
+pub trait Onlooker: Progress {
+    /// The model was run so often, and the last misfit was this for each value.
+    fn misfit(&self, runs: u64, reduced: f64);
+}
+
+/// How a calibration is done.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Whether files that exist may be replaced.
+    pub overwrite: bool,
+    /// A scene that is foretold with what was found.
+    pub foretold: Option<Foretold>,
+}
 
 /// A key that was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +62,8 @@ pub struct Parameter {
     pub estimate: f64,
     /// Ends of the interval of 95 %, none where the misfit never rises so far within the bounds.
     pub interval: [Option<f64>; 2],
+    /// Ends of the interval of 95 % by data made anew from the residuals; none where it was not asked for.
+    pub bootstrap: Option<[f64; 2]>,
     /// Standard deviation by the curvature of the misfit, in SI.
     pub standard_error: f64,
     /// Values and misfits above the least, all else fitted anew, by increasing values.
@@ -85,6 +112,10 @@ pub struct Outcome {
     pub parameters: Vec<Parameter>,
     /// Correlations of their estimates, shape `(parameter, parameter)`.
     pub correlation: Vec<Vec<f64>>,
+    /// What the keys may be, by the data, in SI, shape `(draw, parameter)`.
+    pub draws: Vec<Vec<f64>>,
+    /// What was foretold of another scene, where that was asked for.
+    pub forecast: Option<Forecast>,
     /// Products that are known where single unknowns are not.
     pub combinations: Vec<Combination>,
     /// Misfit over degrees of freedom.
@@ -99,9 +130,9 @@ pub struct Outcome {
     pub warnings: Vec<String>,
     /// Runs of the model.
     pub runs: u64,
-    /// Largest difference of predictions from those of finer runs, in deviations.
+    /// Largest difference from finer runs: of predictions, in deviations, and of estimates, in standard errors.
     pub run_error: f64,
-    /// Whether that is below a tenth.
+    /// Whether that is below a tenth, and runs of a scene that is foretold are as accurate as it asks for.
     pub accuracy_met: bool,
     /// Wall time, s.
     pub wall_seconds: f64,
@@ -125,29 +156,31 @@ pub struct Outcome {
 /// # Ok::<(), fretwear::Error>(())
 /// ```
 pub fn calibrate(calibration: &Calibration, stop: &Stop) -> Result<Option<Outcome>> {
-    Ready::new(calibration, stop)?.run()
+    Ready::new(calibration, stop)?.run(None, None)
 }
 
 /// A calibration whose scenes are valid and whose data are enough.
-pub struct Ready<'a> {
-    fit: fit::Fit<'a>,
+struct Ready<'a> {
+    calibration: &'a Calibration,
+    stop: Stop,
     started: Instant,
 }
 
 impl<'a> Ready<'a> {
     /// # Errors
     /// As [`calibrate`], before any run of the model.
-    pub fn new(calibration: &'a Calibration, stop: &Stop) -> Result<Self> {
+    fn new(calibration: &'a Calibration, stop: &Stop) -> Result<Self> {
         let started = Instant::now();
-        Ok(Self { fit: fit::Fit::new(calibration, stop)?, started })
+        Fit::new(calibration, Runs::new(stop, None), None)?;
+        Ok(Self { calibration, stop: stop.clone(), started })
     }
 
     /// Finds the unknowns; none if it was stopped first.
     ///
     /// # Errors
     /// As [`calibrate`].
-    pub fn run(self) -> Result<Option<Outcome>> {
-        let outcome = self.fit.outcome()?;
+    fn run(self, journal: Option<&Journal>, onlooker: Option<&dyn Onlooker>) -> Result<Option<Outcome>> {
+        let outcome = Fit::new(self.calibration, Runs::new(&self.stop, journal), onlooker)?.outcome()?;
         Ok(outcome.map(|it| Outcome { wall_seconds: self.started.elapsed().as_secs_f64(), ..it }))
     }
 }
@@ -157,7 +190,8 @@ pub struct Comparison<'a> {
     laws: &'a [(String, Calibration)],
     ready: Vec<Ready<'a>>,
     folder: &'a Path,
-    overwrite: bool,
+    options: Options,
+    stop: Stop,
 }
 
 impl<'a> Comparison<'a> {
@@ -165,46 +199,66 @@ impl<'a> Comparison<'a> {
     ///
     /// # Arguments
     /// * `laws` -- [`Calibration::models`]
+    /// * `folder` -- where files are written
     ///
     /// # Errors
-    /// As [`Ready::new`]; [`Error::File`] if a file exists that may not be replaced, or the directory cannot be written.
+    /// As [`calibrate`], before any run; [`Error::Scene`] if the scene that is foretold is not valid; [`Error::File`] if a file exists that may not be replaced, or the directory cannot be written.
     pub fn new(
         laws: &'a [(String, Calibration)],
         folder: &'a Path,
-        overwrite: bool,
+        options: &Options,
         stop: &Stop,
     ) -> Result<Self> {
         let ready = laws.iter().map(|(_, it)| Ready::new(it, stop)).collect::<Result<Vec<_>>>()?;
-        files::check_folder(folder, overwrite)?;
-        Ok(Self { laws, ready, folder, overwrite })
+        if let Some(foretold) = &options.foretold {
+            laws.iter().try_for_each(|(_, it)| foretold.check(it))?;
+        }
+        files::check_folder(folder, options.overwrite)?;
+        Ok(Self { laws, ready, folder, options: options.clone(), stop: stop.clone() })
     }
 
     /// Finds the unknowns under each law, and writes `calibration.h5`, `parameters.csv` and `residuals.csv` of the one that the data prefer, and
-    /// `models.csv` where several are compared; none, and nothing is written, if it was stopped first.
+    /// `models.csv` where several are compared; none if it was stopped first, and the same call then goes on from the runs that it has left in the folder.
     ///
     /// # Errors
     /// As [`calibrate`], of several laws only if all fail; [`Error::File`] if files cannot be written.
-    pub fn run(self) -> Result<Option<Found<'a>>> {
+    pub fn run(self, onlooker: Option<&dyn Onlooker>) -> Result<Option<Found<'a>>> {
         let several = self.laws.len() > 1;
+        let journal = Journal::take_up(self.folder)?;
         let mut found = vec![];
         for ((name, _), ready) in self.laws.iter().zip(self.ready) {
-            match ready.run() {
+            match ready.run(Some(&journal), onlooker) {
                 Ok(Some(outcome)) => found.push((name.clone(), Ok(outcome))),
-                Ok(None) => return Ok(None),
-                Err(error) if several => found.push((name.clone(), Err(error.to_string()))),
+                Ok(None) => {
+                    journal.keep();
+                    return Ok(None);
+                }
+                Err(error) if several && error.domain() != Domain::File => {
+                    found.push((name.clone(), Err(error.to_string())))
+                }
                 Err(error) => return Err(error),
             }
         }
-        let judged = models::judged(found);
-        let best = &judged[0];
+        let mut judged = models::judged(found);
+        let best = &mut judged[0];
         if let Err(why) = &best.outcome {
             return Err(Error::NotConverged { what: "every law", why: why.clone() });
         }
         let (_, calibration) =
             self.laws.iter().find(|(name, _)| *name == best.name).expect("every law has its name");
+        if let (Some(foretold), Ok(outcome)) = (&self.options.foretold, &mut best.outcome) {
+            let bands = foretold.bands(calibration, outcome, &journal, onlooker, &self.stop)?;
+            let Some(forecast) = bands else {
+                journal.keep();
+                return Ok(None);
+            };
+            outcome.warnings.extend(forecast.warnings(outcome));
+            outcome.accuracy_met &= forecast.accuracy_met;
+            outcome.forecast = Some(forecast);
+        }
         let mut found = Found { calibration, judged, files: vec![] };
-        found.files =
-            files::write(calibration, found.outcome(), found.compared(), self.folder, self.overwrite)?;
+        let overwrite = self.options.overwrite;
+        found.files = files::write(calibration, found.outcome(), found.compared(), self.folder, overwrite)?;
         Ok(Some(found))
     }
 }

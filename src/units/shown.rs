@@ -72,6 +72,39 @@ fn trimmed(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
 
+/// A unit as people write it: `1/Pa` of `Pa-1`, `m³/(N m)` of `m3 N-1 m-1`; nothing of a pure number.
+pub(crate) fn unit_in_words(unit: &str) -> String {
+    if unit == "1" {
+        return String::new();
+    }
+    let raised = |power: &str| -> String {
+        let digit = |it: char| match it {
+            '0'..='9' => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][it as usize - '0' as usize],
+            other => other,
+        };
+        match power {
+            "" | "1" => String::new(),
+            power if power.contains('.') => format!("^{power}"),
+            power => power.chars().map(digit).collect(),
+        }
+    };
+    let (mut above, mut below) = (vec![], vec![]);
+    for factor in unit.split(' ').filter(|it| !it.is_empty()) {
+        let end = factor.find(|it: char| it == '-' || it.is_ascii_digit()).unwrap_or(factor.len());
+        let (symbol, power) = factor.split_at(end);
+        match power.strip_prefix('-') {
+            Some(power) => below.push(format!("{symbol}{}", raised(power))),
+            None => above.push(format!("{symbol}{}", raised(power))),
+        }
+    }
+    let above = if above.is_empty() { "1".into() } else { above.join(" ") };
+    match &below[..] {
+        [] => above,
+        [one] => format!("{above}/{one}"),
+        all => format!("{above}/({})", all.join(" ")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -90,5 +123,14 @@ mod tests {
         assert_eq!(lengths.map(|length| Scale::LENGTH.show(length)), expected);
         assert_eq!(Scale::VOLUME.show(2.5e-12), "2.5e6 µm³");
         assert_eq!(Scale::PRESSURE.show(4.2e8), "420 MPa");
+    }
+
+    #[test]
+    fn units_are_written_as_people_do() {
+        for (unit, words) in
+            [("1", ""), ("Pa-1", "1/Pa"), ("m3 N-1 m-1", "m³/(N m)"), ("m", "m"), ("N m-2.5", "N/m^2.5")]
+        {
+            assert_eq!(unit_in_words(unit), words);
+        }
     }
 }

@@ -3,6 +3,7 @@
 // Every test file uses a part of this.
 #![allow(dead_code)]
 
+pub mod calibration;
 pub mod command;
 pub mod laws;
 pub mod reference;

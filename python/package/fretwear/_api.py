@@ -144,23 +144,31 @@ def sweep(
 
 
 def calibrate(
-    calibration: str | os.PathLike[str] | Table, output: str | os.PathLike[str] | None = None, overwrite: bool = False
+    calibration: str | os.PathLike[str] | Table,
+    output: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    predict: str | os.PathLike[str] | Table | None = None,
+    draws: int = 200,
 ) -> Calibration:
     """Finds keys of a scene from measurements, each with its interval of 95 %.
 
     Args:
-        calibration: a path, TOML text, or a dictionary. Files that a text or a dictionary names are relative to the working directory.
+        calibration: a path, TOML text, or a dictionary, whose scene may be a dictionary as well. Files that a text or a dictionary names are
+            relative to the working directory.
         output: the directory of the files that ``fretwear calibrate`` writes. By default everything stays in memory.
         overwrite: whether files of an earlier calibration there may be replaced.
+        predict: a scene that is foretold, a path, TOML text or a dictionary: ``summary["forecast"]`` then has all its results with the
+            intervals that hold 95 % of them.
+        draws: with how many draws of the unknowns that scene is run, at most 512.
 
     Raises:
         SceneError: the calibration, a scene, or a file of measurements cannot be used; the message names the line and the cure.
         RunError: the model predicts the data nowhere between the bounds.
-        KeyboardInterrupt: it was stopped; nothing is written.
+        KeyboardInterrupt: it was stopped; the same call with an output goes on from there.
     """
     place: AbstractContextManager[Any] = tempfile.TemporaryDirectory() if output is None else nullcontext(output)
     with place as folder:
-        report = _native.calibrate(calibration, folder, overwrite)
+        report = _native.calibrate(calibration, folder, overwrite, predict, draws)
         if report is None:
             raise KeyboardInterrupt
         found = json.loads(report)

@@ -7,6 +7,7 @@ use crate::data::{Dataset, LimitDistance, SweepFile, Values, Variable};
 use crate::error::Result;
 use crate::figures::{Results, RunResults};
 use crate::report::{CheckReport, InfoReport, number};
+use crate::units::unit_in_words;
 
 /// Rows of a sweep that a page shows.
 const MOST_ROWS: usize = 500;
@@ -111,7 +112,7 @@ fn of_calibration(file: &Dataset) -> Result<Content> {
     let (estimate, lower, upper) = (estimate?, lower?, upper?);
     let end = |value: f64| if value.is_finite() { number(value) } else { "not told".into() };
     let told = (0..count).map(|i| {
-        let unit = if units.get(i) == "1" { "" } else { units.get(i) };
+        let unit = unit_in_words(units.get(i));
         let (low, high) = (end(lower[i]), end(upper[i]));
         (keys.get(i).to_owned(), format!("{} {unit} (95 %: {low} to {high})", number(estimate[i])))
     });
@@ -128,11 +129,33 @@ fn of_calibration(file: &Dataset) -> Result<Content> {
             heading: "Outcome",
             parts: [Part::Rows(told)]
                 .into_iter()
+                .chain(foretold(file)?)
                 .chain(warnings.iter().map(|it| Part::Sentence(format!("Note: {it}."))))
                 .collect(),
         }],
         below: vec![Section { heading: "Calibration", parts: vec![Part::Text(text.into())] }],
     })
+}
+
+/// The results of a scene that is foretold.
+fn foretold(file: &Dataset) -> Result<Option<Part>> {
+    if !file.has("forecast_result") {
+        return Ok(None);
+    }
+    let count = file.along("forecast_result")?.len();
+    let (names, units) = (file.words("forecast_name", count)?, file.words("forecast_unit", count)?);
+    let numbers = |name: &str| file.numbers(name, &[count]);
+    let (estimate, lower, upper) =
+        (numbers("forecast_estimate")?, numbers("forecast_lower")?, numbers("forecast_upper")?);
+    let shown = |value: f64| if value.is_finite() { number(value) } else { String::new() };
+    let row = |i: usize| {
+        let numbers = [estimate[i], lower[i], upper[i]].map(shown);
+        [vec![names.get(i).to_owned()], numbers.to_vec(), vec![unit_in_words(units.get(i))]].concat()
+    };
+    let head =
+        ["foretold", "at the estimates", "lower end of 95 %", "upper end of 95 %", "unit"].map(str::to_owned);
+    let told = (0..count).filter(|i| lower[*i].is_finite());
+    Ok(Some(Part::Table(head.to_vec(), told.map(row).collect())))
 }
 
 fn of_map(file: &Dataset) -> Content {

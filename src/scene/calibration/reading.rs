@@ -21,6 +21,8 @@ pub(super) fn read(root: &Section, values: &Table, folder: &Path) -> Result<Cali
     root.check(&keys::CALIBRATION)?;
     let title = root.read_optional(&keys::TITLE)?;
     let is_robust = root.read::<usize>(&keys::LOSS)? == 1;
+    let (bootstrap, seed) =
+        (root.read::<usize>(&keys::BOOTSTRAP)? as u64, root.read::<usize>(&keys::SEED)? as u64);
     let compares = root.optional("models").is_some();
     let mut taken = vec![];
     let unknowns = match root.optional("unknowns") {
@@ -59,6 +61,8 @@ pub(super) fn read(root: &Section, values: &Table, folder: &Path) -> Result<Cali
         settings: vec![],
         models,
         is_robust,
+        bootstrap,
+        seed,
         base: None,
         folder: PathBuf::new(),
         name: String::new(),

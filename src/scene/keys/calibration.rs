@@ -1,6 +1,6 @@
 //! The file of a calibration.
 
-use super::{FROM, KEY, NAME, TITLE, TO};
+use super::{FROM, KEY, NAME, SEED, TITLE, TO};
 use crate::units::{Form, Key, Kind, Range, Rule, Table};
 
 /// Most unknowns of a calibration.
@@ -24,6 +24,8 @@ pub(in crate::scene) const CALIBRATION: Table = Table::new(
         .example("ball.toml")
         .optional(),
         LOSS,
+        BOOTSTRAP,
+        SEED,
         Key::new("unknowns", Kind::Tables(&UNKNOWN, [1, MOST_UNKNOWNS]), "What is found, under every model.")
             .example("[[unknowns]] with key, from and to")
             .optional(),
@@ -40,6 +42,16 @@ pub(in crate::scene) const LOSS: Key = Key::new(
     "What residuals cost: their squares, or beyond 1.345 deviations their size alone, so that outliers pull less.",
 )
 .default("squares");
+
+/// Most times that data are made anew.
+const MOST_SAMPLES: f64 = 1e5;
+pub(in crate::scene) const BOOTSTRAP: Key = Key::new(
+    "bootstrap",
+    Kind::Whole,
+    "How many times the data are made anew with errors drawn from the residuals and fitted, for intervals that do not take errors for normal.",
+)
+.range(Range::NOT_NEGATIVE.to(MOST_SAMPLES))
+.default("0");
 
 pub(in crate::scene) const UNKNOWN: Table = Table::new(
     "unknowns",

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::forecast::{CURVES, Forecast, OF_BAND};
 use super::models::OF_MODEL;
 use super::{FittedData, Judged, Outcome, Parameter};
 use crate::data::quantity::{Quantity, Reading, csv, number, quantity, word};
@@ -13,13 +14,20 @@ const ARRAYS: &str = "calibration.h5";
 const PARAMETERS: &str = "parameters.csv";
 const RESIDUALS: &str = "residuals.csv";
 const MODELS: &str = "models.csv";
+const FORECAST: &str = "forecast.csv";
 
 const PARAMETER: Quantity = quantity("parameter", "1", "number of the unknown in the calibration");
 const VALUE: Quantity = quantity("value", "1", "number of the measured value, through all data sets");
+const DRAW: Quantity = quantity("draw", "1", "number of the draw of the unknowns");
+const RESULT: Quantity = quantity("forecast_result", "1", "number of the result that is foretold");
+const TIME: Quantity =
+    quantity("forecast_snapshot", "1", "number of the snapshot of the scene that is foretold");
+const END: Quantity =
+    quantity("forecast_end", "1", "0 at the estimates, 1 the lower and 2 the upper end of the interval");
 const POINT: Quantity = quantity("point", "1", "number of the place along a profile of the misfit");
 
 /// All that is told of an unknown, in the order of columns.
-pub(super) const OF_PARAMETER: [Reading<Parameter>; 7] = [
+pub(super) const OF_PARAMETER: [Reading<Parameter>; 9] = [
     word("key", "key of the scene", |it| it.key.as_str().into()),
     word("unit", "unit of its values", |it| it.unit.into()),
     number("estimate", "1", "value at which the misfit is least, in the unit of the key", |it| {
@@ -35,6 +43,18 @@ pub(super) const OF_PARAMETER: [Reading<Parameter>; 7] = [
     number("standard_error", "1", "standard deviation by the curvature of the misfit", |it| {
         it.standard_error.into()
     }),
+    number(
+        "bootstrap_lower",
+        "1",
+        "lower end by data made anew; missing where that was not asked for",
+        |it| it.bootstrap.map(|it| it[0]).into(),
+    ),
+    number(
+        "bootstrap_upper",
+        "1",
+        "upper end by data made anew; missing where that was not asked for",
+        |it| it.bootstrap.map(|it| it[1]).into(),
+    ),
 ];
 
 /// A measured value beside what is predicted of it.
@@ -92,6 +112,7 @@ pub(super) fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
         (PARAMETERS, Mark::Words("key,unit,estimate,lower,upper,")),
         (RESIDUALS, Mark::Words("data,file,line,measured,at,")),
         (MODELS, Mark::Words("name,aicc,weight,")),
+        (FORECAST, Mark::Words("forecast_name,forecast_unit,")),
     ];
     data::check_folder(folder, &marks, overwrite)
 }
@@ -113,8 +134,14 @@ pub(super) fn write(
     AtomicFile::new(&residuals, overwrite)?.write(csv(&OF_VALUE, &rows).as_bytes())?;
     let mut files = vec![arrays, parameters, residuals];
     if !models.is_empty() {
-        files.push(folder.join(MODELS));
-        AtomicFile::new(&files[3], overwrite)?.write(csv(&OF_MODEL, models).as_bytes())?;
+        let path = folder.join(MODELS);
+        AtomicFile::new(&path, overwrite)?.write(csv(&OF_MODEL, models).as_bytes())?;
+        files.push(path);
+    }
+    if let Some(forecast) = &outcome.forecast {
+        let path = folder.join(FORECAST);
+        AtomicFile::new(&path, overwrite)?.write(csv(&OF_BAND, &forecast.bands).as_bytes())?;
+        files.push(path);
     }
     Ok(files)
 }
@@ -132,6 +159,7 @@ fn dataset(calibration: &Calibration, outcome: &Outcome, rows: &[Row]) -> Datase
             ("reduced_chi_squared", outcome.reduced_chi_squared.to_string()),
             ("degrees_of_freedom", outcome.degrees_of_freedom.to_string()),
             ("warnings", outcome.warnings.join("\n")),
+            ("forecast_scene", outcome.forecast.as_ref().map_or(String::new(), |it| it.scene.clone())),
         ],
     );
     dataset.coordinate(PARAMETER, index(count));
@@ -139,7 +167,15 @@ fn dataset(calibration: &Calibration, outcome: &Outcome, rows: &[Row]) -> Datase
     dataset.coordinate(POINT, index(points));
     let of_parameters = OF_PARAMETER.iter().map(|it| it.variable(PARAMETER.name, parameters));
     let of_values = OF_VALUE.iter().map(|it| it.variable(VALUE.name, rows));
-    let (numbers, words): (Vec<_>, Vec<_>) = of_parameters.chain(of_values).partition(Variable::is_numeric);
+    let draws = &outcome.draws;
+    dataset.coordinate(DRAW, index(draws.len()));
+    if let Some(forecast) = &outcome.forecast {
+        dataset.coordinate(RESULT, index(forecast.bands.len()));
+    }
+    let bands = outcome.forecast.as_ref().map_or(&[][..], |it| &it.bands);
+    let of_bands = OF_BAND.iter().filter(|_| !bands.is_empty()).map(|it| it.variable(RESULT.name, bands));
+    let (numbers, words): (Vec<_>, Vec<_>) =
+        of_parameters.chain(of_values).chain(of_bands).partition(Variable::is_numeric);
     dataset.variables.extend(numbers);
     let other = [(PARAMETER.name, count), ("other_parameter", count)];
     dataset.coordinate(quantity("other_parameter", "1", "as parameter"), index(count));
@@ -163,6 +199,29 @@ fn dataset(calibration: &Calibration, outcome: &Outcome, rows: &[Row]) -> Datase
     };
     profile("profile_value", "value of the unknown along the profile of the misfit", 0);
     profile("profile_misfit", "misfit above the least, all else fitted anew", 1);
+    dataset.add(Variable::new(
+        quantity("draw_value", "1", "what the unknown may be by the data, in its unit"),
+        &[(DRAW.name, draws.len()), (PARAMETER.name, count)],
+        draws.concat(),
+    ));
+    if let Some(forecast) = &outcome.forecast {
+        foretell(&mut dataset, forecast);
+    }
     dataset.variables.extend(words);
     dataset
+}
+
+/// The curves of a scene that is foretold, where its snapshots are at the same cycles for all draws.
+fn foretell(dataset: &mut Dataset, forecast: &Forecast) {
+    let count = forecast.cycles.len();
+    if count == 0 {
+        return;
+    }
+    dataset.coordinate(TIME, (0..count).map(|number| number as f64).collect::<Vec<_>>());
+    dataset.coordinate(END, vec![0.0, 1.0, 2.0]);
+    let cycles = quantity("forecast_cycles", "1", "number of cycles");
+    dataset.add(Variable::new(cycles, &[(TIME.name, count)], forecast.cycles.clone()));
+    for ((quantity, _), ends) in CURVES.iter().zip(&forecast.curves) {
+        dataset.add(Variable::new(*quantity, &[(END.name, 3), (TIME.name, count)], ends.concat()));
+    }
 }

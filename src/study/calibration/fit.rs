@@ -1,14 +1,15 @@
 //! The search: starts, deviations, accuracy of the runs, then uncertainty.
 
+use super::journal::Runs;
 use super::objective::{
     Comparison, Objective, coordinate_of, ground_count, has_centre, is_estimated, value_of,
 };
+use super::posterior::draws;
 use super::prediction::Predictor;
 use super::uncertainty::{combination, covariance, profile, quantile};
-use super::{Combination, FittedData, Outcome, Parameter};
+use super::{Combination, FittedData, Onlooker, Outcome, Parameter};
 use crate::error::{Error, Result};
 use crate::numerics::least_squares::{Minimum, cost, jacobian, minimise};
-use crate::run::Stop;
 use crate::scene::sampling::{Method, UnitCube};
 use crate::scene::{Calibration, Deviation, Measured};
 use crate::units::number;
@@ -39,21 +40,25 @@ const UNEXPLAINED: f64 = 2.0;
 
 /// A calibration under way.
 pub(super) struct Fit<'a> {
-    calibration: &'a Calibration,
-    objective: Objective<'a>,
+    pub(super) calibration: &'a Calibration,
+    pub(super) objective: Objective<'a>,
     /// Degrees of freedom of each data set.
     freedom: Vec<f64>,
 }
 
 impl<'a> Fit<'a> {
-    pub(super) fn new(calibration: &'a Calibration, stop: &Stop) -> Result<Self> {
+    pub(super) fn new(
+        calibration: &'a Calibration,
+        runs: Runs<'a>,
+        onlooker: Option<&'a dyn Onlooker>,
+    ) -> Result<Self> {
         let middle = |it: &crate::scene::Unknown| {
             let [low, high] = it.bounds.map(|end| coordinate_of(it, end));
             value_of(it, (low + high) / 2.0)
         };
         let values: Vec<f64> = calibration.unknowns().iter().map(middle).collect();
-        let predictor = Predictor::new(calibration, &values, ACCURACY[0], stop)?;
-        let objective = Objective::new(calibration, predictor);
+        let predictor = Predictor::new(calibration, &values, ACCURACY[0], runs)?;
+        let objective = Objective::new(calibration, predictor, onlooker);
         let fitted = objective.coordinates.len() + calibration.data().iter().map(ground_count).sum::<usize>();
         let count = calibration.data().iter().map(|set| set.values.len()).sum::<usize>();
         let estimates = calibration.data().iter().filter(|set| is_estimated(set)).count();
@@ -70,7 +75,16 @@ impl<'a> Fit<'a> {
         Ok(Self { calibration, objective, freedom })
     }
 
+    /// What is found; none if it was stopped.
     pub(super) fn outcome(mut self) -> Result<Option<Outcome>> {
+        let found = self.found();
+        match self.objective.predictor.fatal.take() {
+            Some(fatal) => Err(fatal),
+            None => found,
+        }
+    }
+
+    fn found(&mut self) -> Result<Option<Outcome>> {
         let Some(mut minimum) = self.first_minimum()? else { return Ok(None) };
         let mut run_error = f64::NAN;
         for _ in 0..MOST_REFINEMENTS {
@@ -102,7 +116,18 @@ impl<'a> Fit<'a> {
             }
         };
         let at = self.objective.compare(&minimum.place).ok_or_else(|| self.trouble())?;
-        Ok(Some(self.told(&minimum, &at, profiles, &slopes, run_error)))
+        let bootstrap = match self.calibration.bootstrap() {
+            0 => vec![None; self.calibration.unknowns().len()],
+            _ => match self.bootstrap(&minimum, &at, &slopes)? {
+                Some(found) => found,
+                None => return Ok(None),
+            },
+        };
+        let mut outcome = self.told(&minimum, &at, profiles, &slopes, run_error);
+        for (parameter, interval) in outcome.parameters.iter_mut().zip(bootstrap) {
+            parameter.bootstrap = interval;
+        }
+        Ok(Some(outcome))
     }
 
     /// Why the model has no prediction.
@@ -235,7 +260,13 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// Largest difference of the predictions from those of finer runs, in deviations; none if it was stopped.
+    /// What finer runs change, the largest of: predictions, in deviations of the data, and estimates, in standard errors; none if it was stopped
+    ///
+    /// ```text
+    /// δθ = (JᵀJ)⁻¹ Jᵀ δr
+    /// ```
+    ///
+    /// Errors of runs are alike from value to value, so that those of the estimates may be the larger ones where there are many values.
     fn run_error(&mut self, minimum: &Minimum) -> Result<Option<f64>> {
         if !self.calibration.has_scene() {
             return Ok(Some(0.0));
@@ -243,11 +274,12 @@ impl<'a> Fit<'a> {
         let place = &minimum.place;
         let (values, centres) = (self.objective.values(place), self.objective.centres(place));
         let mut finer = self.objective.predictor.finer(FINER);
-        let mut worst = 0.0f64;
+        let (mut worst, mut changes) = (0.0f64, vec![]);
         for (data, centre) in centres.iter().enumerate() {
             let own = self.objective.predictor.predict(data, &values, *centre);
             let other = finer.predict(data, &values, *centre);
             if finer.is_stopped() {
+                self.objective.predictor.fatal = finer.fatal.take();
                 return Ok(None);
             }
             let (Some(own), Some(other)) = (own, other) else {
@@ -255,8 +287,19 @@ impl<'a> Fit<'a> {
             };
             let errors = own.iter().zip(&other).zip(&self.objective.deviations[data]);
             worst = errors.map(|((a, b), deviation)| (a - b).abs() / deviation).fold(worst, f64::max);
+            let [own, other] = [own, other].map(|plain| self.objective.compare_one(data, &plain).residuals);
+            changes.extend(own.iter().zip(&other).map(|(a, b)| a - b));
         }
         self.objective.predictor.runs += finer.runs;
+        let slopes = self.slopes(minimum);
+        let covariance = covariance(&slopes);
+        let right: Vec<f64> =
+            slopes.iter().map(|it| it.iter().zip(&changes).map(|(a, b)| a * b).sum()).collect();
+        for i in 0..self.calibration.unknowns().len() {
+            let shift: f64 = (0..slopes.len()).map(|j| covariance[(i, j)] * right[j]).sum();
+            let shift = shift.abs() / covariance[(i, i)].sqrt();
+            worst = if shift.is_finite() { worst.max(shift) } else { worst };
+        }
         Ok(Some(worst))
     }
 
@@ -306,7 +349,7 @@ impl<'a> Fit<'a> {
     }
 
     fn told(
-        mut self,
+        &mut self,
         minimum: &Minimum,
         at: &[Comparison],
         profiles: Vec<super::uncertainty::Profile>,
@@ -317,6 +360,15 @@ impl<'a> Fit<'a> {
         let values = self.objective.values(&minimum.place);
         let covariance = covariance(slopes);
         let t = quantile(self.freedom_of_deviations());
+        let correlation = |i: usize, j: usize| {
+            let it = covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+            it.clamp(-1.0, 1.0)
+        };
+        let correlation: Vec<Vec<f64>> =
+            (0..unknowns.len()).map(|i| (0..unknowns.len()).map(|j| correlation(i, j)).collect()).collect();
+        let bounds: Vec<[f64; 2]> = self.objective.coordinates.iter().map(|it| it.bounds).collect();
+        let draws = draws(&profiles, &correlation, &bounds, self.freedom_of_deviations());
+        let draws = draws.iter().map(|it| self.objective.values(it)).collect();
         let parameters: Vec<Parameter> = unknowns
             .iter()
             .zip(profiles)
@@ -328,15 +380,10 @@ impl<'a> Fit<'a> {
                 interval: profile.ends.map(|end| end.map(|it| value_of(unknown, it))),
                 standard_error: covariance[(i, i)].sqrt()
                     * if unknown.is_logarithmic { values[i] } else { 1.0 },
+                bootstrap: None,
                 profile: profile.points.iter().map(|[x, rise]| [value_of(unknown, *x), *rise]).collect(),
             })
             .collect();
-        let correlation = |i: usize, j: usize| {
-            let it = covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
-            it.clamp(-1.0, 1.0)
-        };
-        let correlation =
-            (0..unknowns.len()).map(|i| (0..unknowns.len()).map(|j| correlation(i, j)).collect()).collect();
         let fitted = self.objective.coordinates.len()
             + self.calibration.data().iter().map(ground_count).sum::<usize>();
         let count: usize = at.iter().map(|it| it.residuals.len()).sum();
@@ -359,6 +406,8 @@ impl<'a> Fit<'a> {
         let mut outcome = Outcome {
             parameters,
             correlation,
+            draws,
+            forecast: None,
             combinations,
             reduced_chi_squared: misfit / degrees_of_freedom,
             degrees_of_freedom,

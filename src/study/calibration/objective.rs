@@ -1,5 +1,6 @@
 //! Residuals of the data over what is looked for: the unknowns, and the centre of each scar and loop.
 
+use super::Onlooker;
 use super::prediction::Predictor;
 use crate::numerics::least_squares::{Coordinate, cost};
 use crate::scene::{Calibration, DataSet, Deviation, Measured, Unknown};
@@ -28,6 +29,9 @@ pub(super) struct Objective<'a> {
     pub(super) deviations: Vec<Vec<f64>>,
     /// How many neighbouring points of a curve count as one, because their errors are alike.
     pub(super) alike: Vec<f64>,
+    /// Data made anew in the place of those measured, shape `(data, value)`.
+    pub(super) made: Option<Vec<Vec<f64>>>,
+    onlooker: Option<&'a dyn Onlooker>,
 }
 
 /// What a place comes to for a data set.
@@ -87,7 +91,11 @@ fn extent(values: &[f64]) -> [f64; 2] {
 }
 
 impl<'a> Objective<'a> {
-    pub(super) fn new(calibration: &'a Calibration, predictor: Predictor<'a>) -> Self {
+    pub(super) fn new(
+        calibration: &'a Calibration,
+        predictor: Predictor<'a>,
+        onlooker: Option<&'a dyn Onlooker>,
+    ) -> Self {
         let of_unknown = |(place, unknown): (usize, &Unknown)| {
             let bounds = unknown.bounds.map(|it| coordinate_of(unknown, it));
             let step = STEPS[usize::from(predictor.is_free(place))];
@@ -102,7 +110,7 @@ impl<'a> Objective<'a> {
         }
         let deviations = calibration.data().iter().map(first_deviations).collect();
         let alike = vec![1.0; calibration.data().len()];
-        Self { calibration, predictor, coordinates, deviations, alike }
+        Self { calibration, predictor, coordinates, deviations, alike, made: None, onlooker }
     }
 
     /// Values of the unknowns at a place.
@@ -130,14 +138,21 @@ impl<'a> Objective<'a> {
     pub(super) fn compare(&mut self, place: &[f64]) -> Option<Vec<Comparison>> {
         let (values, centres) = (self.values(place), self.centres(place));
         let mut found = vec![];
-        for (data, set) in self.calibration.data().iter().enumerate() {
-            let plain = self.predictor.predict(data, &values, centres[data])?;
-            let mut fit = compared(set, &plain, &self.deviations[data], self.calibration.is_robust());
-            let alike = self.alike[data].sqrt();
-            fit.residuals.iter_mut().for_each(|it| *it /= alike);
-            found.push(fit);
+        for (data, centre) in centres.iter().enumerate() {
+            let plain = self.predictor.predict(data, &values, *centre)?;
+            found.push(self.compare_one(data, &plain));
         }
         Some(found)
+    }
+
+    /// What a prediction without offset and tilt comes to for a data set.
+    pub(super) fn compare_one(&self, data: usize, plain: &[f64]) -> Comparison {
+        let (set, robust) = (&self.calibration.data()[data], self.calibration.is_robust());
+        let values = self.made.as_ref().map_or(&set.values, |it| &it[data]);
+        let mut fit = compared(set, values, plain, &self.deviations[data], robust);
+        let alike = self.alike[data].sqrt();
+        fit.residuals.iter_mut().for_each(|it| *it /= alike);
+        fit
     }
 
     /// Residuals whose squares add up to the cost; of Huber's loss, their roots with their signs.
@@ -145,6 +160,9 @@ impl<'a> Objective<'a> {
         let robust = self.calibration.is_robust();
         let all = self.compare(place)?.into_iter().flat_map(|it| it.residuals);
         let all: Vec<f64> = all.map(|it| if robust { rooted(it) } else { it }).collect();
+        if let Some(onlooker) = self.onlooker {
+            onlooker.misfit(self.predictor.runs, cost(&all) / all.len().max(1) as f64);
+        }
         cost(&all).is_finite().then_some(all)
     }
 
@@ -242,11 +260,11 @@ fn first_deviations(set: &DataSet) -> Vec<f64> {
     }
 }
 
-fn compared(set: &DataSet, plain: &[f64], deviations: &[f64], robust: bool) -> Comparison {
+fn compared(set: &DataSet, values: &[f64], plain: &[f64], deviations: &[f64], robust: bool) -> Comparison {
     let columns = ground(set);
     let mut weights = vec![1.0; plain.len()];
     let mut coefficients = vec![];
-    let errors: Vec<f64> = set.values.iter().zip(plain).map(|(y, p)| y - p).collect();
+    let errors: Vec<f64> = values.iter().zip(plain).map(|(y, p)| y - p).collect();
     let with_ground = |coefficients: &[f64]| -> Vec<f64> {
         let of = |i: usize| {
             plain[i] + columns.iter().zip(coefficients).map(|(column, c)| c * column[i]).sum::<f64>()
@@ -260,12 +278,12 @@ fn compared(set: &DataSet, plain: &[f64], deviations: &[f64], robust: bool) -> C
         coefficients = regression(&columns, &errors, &scale);
         let predicted = with_ground(&coefficients);
         for (i, weight) in weights.iter_mut().enumerate() {
-            let residual = ((set.values[i] - predicted[i]) / deviations[i]).abs();
+            let residual = ((values[i] - predicted[i]) / deviations[i]).abs();
             *weight = if robust && residual > HUBER { HUBER / residual } else { 1.0 };
         }
     }
     let predicted = with_ground(&coefficients);
-    let residuals = (0..plain.len()).map(|i| (set.values[i] - predicted[i]) / deviations[i]).collect();
+    let residuals = (0..plain.len()).map(|i| (values[i] - predicted[i]) / deviations[i]).collect();
     Comparison {
         predicted,
         residuals,

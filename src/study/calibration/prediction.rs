@@ -11,10 +11,11 @@
 
 use std::collections::HashMap;
 
-use crate::data::{Snapshot, StopReason, largest};
-use crate::error::{Error, Result};
+use super::journal::Runs;
+use super::trajectory::{Trajectory, along_loop, linear};
+use crate::data::largest;
+use crate::error::{Domain, Error, Result};
 use crate::laws::history::History;
-use crate::run::{Shared, Simulation, Stop};
 use crate::scene::{Calibration, Measured, Scene, Stepper};
 
 /// Snapshots in a factor of ten of time, between which cubics in `ln t` are right to 1e-5.
@@ -22,46 +23,34 @@ const PER_DECADE: f64 = 16.0;
 /// How far before the first and beyond the last measurement a run with a clock is looked at: as long as starts are tried, and then.
 const FAR: [f64; 2] = [0.01, 100.0];
 const CLOSE: [f64; 2] = [0.3, 3.0];
-/// How much a time may miss the first snapshot.
-const ROUNDING: f64 = 1e-9;
 /// Most numbers of cycles at which a run without a clock is looked at one by one.
 const MOST_TIMES: usize = 200;
-/// Most runs of a data set that are remembered.
+/// Most runs of data sets of one scene that are remembered.
 const MOST_KEPT: usize = 500;
 
 /// Runs of the model for all data sets.
 pub(super) struct Predictor<'a> {
     calibration: &'a Calibration,
-    shared: Shared,
+    runs_of: Runs<'a>,
     /// Accuracy of the runs of each data set.
     pub(super) accuracy: Vec<f64>,
     /// The unknown that stretches the clock of a data set.
     clocks: Vec<Option<usize>>,
-    kept: Vec<HashMap<Vec<u64>, Vec<Trajectory>>>,
+    /// The data sets of the same scene, of which the first keeps the runs.
+    companions: Vec<Vec<usize>>,
+    kept: Vec<HashMap<Vec<u64>, Vec<Together>>>,
     /// What times of a clock a run serves, over those of the data.
     reach: [f64; 2],
     /// Number of runs so far.
     pub(super) runs: u64,
     /// The last reason why there was no prediction.
     pub(super) trouble: Option<Error>,
-    /// Largest worn volume, depth or other value that errors of a data set are relative to.
-    pub(super) scales: Vec<f64>,
+    /// A file that cannot be written, which ends all.
+    pub(super) fatal: Option<Error>,
 }
 
-/// What a run came to at times, as far as one kind of data needs it.
-#[derive(Debug, Clone)]
-struct Trajectory {
-    /// `k_w N`, or `N` without a clock, increasing from 0, shape `(time,)`.
-    times: Vec<f64>,
-    /// Shape `(time, value)`.
-    rows: Vec<Vec<f64>>,
-    /// Radii of the depths of a scar, m.
-    radius: Vec<f64>,
-    /// Whether nothing wears after the last time.
-    is_over: bool,
-    /// Value that the accuracy of the run is relative to.
-    scale: f64,
-}
+/// One run, as the data sets of its scene need it: their places, and what it came to for each.
+type Together = Vec<(usize, Trajectory)>;
 
 impl<'a> Predictor<'a> {
     /// # Errors
@@ -70,19 +59,21 @@ impl<'a> Predictor<'a> {
         calibration: &'a Calibration,
         values: &[f64],
         accuracy: f64,
-        stop: &Stop,
+        runs_of: Runs<'a>,
     ) -> Result<Self> {
         let count = calibration.data().len();
+        let companions = (0..count).map(|data| calibration.companions(data)).collect();
         let mut this = Self {
             calibration,
-            shared: Shared::without_checkpoints(stop),
+            runs_of,
+            companions,
             accuracy: vec![accuracy; count],
             clocks: vec![None; count],
             kept: vec![HashMap::new(); count],
             reach: FAR,
             runs: 0,
             trouble: None,
-            scales: vec![0.0; count],
+            fatal: None,
         };
         if calibration.has_scene() {
             for data in 0..count {
@@ -97,14 +88,15 @@ impl<'a> Predictor<'a> {
         let count = self.accuracy.len();
         Self {
             calibration: self.calibration,
-            shared: self.shared.clone(),
+            runs_of: self.runs_of.clone(),
+            companions: self.companions.clone(),
             accuracy: self.accuracy.iter().map(|it| it * factor).collect(),
             clocks: vec![None; count],
             kept: vec![HashMap::new(); count],
             reach: FAR,
             runs: 0,
             trouble: None,
-            scales: self.scales.clone(),
+            fatal: None,
         }
     }
 
@@ -113,7 +105,7 @@ impl<'a> Predictor<'a> {
         for (data, accuracy) in accuracy.iter().enumerate() {
             if *accuracy < self.accuracy[data] {
                 self.accuracy[data] = *accuracy;
-                self.kept[data].clear();
+                self.kept[self.companions[data][0]].clear();
             }
         }
     }
@@ -123,9 +115,9 @@ impl<'a> Predictor<'a> {
         self.reach = CLOSE;
     }
 
-    /// Whether all runs were asked to stop.
+    /// Whether all runs were asked to stop, or cannot go on.
     pub(super) fn is_stopped(&self) -> bool {
-        self.shared.stop.is_stopped()
+        self.runs_of.is_stopped() || self.fatal.is_some()
     }
 
     /// Whether an unknown costs no runs.
@@ -176,8 +168,15 @@ impl<'a> Predictor<'a> {
     /// * `values` -- of the unknowns, in SI
     /// * `centre` -- of a scar or a loop, m
     pub(super) fn predict(&mut self, data: usize, values: &[f64], centre: f64) -> Option<Vec<f64>> {
+        if self.fatal.is_some() {
+            return None;
+        }
         let predicted = self.predicted(data, values, centre);
-        predicted.map_err(|error| self.trouble = Some(error)).ok()
+        let keep = |error: Error| match error.domain() {
+            Domain::File => self.fatal = Some(error),
+            _ => self.trouble = Some(error),
+        };
+        predicted.map_err(keep).ok()
     }
 
     fn predicted(&mut self, data: usize, values: &[f64], centre: f64) -> Result<Vec<f64>> {
@@ -190,18 +189,20 @@ impl<'a> Predictor<'a> {
         }
         let pace = self.clocks[data].map_or(1.0, |clock| values[clock]);
         let times = self.span(data).map(|cycles| pace * cycles);
-        let key = self.key(data, values);
-        if !self.kept[data].get(&key).is_some_and(|all| all.iter().any(|it| it.serves(times))) {
+        let (key, first) = (self.key(data, values), self.companions[data][0]);
+        let own = |it: &'_ Together| it.iter().position(|(place, _)| *place == data);
+        let serves = |it: &Together| own(it).is_some_and(|place| it[place].1.serves(times));
+        if !self.kept[first].get(&key).is_some_and(|all| all.iter().any(serves)) {
             let found = self.run(data, values)?;
-            if self.kept[data].len() >= MOST_KEPT {
-                self.kept[data].clear();
+            if self.kept[first].len() >= MOST_KEPT {
+                self.kept[first].clear();
             }
-            self.kept[data].entry(key.clone()).or_default().push(found);
+            self.kept[first].entry(key.clone()).or_default().push(found);
         }
-        let all = &self.kept[data][&key];
+        let all = &self.kept[first][&key];
         // The last is the one that was just made, if none did before.
-        let run = all.iter().find(|it| it.serves(times)).unwrap_or(&all[all.len() - 1]);
-        self.scales[data] = run.scale;
+        let together = all.iter().find(|it| serves(it)).unwrap_or(&all[all.len() - 1]);
+        let run = &together[own(together).expect("a run has all data sets of its scene")].1;
         Ok(match set.measured {
             Measured::Scar => {
                 let depth = run.row(pace * set.cycles);
@@ -242,78 +243,60 @@ impl<'a> Predictor<'a> {
         })
     }
 
-    fn run(&mut self, data: usize, values: &[f64]) -> Result<Trajectory> {
-        let set = &self.calibration.data()[data];
-        let [first, last] = self.span(data);
+    /// The run that serves a data set and all others of its scene.
+    fn run(&mut self, data: usize, values: &[f64]) -> Result<Together> {
+        let companions = self.companions[data].clone();
+        let spans: Vec<[f64; 2]> = companions.iter().map(|it| self.span(*it)).collect();
+        let first = spans.iter().map(|it| it[0]).fold(f64::INFINITY, f64::min);
+        let last = spans.iter().map(|it| it[1]).fold(0.0, f64::max);
         let cycles = match self.clocks[data] {
             Some(place) => {
                 let [least, most] = self.calibration.unknowns()[place].bounds.map(|it| it / values[place]);
                 let [before, beyond] = self.reach;
                 spread(first * before.max(least).min(1.0), last * beyond.min(most).max(1.0))
             }
-            None => {
-                let mut own: Vec<f64> = set.at.iter().copied().filter(|it| *it > 0.0).collect();
-                own.sort_by(f64::total_cmp);
-                own.dedup();
-                match set.measured.is_over_cycles() {
-                    false => vec![last],
-                    true if own.len() <= MOST_TIMES => own,
-                    true => spread(first, last),
-                }
-            }
+            None => self.times(&companions),
         };
-        let found = self.run_over(data, values, &cycles);
+        let found = self.run_over(&companions, values, &cycles);
         match found {
             // What a long run cannot do a shorter one may.
-            Err(_) if cycles.last() > Some(&last) => self.run_over(data, values, &spread(first, last)),
+            Err(_) if cycles.last() > Some(&last) && !self.is_stopped() => {
+                self.run_over(&companions, values, &spread(first, last))
+            }
             found => found,
         }
     }
 
-    fn run_over(&mut self, data: usize, values: &[f64], cycles: &[f64]) -> Result<Trajectory> {
-        let measured = self.calibration.data()[data].measured;
-        let scene: Scene = self.calibration.scene(data, values, cycles, self.accuracy[data])?;
+    /// The numbers of cycles at which data sets were measured, increasing; of many, some in constant ratio.
+    fn times(&self, companions: &[usize]) -> Vec<f64> {
+        let of = |data: &usize| -> Vec<f64> {
+            let [first, last] = self.span(*data);
+            let set = &self.calibration.data()[*data];
+            match set.measured.is_over_cycles() {
+                false => vec![last],
+                true if set.at.len() <= MOST_TIMES => set.at.iter().copied().filter(|it| *it > 0.0).collect(),
+                true => spread(first, last),
+            }
+        };
+        let mut all: Vec<f64> = companions.iter().flat_map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+
+    fn run_over(&mut self, companions: &[usize], values: &[f64], cycles: &[f64]) -> Result<Together> {
+        let first = companions[0];
+        let accuracy = companions.iter().map(|it| self.accuracy[*it]).fold(f64::INFINITY, f64::min);
+        let scene: Scene = self.calibration.scene(first, values, cycles, accuracy)?;
         self.runs += 1;
-        let results = Simulation::sharing(&scene, &self.shared)?.run()?;
+        let results = self.runs_of.run(&scene)?;
         if !results.is_complete() {
             return Err(Error::NotConverged { what: "calibration", why: "it was stopped".into() });
         }
-        let pace = self.clocks[data].map_or(1.0, |clock| values[clock]);
-        let snapshots = results.snapshots();
-        let of = |it: &Snapshot| match measured {
-            Measured::WearVolume | Measured::VolumeOverEnergy => vec![it.wear_volume],
-            Measured::WearDepth => vec![largest(&it.wear_depth)],
-            Measured::ContactRadius => vec![it.contact_radius],
-            Measured::TangentialForce => vec![it.tangential_force],
-            Measured::CycleEnergy => vec![it.cycle_energy],
-            Measured::DissipatedEnergy => vec![it.dissipated_energy * pace],
-            Measured::Scar => {
-                let inner = if it.permanent_stick_radius > 0.0 { 0.0 } else { it.wear_depth[0] };
-                [&[inner], &it.wear_depth[..], &[0.0]].concat()
-            }
-            Measured::Loop => [&it.loop_displacement[..], &it.loop_force[..]].concat(),
-        };
-        let rows: Vec<Vec<f64>> = snapshots.iter().map(of).collect();
-        let nodes = results.radius();
-        let (inner, outer) = (nodes.first().copied().unwrap_or(0.0), nodes.last().copied().unwrap_or(0.0));
-        let radius = match measured {
-            Measured::Scar => [&[inner * (1.0 - 1e-9)], nodes, &[outer * (1.0 + 1e-9)]].concat(),
-            _ => vec![],
-        };
-        let limit = results.limit();
-        let scale = match measured {
-            Measured::WearVolume => limit.map_or(0.0, |it| it.wear_volume()),
-            Measured::WearDepth | Measured::Scar => limit.map_or(0.0, |it| it.wear_depth_max()),
-            _ => 0.0,
-        };
-        let reached = rows.iter().flatten().fold(0.0, |largest: f64, it| largest.max(it.abs()));
-        Ok(Trajectory {
-            times: snapshots.iter().map(|it| it.cycles * pace).collect(),
-            rows,
-            radius,
-            is_over: results.stop_reason() != StopReason::End,
-            scale: if measured == Measured::DissipatedEnergy { reached / pace } else { scale.max(reached) },
-        })
+        let pace = self.clocks[first].map_or(1.0, |clock| values[clock]);
+        let of =
+            |data: &usize| (*data, Trajectory::new(self.calibration.data()[*data].measured, &results, pace));
+        Ok(companions.iter().map(of).collect())
     }
 }
 
@@ -321,90 +304,4 @@ impl<'a> Predictor<'a> {
 fn spread(first: f64, last: f64) -> Vec<f64> {
     let count = ((last / first).log10() * PER_DECADE).ceil().max(4.0);
     (0..=count as usize).map(|i| last * (first / last).powf(1.0 - i as f64 / count)).collect()
-}
-
-impl Trajectory {
-    /// Whether it holds all between two times.
-    fn serves(&self, [first, last]: [f64; 2]) -> bool {
-        let begins = self.times.get(1).is_some_and(|it| *it <= first * (1.0 + ROUNDING));
-        begins && (self.is_over || self.times.last().is_some_and(|it| *it >= last * (1.0 - ROUNDING)))
-    }
-
-    fn value(&self, time: f64) -> f64 {
-        self.weights(time).iter().map(|(place, weight)| weight * self.rows[*place][0]).sum()
-    }
-
-    fn row(&self, time: f64) -> Vec<f64> {
-        let mut row = vec![0.0; self.rows[0].len()];
-        for (place, weight) in self.weights(time) {
-            row.iter_mut().zip(&self.rows[place]).for_each(|(sum, it)| *sum += weight * it);
-        }
-        row
-    }
-
-    /// Snapshots and their weights at a time: a cubic in `ln t` through four of them, a straight line in `t` from the start to the first.
-    fn weights(&self, time: f64) -> Vec<(usize, f64)> {
-        let after = self.times.partition_point(|it| *it < time * (1.0 - ROUNDING));
-        let last = self.times.len() - 1;
-        if after > last {
-            return vec![(last, 1.0)];
-        }
-        if (self.times[after] - time).abs() <= ROUNDING * time {
-            return vec![(after, 1.0)];
-        }
-        if after <= 1 {
-            let part = time / self.times[1];
-            return vec![(0, 1.0 - part), (1, part)];
-        }
-        let begin = (after - 1).saturating_sub(1).max(1).min(last.saturating_sub(3).max(1));
-        let places: Vec<usize> = (begin..=(begin + 3).min(last)).collect();
-        let at = |place: usize| self.times[place].ln();
-        let weight = |place: usize| {
-            let others = places.iter().filter(|other| **other != place);
-            others.map(|other| (time.ln() - at(*other)) / (at(place) - at(*other))).product()
-        };
-        places.iter().map(|place| (*place, weight(*place))).collect()
-    }
-}
-
-/// Linear between nodes, constant beyond them.
-fn linear(x: &[f64], y: &[f64], at: f64) -> f64 {
-    let after = x.partition_point(|it| *it < at);
-    match after {
-        0 => y[0],
-        after if after == x.len() => y[after - 1],
-        after => {
-            let part = (at - x[after - 1]) / (x[after] - x[after - 1]);
-            y[after - 1] + part * (y[after] - y[after - 1])
-        }
-    }
-}
-
-/// Force along a loop at measured displacements, on the branch on which the displacement moves the same way.
-///
-/// # Arguments
-/// * `points` -- displacements and then forces along one period; the last point is the first
-/// * `at` -- measured displacements in the order of time
-fn along_loop(points: &[f64], at: &[f64], centre: f64) -> Vec<f64> {
-    let (displacement, force) = points.split_at(points.len() / 2);
-    // Each branch with increasing displacement.
-    let branch = |rises: bool| {
-        let mut found: Vec<(f64, f64)> = vec![];
-        for i in 1..displacement.len() {
-            if (displacement[i] > displacement[i - 1]) == rises {
-                found.extend([(displacement[i - 1], force[i - 1]), (displacement[i], force[i])]);
-            }
-        }
-        found.sort_by(|one, other| one.0.total_cmp(&other.0));
-        found.dedup_by(|one, other| one.0 == other.0);
-        found.into_iter().unzip::<f64, f64, Vec<f64>, Vec<f64>>()
-    };
-    let branches = [branch(false), branch(true)];
-    let count = at.len();
-    let force_at = |i: usize| {
-        let rises = at[(i + 1) % count] > at[(i + count - 1) % count];
-        let (x, y) = &branches[usize::from(rises)];
-        if x.is_empty() { 0.0 } else { linear(x, y, at[i] - centre) }
-    };
-    (0..count).map(force_at).collect()
 }

@@ -6,11 +6,13 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::files::{OF_VALUE, rows};
+use super::forecast::{Band, CURVES, Forecast};
 use super::models::{OF_MODEL, TELLS};
 use super::{CONFIDENCE, Combination, FittedData, Judged, Outcome, Parameter};
 use crate::data::quantity::Entries;
 use crate::report::{Scale, TextTable, number};
 use crate::scene::{Calibration, DataSet};
+use crate::units::unit_in_words;
 
 /// Summary of a calibration; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -39,6 +41,8 @@ pub struct CalibrationReport<'a> {
     models: Vec<Entries>,
     /// All measured values.
     residuals: Vec<Entries>,
+    /// What was foretold of another scene; null where that was not asked for.
+    forecast: Option<Ahead<'a>>,
     /// What deserves a word.
     pub warnings: &'a [String],
     /// Runs of the model.
@@ -66,6 +70,35 @@ struct Told {
     upper: Option<f64>,
     identifiable: bool,
     standard_error: f64,
+    bootstrap_lower: Option<f64>,
+    bootstrap_upper: Option<f64>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Ahead<'a> {
+    draws: usize,
+    failed: usize,
+    results: Vec<Expected>,
+    cycles: &'a [f64],
+    curves: Vec<Curve<'a>>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Expected {
+    name: &'static str,
+    unit: &'static str,
+    estimate: Option<f64>,
+    lower: Option<f64>,
+    upper: Option<f64>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Curve<'a> {
+    name: &'static str,
+    unit: &'static str,
+    estimate: &'a [f64],
+    lower: &'a [f64],
+    upper: &'a [f64],
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -107,6 +140,8 @@ impl<'a> CalibrationReport<'a> {
             upper: it.interval[1],
             identifiable: it.is_identifiable(),
             standard_error: it.standard_error,
+            bootstrap_lower: it.bootstrap.map(|it| it[0]),
+            bootstrap_upper: it.bootstrap.map(|it| it[1]),
         };
         let product = |it: &'a Combination| Product {
             keys: it.factors.iter().map(|(key, _)| key.as_str()).collect(),
@@ -137,6 +172,7 @@ impl<'a> CalibrationReport<'a> {
             aicc: outcome.aicc,
             models: models.iter().map(|it| Entries::new(&OF_MODEL, it)).collect(),
             residuals: rows(calibration, outcome).iter().map(|row| Entries::new(&OF_VALUE, row)).collect(),
+            forecast: outcome.forecast.as_ref().map(ahead),
             warnings: &outcome.warnings,
             runs: outcome.runs,
             run_error: outcome.run_error,
@@ -169,9 +205,23 @@ impl<'a> CalibrationReport<'a> {
         let _ = writeln!(text, "{:<width$}  {:>12}  interval of 95 %", "unknown", "estimate");
         for it in &self.parameters {
             let end = |end: Option<f64>| end.map_or_else(|| "not told".to_owned(), number);
-            let unit = if it.unit == "1" { String::new() } else { format!(" {}", it.unit) };
-            let interval = format!("{} to {}{unit}", end(it.lower), end(it.upper));
+            let unit = if it.unit == "1" { String::new() } else { format!(" {}", unit_in_words(it.unit)) };
+            let mut interval = format!("{} to {}{unit}", end(it.lower), end(it.upper));
+            if let (Some(low), Some(high)) = (it.bootstrap_lower, it.bootstrap_upper) {
+                let _ = write!(interval, "; data made anew: {} to {}{unit}", number(low), number(high));
+            }
             let _ = writeln!(text, "{:<width$}  {:>12}  {interval}", it.key, number(it.estimate));
+        }
+        if let Some(forecast) = &self.forecast {
+            let _ =
+                writeln!(text, "\n{:<width$}  {:>12}  where 95 % of the draws lie", "foretold", "estimate");
+            for it in forecast.results.iter().filter(|it| it.lower.is_some()) {
+                let [low, high] = [it.lower, it.upper].map(|it| it.map_or_else(String::new, number));
+                let unit =
+                    if it.unit == "1" { String::new() } else { format!(" {}", unit_in_words(it.unit)) };
+                let estimate = it.estimate.map_or_else(String::new, number);
+                let _ = writeln!(text, "{:<width$}  {estimate:>12}  {low} to {high}{unit}", it.name);
+            }
         }
         text.push('\n');
         for (set, fitted) in self.calibration.data().iter().zip(&self.outcome.data) {
@@ -196,6 +246,33 @@ impl<'a> CalibrationReport<'a> {
             rows.row("written", file.display());
         }
         text + &rows.text()
+    }
+}
+
+fn ahead(forecast: &Forecast) -> Ahead<'_> {
+    let expected = |it: &Band| Expected {
+        name: it.name,
+        unit: it.unit,
+        estimate: Some(it.estimate).filter(|it| it.is_finite()),
+        lower: it.interval.map(|it| it[0]),
+        upper: it.interval.map(|it| it[1]),
+    };
+    Ahead {
+        draws: forecast.draws[0],
+        failed: forecast.draws[1],
+        results: forecast.bands.iter().map(expected).collect(),
+        cycles: &forecast.cycles,
+        curves: CURVES
+            .iter()
+            .zip(&forecast.curves)
+            .map(|((quantity, _), [estimate, lower, upper])| Curve {
+                name: quantity.name,
+                unit: quantity.units,
+                estimate,
+                lower,
+                upper,
+            })
+            .collect(),
     }
 }
 

@@ -13,7 +13,7 @@ const MANY: f64 = 1e6;
 /// How near the end of an interval is found, in parts of its distance.
 const NEAR: f64 = 2e-3;
 /// Gain of misfit that is not worth another step.
-const LEAST_GAIN: f64 = 2e-3;
+pub(super) const LEAST_GAIN: f64 = 2e-3;
 /// How much lower than the least a misfit is that is no error of the runs.
 const LOWER: f64 = 0.02;
 /// Part of the rise that a bound of another unknown may be the cause of.
