@@ -164,18 +164,23 @@ const OF_STEPS: f64 = 1e-2;
 /// grow beyond: four times as many for a tenth of the error.
 const SUBSTEPS: [f64; 2] = [192.0, 768.0];
 const SAMPLED_AT: f64 = 3.2e-4;
-/// The same where the normal load changes along the path, which substeps take as linear between its points: 192 leave up to 8e-4.
-const LIFTING_SAMPLED_AT: f64 = 2.5e-3;
 const ORDER_OF_SUBSTEPS: f64 = 0.602;
+
+/// The same where the normal load changes along a line, whose steps are of third order.
+const LIFTING_SUBSTEPS: [f64; 2] = [64.0, 768.0];
+const LIFTING_SAMPLED_AT: f64 = 1e-2;
+const LIFTING_ORDER_OF_SUBSTEPS: f64 = 0.333;
 
 /// Substeps of a period that is sampled, a multiple of four.
 ///
 /// # Arguments
 /// * `lifts` -- whether the indenter moves up and down along the period
 pub(in crate::run) fn substeps_for(accuracy: f64, lifts: bool) -> usize {
-    let [fewest, most] = SUBSTEPS;
-    let at = if lifts { LIFTING_SAMPLED_AT } else { SAMPLED_AT };
-    let wanted = fewest * (at / accuracy).powf(ORDER_OF_SUBSTEPS);
+    let ([fewest, most], at, order) = match lifts {
+        true => (LIFTING_SUBSTEPS, LIFTING_SAMPLED_AT, LIFTING_ORDER_OF_SUBSTEPS),
+        false => (SUBSTEPS, SAMPLED_AT, ORDER_OF_SUBSTEPS),
+    };
+    let wanted = fewest * (at / accuracy).powf(order);
     4 * (0.25 * wanted.clamp(fewest, most)).round() as usize
 }
 

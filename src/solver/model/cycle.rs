@@ -237,9 +237,11 @@ impl Model {
                     slip[(i, m)] += free[m] * uniform;
                 }
             }
-            // The stencils reach two springs ahead; where none of those inside slips, there is no slip. Over the nodes of steps it cancels.
-            for m in 0..if motion.paired { 0 } else { columns } {
-                let stuck = (0..inner).take_while(|j| motion.slip[(*j, m)] == 0.0).count();
+            // The stencils reach two springs ahead; where none of those inside ever slips, there is no slip. What they make of the front of slip in one
+            // step cancels over the steps.
+            let sticks = |j: &usize| (0..columns).all(|m| motion.slip[(*j, m)] == 0.0);
+            let stuck = (0..inner).take_while(sticks).count();
+            for m in 0..columns {
                 (0..stuck).for_each(|i| slip[(i, m)] = 0.0);
             }
             if loading.path.is_some() {
@@ -253,7 +255,7 @@ impl Model {
         let along = |i: usize, m: usize| -> f64 {
             let columns = components * m..components * (m + 1);
             let along = columns.map(|c| slip[(i, c)] * direction[(i, c)]).sum::<f64>();
-            if motion.paired { along } else { along.max(0.0) }
+            if steps > 2 { along } else { along.max(0.0) }
         };
         let path = Mat::from_fn(n, steps, along);
         Surface { pressure, direction, path }

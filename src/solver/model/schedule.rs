@@ -178,7 +178,7 @@ impl Schedule {
                     }
                     None => SampledPath::new(&**mode, amplitude, indentation, substeps),
                 };
-                let sampled = sample(substeps);
+                let sampled = sample(if slope.is_some() { substeps.max(SUBSTEPS) } else { substeps });
                 depth = sampled.largest_indentation;
                 if let Some(slope) = slope.filter(|_| !sampled.path.is_level() && sampled.path.is_straight()) {
                     let count = substeps.div_ceil(SUBSTEPS_PER_STEP);
