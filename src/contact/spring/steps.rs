@@ -104,8 +104,7 @@ impl Steps {
     fn add(&mut self, first: usize, end: usize) {
         let push = |m: usize| self.pushes[m].iter().sum::<f64>();
         let whole: f64 = (first..end).map(push).sum();
-        let mut step =
-            Step { first, end, lifts: [f64::INFINITY, f64::NEG_INFINITY], moments: [0.0; 2] };
+        let mut step = Step { first, end, lifts: [f64::INFINITY, f64::NEG_INFINITY], moments: [0.0; 2] };
         let mut through = 0.0;
         for m in first..end {
             let next = if m + 1 == end { 1.0 } else { (through + push(m) / whole).min(1.0) };

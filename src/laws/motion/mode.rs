@@ -51,6 +51,11 @@ pub trait Mode: Any + Debug + Send + Sync {
         1
     }
 
+    /// Times in the period at which the indentation is largest.
+    fn peaks(&self) -> u32 {
+        1
+    }
+
     /// Smallest and largest indentation over that of the scene, m.
     fn indentations(&self) -> [f64; 2] {
         [0.0; 2]

@@ -116,6 +116,10 @@ impl Mode for NormalOscillation {
         self.frequency_ratio[1]
     }
 
+    fn peaks(&self) -> u32 {
+        self.frequency_ratio[0]
+    }
+
     fn indentations(&self) -> [f64; 2] {
         [-self.amplitude, self.amplitude]
     }

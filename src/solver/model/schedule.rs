@@ -171,16 +171,16 @@ impl Schedule {
                 let substeps = resolution.substeps.unwrap_or(fewest);
                 let scaled = conditions.mode.scaled(block.amplitude_factor);
                 let mode = scaled.as_ref().unwrap_or(&conditions.mode);
-                let slope = constant_friction(conditions).map(|it| it / contact.half_space().stiffness_ratio());
+                let slope =
+                    conditions.constant_friction().map(|it| it / contact.half_space().stiffness_ratio());
                 let sample = |substeps: usize| match slope {
-                    Some(slope) => {
-                        SampledPath::with_turns(&**mode, amplitude, indentation, substeps, slope)
-                    }
+                    Some(slope) => SampledPath::with_turns(&**mode, amplitude, indentation, substeps, slope),
                     None => SampledPath::new(&**mode, amplitude, indentation, substeps),
                 };
                 let sampled = sample(if slope.is_some() { substeps.max(SUBSTEPS) } else { substeps });
                 depth = sampled.largest_indentation;
-                if let Some(slope) = slope.filter(|_| !sampled.path.is_level() && sampled.path.is_straight()) {
+                if let Some(slope) = slope.filter(|_| !sampled.path.is_level() && sampled.path.is_straight())
+                {
                     let count = substeps.div_ceil(SUBSTEPS_PER_STEP);
                     let path = sample(count * Steps::CORNERS).path;
                     loading.steps = Steps::new(path, count, slope).map(Arc::new);
@@ -349,6 +349,11 @@ impl Schedule {
         self.loadings.iter().any(|loading| loading.path.as_ref().is_some_and(|path| !path.is_level()))
     }
 
+    /// Whether the slip in all resolved periods is taken by [`Steps`].
+    pub fn takes_steps(&self) -> bool {
+        self.loadings.iter().all(|loading| loading.steps.is_some())
+    }
+
     /// Whether periods are passed through step by step.
     pub fn resolves(&self) -> bool {
         self.loadings.iter().any(|loading| loading.path.is_some())
@@ -403,15 +408,6 @@ impl Schedule {
     pub fn makes_weak_kinks(&self) -> bool {
         self.is_steady() && !self.lifts() && self.conditions.wear.spreading().is_none()
     }
-}
-
-/// The coefficient of friction of a law that is Coulomb's and does not change.
-fn constant_friction(conditions: &Conditions) -> Option<f64> {
-    let friction = &conditions.friction;
-    let constant = conditions.friction_history == History::Constant
-        && friction.along_energy() == History::Constant
-        && friction.static_factor() == 1.0;
-    friction.coefficient().filter(|_| constant)
 }
 
 /// Refuses a held normal force beside a rig, and beside a held tangential one where the edge of stick would move.
