@@ -153,17 +153,17 @@ const KINDS: &[Kind] = &[
         more: "repeat = true\n[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\nindentation_factor = 1.2\n",
         ..PLAIN
     },
-    Kind { name: "normal oscillation, ratio 2", more: TWICE, ..MOVING },
-    Kind { name: "normal oscillation, out of phase", more: OUT_OF_PHASE, ..MOVING },
-    Kind { name: "normal oscillation, k = 0.5", more: TWICE, grading: 0.5, ..MOVING },
-    Kind { name: "normal oscillation, τ = 20", more: OUT_OF_PHASE, tau: 20.0, ..MOVING },
+    Kind { name: "normal oscillation, ratio 2", more: TWICE, ..PLAIN },
+    Kind { name: "normal oscillation, out of phase", more: OUT_OF_PHASE, ..PLAIN },
+    Kind { name: "normal oscillation, k = 0.5", more: TWICE, grading: 0.5, ..PLAIN },
+    Kind { name: "normal oscillation, τ = 20", more: OUT_OF_PHASE, tau: 20.0, ..PLAIN },
     Kind {
         name: "out of phase, load-dependent friction",
         friction: LOAD_DEPENDENT,
         more: OUT_OF_PHASE,
         ..MOVING
     },
-    Kind { name: "out of phase, threshold", wear: THRESHOLD, more: OUT_OF_PHASE, ..MOVING },
+    Kind { name: "out of phase, threshold", wear: THRESHOLD, more: OUT_OF_PHASE, ..PLAIN },
     Kind { name: "orbit", more: "[loading.orbit]\ntransverse_ratio = 0.6\n", ..PLAIN },
     Kind {
         name: "circle, k = 0.3",

@@ -336,7 +336,7 @@ fn the_wear_of_a_normal_oscillation_is_of_third_order_in_the_steps() {
             .map(|substeps| distance(&depth(substeps), &finest) / largest(&finest))
             .to_vec();
         let mean = orders(&errors).iter().sum::<f64>() / 3.0;
-        println!("n = {exponent}, k = {grading}: {errors:.1e?}, order {mean:.2}");
+        println!("n = {exponent}, k = {grading}: {errors:?}, order {mean:.2}");
         assert!(mean > 2.5 && errors[1] < 1e-3, "{errors:?}: {mean}");
     }
 }

@@ -120,7 +120,7 @@ impl Companions {
         let second = (first.is_some() && !smooth && !gross).then(|| coarser(2)).flatten();
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
-        let sampled = model.schedule().lifts();
+        let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
         let radii =
             (model.moving().is_some() || sampled || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
