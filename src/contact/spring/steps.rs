@@ -9,7 +9,7 @@ const PARTS: usize = 8;
 /// Corners of a path per step below which the steps would be no fewer than its substeps.
 const FEWEST_PARTS: usize = 3;
 
-/// The steps of a period in which springs slip one way and those that are loaded all the way, by rules of third order for what wears in it.
+/// The steps of a period in which springs slip one way and those that are loaded all the way, by rules of third order between the kinks of what wears in it.
 ///
 /// With `l = μ_f/M (q - lift)` the slip `u - e` of a spring lies between `u - l` and `u + l`: it is pushed on by `u + (μ_f/M) lift` while that grows and
 /// pushed back by `u - (μ_f/M) lift` while that falls. Which of them pushes is the same for all springs, and they stick from where it turns. A step lies

@@ -364,8 +364,11 @@ impl Schedule {
         if self.conditions.mode.is_tangential() {
             return plain;
         }
-        let paths = self.loadings.iter().filter_map(|loading| loading.path.as_ref());
-        paths.map(|path| path.points.len()).max().unwrap_or(plain)
+        let followed = |loading: &CycleLoading| {
+            let steps = loading.steps.as_ref().map(|steps| steps.path().points.len());
+            steps.or(loading.path.as_ref().map(|path| path.points.len()))
+        };
+        self.loadings.iter().filter_map(followed).max().unwrap_or(plain)
     }
 
     /// Whether the indenter leaves the x axis in some block.
