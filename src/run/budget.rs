@@ -181,7 +181,7 @@ pub(in crate::run) fn substeps_for(accuracy: f64, lifts: bool) -> usize {
 
 /// Substeps for every peak of the indentation where slip is taken by steps, the accuracy that they serve, and the power with which they grow:
 /// twice as many for a tenth of the error. The most in a period.
-const SUBSTEPS_OF_STEPS: [f64; 3] = [64.0, 1e-2, 0.30103];
+const SUBSTEPS_OF_STEPS: [f64; 3] = [64.0, 1e-2, 0.3011];
 const MOST_SUBSTEPS_OF_STEPS: f64 = 1024.0;
 
 /// Substeps of a period whose slip is taken by [`Steps`](crate::contact::spring::Steps).
