@@ -21,11 +21,15 @@ use fretwear::{Results, Simulation, Stop};
 
 const ACCURACIES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
-/// Springs of a reference over those of the run at the last accuracy, the most of them, and what it may take.
+/// Springs of a reference over those of the run at the last accuracy, the most of them, where periods are resolved and in gross slip as well, and what it may take.
 const FINER: usize = 4;
 const MOST_SPRINGS: usize = 480;
+const MOST_RESOLVED: usize = 240;
 const MOST_IN_GROSS_SLIP: usize = 120;
 const PATIENCE: Duration = Duration::from_secs(120);
+
+/// What is kept of a reference, and by which code; another number asks for all of them anew.
+const FORMAT: u32 = 2;
 
 /// Radii at which a reference is seen.
 const DENSE: usize = 3000;
@@ -149,17 +153,17 @@ const KINDS: &[Kind] = &[
         more: "repeat = true\n[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\nindentation_factor = 1.2\n",
         ..PLAIN
     },
-    Kind { name: "normal oscillation, ratio 2", more: TWICE, ..MOVING },
-    Kind { name: "normal oscillation, out of phase", more: OUT_OF_PHASE, ..MOVING },
-    Kind { name: "normal oscillation, k = 0.5", more: TWICE, grading: 0.5, ..MOVING },
-    Kind { name: "normal oscillation, τ = 20", more: OUT_OF_PHASE, tau: 20.0, ..MOVING },
+    Kind { name: "normal oscillation, ratio 2", more: TWICE, ..PLAIN },
+    Kind { name: "normal oscillation, out of phase", more: OUT_OF_PHASE, ..PLAIN },
+    Kind { name: "normal oscillation, k = 0.5", more: TWICE, grading: 0.5, ..PLAIN },
+    Kind { name: "normal oscillation, τ = 20", more: OUT_OF_PHASE, tau: 20.0, ..PLAIN },
     Kind {
         name: "out of phase, load-dependent friction",
         friction: LOAD_DEPENDENT,
         more: OUT_OF_PHASE,
         ..MOVING
     },
-    Kind { name: "out of phase, threshold", wear: THRESHOLD, more: OUT_OF_PHASE, ..MOVING },
+    Kind { name: "out of phase, threshold", wear: THRESHOLD, more: OUT_OF_PHASE, ..PLAIN },
     Kind { name: "orbit", more: "[loading.orbit]\ntransverse_ratio = 0.6\n", ..PLAIN },
     Kind {
         name: "circle, k = 0.3",
@@ -252,6 +256,8 @@ struct Shown {
     seen: Vec<Seen>,
     /// Volume and depth of the limit.
     limit: Option<[f64; 2]>,
+    /// Contact radius at each snapshot over that at the start, where the radii are the run's own: wear ends there with a kink.
+    edges: Vec<f64>,
 }
 
 impl Shown {
@@ -269,10 +275,11 @@ impl Shown {
                 .map(|it| Seen { tau: it.tau, volume: it.wear_volume, depth: it.wear_depth.clone() })
                 .collect(),
             limit: limit.map(|(limit, curves)| [limit.wear_volume(), deepest(&curves.wear_depth)]),
+            edges: vec![],
         }
     }
 
-    /// Lines: springs and limit; radii; then of each snapshot time, volume and depths.
+    /// Lines: springs and limit; radii; edges; then of each snapshot time, volume and depths.
     fn written(&self) -> String {
         let [volume, depth] = self.limit.unwrap_or_default();
         let mut text = format!("{} {volume:e} {depth:e}\n", self.springs);
@@ -281,6 +288,7 @@ impl Shown {
             writeln!(text, "{}", all.join(" ")).expect("text");
         };
         line(&[], &self.radius);
+        line(&[], &self.edges);
         self.seen.iter().for_each(|it| line(&[it.tau, it.volume], &it.depth));
         text
     }
@@ -292,14 +300,15 @@ impl Shown {
         let head = lines.next()?;
         let [springs, volume, depth] = *head else { return None };
         let radius = lines.next()?;
+        let edges = lines.next()?;
         let seen = lines.map(|it| Seen { tau: it[0], volume: it[1], depth: it[2..].to_vec() }).collect();
         let limit = (volume > 0.0).then_some([volume, depth]);
-        Some(Self { springs: springs as usize, radius, seen, limit })
+        Some(Self { springs: springs as usize, radius, seen, limit, edges })
     }
 
     /// Least and largest depth at a radius by straight line, parabolas and cubic through its neighbours, over the fourth root of the distance from the
     /// innermost: beyond a kink one of them is right. None outside.
-    fn depth_at(&self, depth: &[f64], radius: f64) -> Option<[f64; 2]> {
+    fn depth_at(&self, depth: &[f64], radius: f64, edge: Option<f64>) -> Option<[f64; 2]> {
         let (first, last) = (self.radius[0], self.radius[self.radius.len() - 1]);
         if radius < first || radius > last {
             return None;
@@ -315,8 +324,18 @@ impl Shown {
             };
             near.clone().map(value).sum::<f64>()
         };
-        let found = [above - 2..above + 1, above - 1..above + 2, above - 2..above + 2, above - 1..above + 1]
-            .map(through);
+        let mut found =
+            [above - 2..above + 1, above - 1..above + 2, above - 2..above + 2, above - 1..above + 1]
+                .map(through)
+                .to_vec();
+        if let Some(edge) = edge.filter(|edge| (self.radius[above - 1]..self.radius[above]).contains(edge)) {
+            // Within the cell of the contact edge: nothing beyond, and on this side a line and a parabola through a depth of zero there.
+            let [outer, inner] = [above - 1, above - 2].map(|i| (self.radius[i], depth[i]));
+            let line = |(r, w): (f64, f64)| w * (edge - radius) / (edge - r);
+            let parabola =
+                (line(outer) * (radius - inner.0) - line(inner) * (radius - outer.0)) / (outer.0 - inner.0);
+            found = if radius >= edge { vec![0.0] } else { vec![line(outer), parabola] };
+        }
         Some([
             found.iter().copied().fold(f64::INFINITY, f64::min),
             found.iter().copied().fold(f64::NEG_INFINITY, f64::max),
@@ -345,6 +364,7 @@ struct Dense {
     first_radius: f64,
     radius: Vec<f64>,
     seen: Vec<Seen>,
+    edges: Vec<f64>,
 }
 
 impl Observer for Dense {
@@ -361,6 +381,9 @@ impl Observer for Dense {
             return Ok(());
         }
         self.radius = offsets.iter().map(|offset| (stick_area + offset).sqrt() / self.first_radius).collect();
+        if behind {
+            self.edges.push(model.contact_radius(state) / self.first_radius);
+        }
         let depth = |offset: &f64| model.wear_depth_at(state, fields, *offset).max(0.0);
         self.seen.push(Seen {
             tau: state.cycles * model.contact().tau_per_cycle(),
@@ -382,12 +405,12 @@ fn errors(run: &Shown, reference: &Shown, moves: bool) -> ([f64; 2], [f64; 2]) {
     let [volume_scale, scale] = reference.limit.unwrap_or_else(|| [own(|it| it.volume), own(deepest)]);
     let (mut volume, mut profile, mut place) = (0.0_f64, 0.0_f64, [0.0; 2]);
     for it in &run.seen {
-        let Some(exact) = reference.seen.iter().find(|that| (that.tau / it.tau - 1.0).abs() < 1e-9) else {
-            continue;
-        };
+        let same = |that: &Seen| (that.tau / it.tau - 1.0).abs() < 1e-9;
+        let Some(index) = reference.seen.iter().position(same) else { continue };
+        let (exact, edge) = (&reference.seen[index], reference.edges.get(index).copied());
         volume = volume.max((it.volume - exact.volume).abs() / volume_scale);
         for (radius, worn) in run.radius.iter().zip(&it.depth) {
-            let Some([least, most]) = reference.depth_at(&exact.depth, *radius) else { continue };
+            let Some([least, most]) = reference.depth_at(&exact.depth, *radius, edge) else { continue };
             let mut off = (least - worn).max(worn - most).max(0.0) / scale;
             if moves && off > profile {
                 off = reference.distance(&exact.depth, [*radius, *worn], scale, off);
@@ -423,19 +446,24 @@ fn run(scene: &Scene, patience: Duration, observer: Option<&mut dyn Observer>) -
 /// The reference, as kept or made.
 fn reference(kind: &Kind, springs: usize) -> Option<Shown> {
     let sliding = kind.amplitude.starts_with("amplitude_ratio");
-    let most = if sliding { MOST_IN_GROSS_SLIP } else { MOST_SPRINGS };
+    let resolved = kind.more.contains("oscillation]") || kind.more.contains("orbit]");
+    let most = match (sliding, resolved) {
+        (true, _) => MOST_IN_GROSS_SLIP,
+        (false, true) => MOST_RESOLVED,
+        (false, false) => MOST_SPRINGS,
+    };
     let stepper = if kind.numerics.is_empty() { "" } else { "by default" };
     // A reference of an explicit stepper is an implicit one.
     let kind = Kind { numerics: "", ..*kind };
     let finest = (FINER * springs).min(most);
     for springs in [finest, finest * 3 / 4, finest / 2] {
         let mut numerics = format!("springs = {springs}\ntolerance = 3e-6\n");
-        if kind.more.contains("oscillation]") || kind.more.contains("orbit]") {
+        if resolved {
             numerics += "substeps = 768\n";
         }
         let scene = kind.scene(&numerics).ok()?;
         let mut hasher = DefaultHasher::new();
-        (scene.text(), stepper).hash(&mut hasher);
+        (scene.text(), stepper, FORMAT).hash(&mut hasher);
         let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/target/kinds"));
         let file = folder.join(format!("{:016x}.txt", hasher.finish()));
         if let Ok(text) = std::fs::read_to_string(&file) {
@@ -448,7 +476,8 @@ fn reference(kind: &Kind, springs: usize) -> Option<Shown> {
         let mut dense = Dense::default();
         match run(&scene, PATIENCE, Some(&mut dense)) {
             Ok(results) => {
-                let shown = Shown { radius: dense.radius, seen: dense.seen, ..Shown::of(&results) };
+                let Dense { radius, seen, edges, .. } = dense;
+                let shown = Shown { radius, seen, edges, ..Shown::of(&results) };
                 std::fs::write(&file, shown.written()).ok()?;
                 return Some(shown);
             }

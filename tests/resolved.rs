@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use fretwear::contact::spring::{Response, Shakedown, SpringCycle, steady_cycle};
 use fretwear::laws::conditions::Conditions;
-use fretwear::laws::motion::SampledPath;
+use fretwear::laws::motion::{NormalOscillation, SampledPath};
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Plan, Simulation};
@@ -313,5 +313,30 @@ fn the_table_of_an_orbit_is_that_of_its_springs() {
             times / 2000.0
         );
         assert!(path_error < 1e-4, "{name}: {path_error:e}");
+    }
+}
+
+#[test]
+fn the_wear_of_a_normal_oscillation_is_of_second_order_in_the_steps_at_least() {
+    for (exponent, grading) in MEDIA {
+        let case = Case::new(exponent, grading, 0.7, 24);
+        let contact = case.contact();
+        let mode =
+            NormalOscillation { amplitude: 0.1 * contact.indentation(), frequency_ratio: [1, 1], phase: 1.0 };
+        let conditions = Conditions { mode: Arc::new(mode), ..laws::plain(&contact) };
+        let depth = |substeps: usize| -> Vec<f64> {
+            let model = laws::model(&case, &conditions, Some(substeps));
+            let state = some_compression(&model);
+            let fields = model.fields(&state);
+            let cycle = model.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields);
+            cycle.growth.iter().zip(&fields.slip_depth).map(|(growth, slip)| growth * slip).collect()
+        };
+        let finest = depth(4096);
+        let errors: Vec<f64> = [64, 128, 256, 512]
+            .map(|substeps| distance(&depth(substeps), &finest) / largest(&finest))
+            .to_vec();
+        let mean = orders(&errors).iter().sum::<f64>() / 3.0;
+        println!("n = {exponent}, k = {grading}: {errors:?}, order {mean:.2}");
+        assert!(mean > 1.9 && errors[1] < 1e-3, "{errors:?}: {mean}");
     }
 }

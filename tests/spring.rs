@@ -504,3 +504,43 @@ fn a_cycle_that_is_used_again_is_as_if_new() {
         assert_eq!(used, cycle(&path, law, 1.3), "run {run}");
     }
 }
+
+#[test]
+fn springs_along_a_line_stick_from_the_turns_of_what_pushes_them_on_however_few_the_substeps() {
+    let law = coulomb(0.45);
+    let slope = 0.45 / M;
+    let mut random = Seeded::new(21);
+    let (mut worst, mut without) = (0.0_f64, 0.0_f64);
+    for frequency_ratio in [[1, 1], [2, 1], [3, 2], [1, 2]] {
+        for _ in 0..6 {
+            let mode = normal(random.between(0.02, 0.6), frequency_ratio, random.between(0.0, TAU));
+            let amplitude = random.between(1.0, 3.0);
+            // The slip lies between V+ - (μ_f/M) q and V- + (μ_f/M) q at all times, V± = u ± (μ_f/M) lift.
+            let [over, under] = frequency_ratio.map(f64::from);
+            let pushes = |time: f64, side: f64| {
+                let lift = 2.0 * mode.amplitude * (0.5 * (over / under * time + mode.phase)).sin().powi(2);
+                amplitude * time.cos() + side * slope * lift
+            };
+            let most = |sign: f64, side: f64| {
+                let count = 20_000;
+                let at = |i: f64| sign * pushes(TAU * under * i / f64::from(count), side);
+                let best = (0..count).map(f64::from).max_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap();
+                let [a, b, c] = [at(best - 1.0), at(best), at(best + 1.0)];
+                b - (c - a).powi(2) / (8.0 * (a + c - 2.0 * b))
+            };
+            let exact = (most(1.0, 1.0) + most(-1.0, -1.0)) / (2.0 * slope);
+            if exact <= 2.0 * mode.amplitude {
+                continue;
+            }
+            for substeps in [12, 48, 192] {
+                let path = SampledPath::with_turns(&mode, amplitude, 10.0, substeps, slope).path;
+                worst = worst.max((stick_compression(&path, &law, M) / exact - 1.0).abs());
+                let path = sampled(&mode, amplitude, substeps);
+                without = without.max((stick_compression(&path, &law, M) / exact - 1.0).abs());
+            }
+        }
+    }
+    println!("edge of stick: {worst:e}, without the turns {without:e}");
+    assert!(worst < 1e-11, "{worst:e}");
+    assert!(without > 1e-3, "{without:e}");
+}

@@ -16,11 +16,13 @@
 
 mod enclosing;
 mod response;
+mod steps;
 mod stick;
 
 use std::ops::ControlFlow;
 
 pub use response::Response;
+pub use steps::Steps;
 pub use stick::stick_compression;
 
 use crate::laws::friction::FrictionLaw;

@@ -109,6 +109,14 @@ impl Conditions {
     const CHANGING_FRICTION: &str = "friction that changes along the cycles";
     const CHANGING_WEAR: &str = "a wear coefficient that changes along the cycles";
 
+    /// The coefficient of friction where the law is Coulomb's and does not change.
+    pub fn constant_friction(&self) -> Option<f64> {
+        let constant = self.friction_history == History::Constant
+            && self.friction.along_energy() == History::Constant
+            && self.friction.static_factor() == 1.0;
+        self.friction.coefficient().filter(|_| constant)
+    }
+
     /// Plain tangential oscillation under Coulomb's and Archard's laws.
     pub fn plain(friction: Coulomb, wear: Archard) -> Self {
         Self {

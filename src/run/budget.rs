@@ -50,7 +50,7 @@ pub(in crate::run) const SURE: f64 = 0.6;
 const MOST_REFINED: usize = 400;
 
 /// The same where periods of a changing normal load are passed through step by step.
-const MOST_REFINED_LIFTING: usize = 120;
+const MOST_REFINED_LIFTING: usize = 200;
 
 /// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
 pub(super) const CAUTIOUS_ORDER: f64 = 4.0;
@@ -164,9 +164,9 @@ const OF_STEPS: f64 = 1e-2;
 /// grow beyond: four times as many for a tenth of the error.
 const SUBSTEPS: [f64; 2] = [192.0, 768.0];
 const SAMPLED_AT: f64 = 3.2e-4;
+const ORDER_OF_SUBSTEPS: f64 = 0.602;
 /// The same where the normal load changes along the path, which substeps take as linear between its points: 192 leave up to 8e-4.
 const LIFTING_SAMPLED_AT: f64 = 2.5e-3;
-const ORDER_OF_SUBSTEPS: f64 = 0.602;
 
 /// Substeps of a period that is sampled, a multiple of four.
 ///
@@ -177,6 +177,21 @@ pub(in crate::run) fn substeps_for(accuracy: f64, lifts: bool) -> usize {
     let at = if lifts { LIFTING_SAMPLED_AT } else { SAMPLED_AT };
     let wanted = fewest * (at / accuracy).powf(ORDER_OF_SUBSTEPS);
     4 * (0.25 * wanted.clamp(fewest, most)).round() as usize
+}
+
+/// Substeps for every peak of the indentation where slip is taken by steps, the accuracy that they serve, and the power with which they grow:
+/// twice as many for a tenth of the error. The most in a period.
+const SUBSTEPS_OF_STEPS: [f64; 3] = [64.0, 1e-2, 0.3011];
+const MOST_SUBSTEPS_OF_STEPS: f64 = 1024.0;
+
+/// Substeps of a period whose slip is taken by [`Steps`](crate::contact::spring::Steps).
+///
+/// # Arguments
+/// * `peaks` -- of the indentation, or turns of the tangential oscillation, in the period
+pub(in crate::run) fn substeps_of_steps(accuracy: f64, peaks: u32) -> usize {
+    let [substeps, at, power] = SUBSTEPS_OF_STEPS;
+    let wanted = f64::from(peaks) * substeps * (at / accuracy).powf(power).max(1.0);
+    wanted.min(MOST_SUBSTEPS_OF_STEPS).ceil() as usize
 }
 
 /// The estimate where nothing is known: as much as all that wears.

@@ -142,10 +142,14 @@ fn check_stepper(stepper: StepperChoice, model: &Model) -> Result<()> {
 
 /// How periods are passed through.
 pub(super) fn resolution(scene: &Scene, numerics: &Numerics) -> Resolution {
-    let mode = &scene.conditions().mode;
+    let conditions = scene.conditions();
+    let mode = &conditions.mode;
     let sampled = !mode.is_tangential() && numerics.springs.is_none();
-    let lifts = mode.indentations() != [0.0; 2];
-    let chosen = sampled.then(|| budget::substeps_for(numerics.accuracy, lifts));
+    let steps = mode.changes_indentation() && conditions.constant_friction().is_some();
+    let chosen = sampled.then(|| match steps {
+        true => budget::substeps_of_steps(numerics.accuracy, mode.peaks().max(mode.oscillations())),
+        false => budget::substeps_for(numerics.accuracy, mode.changes_indentation()),
+    });
     let resolved = numerics.cycle == Some(Cycle::Resolved);
     Resolution { resolved, substeps: numerics.substeps.or(chosen) }
 }

@@ -37,8 +37,22 @@ pub trait Mode: Any + Debug + Send + Sync {
     /// * `substeps` -- about how many; raised to what the reversals and extrema need
     fn period(&self, amplitude: f64, substeps: usize) -> Vec<PathPoint>;
 
+    /// The corners of [`Mode::period`], with those at which `u_x + slope · lift` and `u_x - slope · lift` turn where a mode knows them: with the slope
+    /// `μ_f/M` springs along a line begin to stick there, whatever their compression.
+    ///
+    /// # Arguments
+    /// * `amplitude`, `substeps` -- as [`Mode::period`] takes them
+    fn period_with_turns(&self, amplitude: f64, substeps: usize, _slope: f64) -> Vec<PathPoint> {
+        self.period(amplitude, substeps)
+    }
+
     /// Tangential oscillations in the period.
     fn oscillations(&self) -> u32 {
+        1
+    }
+
+    /// Times in the period at which the indentation is largest.
+    fn peaks(&self) -> u32 {
         1
     }
 
@@ -150,6 +164,21 @@ impl SampledPath {
     pub fn new(mode: &dyn Mode, amplitude: f64, indentation: f64, substeps: usize) -> Self {
         Self {
             path: Path { points: mode.period(amplitude, substeps) },
+            largest_indentation: indentation + mode.indentations()[1],
+            oscillations: mode.oscillations(),
+        }
+    }
+
+    /// The same with the corners at which springs begin to stick, see [`Mode::period_with_turns`].
+    pub fn with_turns(
+        mode: &dyn Mode,
+        amplitude: f64,
+        indentation: f64,
+        substeps: usize,
+        slope: f64,
+    ) -> Self {
+        Self {
+            path: Path { points: mode.period_with_turns(amplitude, substeps, slope) },
             largest_indentation: indentation + mode.indentations()[1],
             oscillations: mode.oscillations(),
         }

@@ -94,6 +94,64 @@ impl Mode for NormalOscillation {
     /// them is stick, which should come from the motion and not from the place of a sample. A peak within `1e-9` of a half period of a
     /// reversal is one with it.
     fn period(&self, amplitude: f64, substeps: usize) -> Vec<PathPoint> {
+        self.timed_period(amplitude, substeps).into_iter().map(|(_, point)| point).collect()
+    }
+
+    /// With the places at which `U cos ωt ± s (d_max - d)` is largest or smallest, found as zeros of its rate.
+    fn period_with_turns(&self, amplitude: f64, substeps: usize, slope: f64) -> Vec<PathPoint> {
+        let mut nodes = self.timed_period(amplitude, substeps);
+        let turns: Vec<f64> =
+            [slope, -slope].into_iter().flat_map(|slope| self.turns(amplitude, &nodes, slope)).collect();
+        for time in turns {
+            let near = |(at, _): &(f64, PathPoint)| (at - time).abs() <= SIMULTANEOUS;
+            if !nodes.iter().any(near) {
+                nodes.push((time, self.place(amplitude, time)));
+            }
+        }
+        nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        nodes.into_iter().map(|(_, point)| point).collect()
+    }
+
+    fn oscillations(&self) -> u32 {
+        self.frequency_ratio[1]
+    }
+
+    fn peaks(&self) -> u32 {
+        self.frequency_ratio[0]
+    }
+
+    fn indentations(&self) -> [f64; 2] {
+        [-self.amplitude, self.amplitude]
+    }
+}
+
+impl NormalOscillation {
+    /// Where the indenter is, time counted in tangential periods.
+    fn place(&self, amplitude: f64, time: f64) -> PathPoint {
+        let [m, n] = self.frequency_ratio.map(f64::from);
+        let lift = 2.0 * self.amplitude * (0.5 * (TAU * m / n * time + self.phase)).sin().powi(2);
+        PathPoint { tangential: [amplitude * (TAU * time).cos(), 0.0], lift }
+    }
+
+    /// Times, in tangential periods, at which `u + slope · lift` turns.
+    fn turns(&self, amplitude: f64, nodes: &[(f64, PathPoint)], slope: f64) -> Vec<f64> {
+        let [m, n] = self.frequency_ratio.map(f64::from);
+        let ratio = m / n;
+        let rate = |time: f64| {
+            slope * self.amplitude * ratio * (TAU * ratio * time + self.phase).sin()
+                - amplitude * (TAU * time).sin()
+        };
+        let ends = nodes.windows(2).map(|pair| [pair[0].0, pair[1].0]);
+        let last = [nodes[nodes.len() - 1].0, n + nodes[0].0];
+        let turns = ends.chain([last]).filter(|[from, to]| rate(*from) * rate(*to) < 0.0);
+        turns
+            .filter_map(|[from, to]| bracketed(rate, from, to, 0.0).ok())
+            .map(|time| time.rem_euclid(n))
+            .collect()
+    }
+
+    /// The points of a period with their times, in tangential periods.
+    fn timed_period(&self, amplitude: f64, substeps: usize) -> Vec<(f64, PathPoint)> {
         let Self { amplitude: normal, frequency_ratio: [m, n], phase } = *self;
         let period = f64::from(n);
         let ratio = f64::from(m) / period;
@@ -136,15 +194,7 @@ impl Mode for NormalOscillation {
             (0.5 * i as f64, PathPoint { tangential, lift })
         }));
         nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        nodes.into_iter().map(|(_, point)| point).collect()
-    }
-
-    fn oscillations(&self) -> u32 {
-        self.frequency_ratio[1]
-    }
-
-    fn indentations(&self) -> [f64; 2] {
-        [-self.amplitude, self.amplitude]
+        nodes
     }
 }
 

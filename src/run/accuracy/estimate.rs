@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
+use super::super::parts::resolution;
 use super::companion::{Coarser, Companion, Worn};
 use super::substeps::larger;
 use crate::data::{Snapshot, same_cycles};
@@ -90,16 +91,25 @@ impl Companions {
         let offsets = model.offsets();
         let every = (offsets.len() / model.springs()).max(1);
         let offsets: Vec<f64> = offsets.into_iter().step_by(every).collect();
+        // Steps of a period are of a known order, so that coarser companions show what they leave out.
+        let steps_of = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
         let coarser = |steps: i32| {
             let coarser = |value: f64| (value * COARSER.powi(steps)).min(COARSEST);
             let accuracy = if smooth { coarser(numerics.accuracy) } else { numerics.accuracy };
             let tolerance = Some(coarser(simulation.tolerance()));
             Companion::run(&Coarser {
                 scene,
-                numerics: Numerics { accuracy, tolerance, ..*numerics },
+                numerics: Numerics {
+                    accuracy,
+                    tolerance,
+                    substeps: steps_of
+                        .map(|it| (it as f64 / RATIO.powi(steps)).ceil() as usize)
+                        .or(numerics.substeps),
+                    ..*numerics
+                },
                 springs: ((model.springs() as f64 / RATIO.powi(steps)).ceil() as usize).max(FEWEST),
                 offsets: &offsets,
-                samples: steps == 1,
+                samples: steps == 1 && steps_of.is_none(),
                 most_steps: MOST_STEPS[usize::from(!smooth)],
                 store,
                 stop,
@@ -110,7 +120,7 @@ impl Companions {
         let second = (first.is_some() && !smooth && !gross).then(|| coarser(2)).flatten();
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
-        let sampled = model.schedule().lifts();
+        let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
         let radii =
             (model.moving().is_some() || sampled || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;

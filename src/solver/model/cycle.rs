@@ -237,21 +237,25 @@ impl Model {
                     slip[(i, m)] += free[m] * uniform;
                 }
             }
-            // The stencils reach two springs ahead; where none of those inside slips, there is no slip.
+            // The stencils reach two springs ahead; where none of those inside ever slips, there is no slip. What they make of the front of slip in one
+            // step cancels over the steps.
+            let sticks = |j: &usize| (0..columns).all(|m| motion.slip[(*j, m)] == 0.0);
+            let stuck = (0..inner).take_while(sticks).count();
             for m in 0..columns {
-                let stuck = (0..inner).take_while(|j| motion.slip[(*j, m)] == 0.0).count();
                 (0..stuck).for_each(|i| slip[(i, m)] = 0.0);
             }
             if loading.path.is_some() {
                 let slipped =
                     Mat::from_fn(inner, columns, |j, m| motion.slip[(j, m)] * fields.density_factor[j]);
+                let slipped = if motion.paired { pair_sums(&slipped) } else { slipped };
                 product_without_signs(&mut direction, self.operators.abel.profile(), slipped.as_ref());
                 normalise(&mut direction, components);
             }
         }
         let along = |i: usize, m: usize| -> f64 {
             let columns = components * m..components * (m + 1);
-            columns.map(|c| slip[(i, c)] * direction[(i, c)]).sum::<f64>().max(0.0)
+            let along = columns.map(|c| slip[(i, c)] * direction[(i, c)]).sum::<f64>();
+            if steps > 2 { along } else { along.max(0.0) }
         };
         let path = Mat::from_fn(n, steps, along);
         Surface { pressure, direction, path }
@@ -351,7 +355,7 @@ impl Model {
         let (steps, components) = (motion.steps(), motion.components);
         let along = Mat::from_fn(n, steps * components, |i, c| {
             let step = c / components;
-            let slips = surface.path[(i, step)] > 0.0;
+            let slips = surface.path[(i, step)] != 0.0;
             if slips { worn.by_path[(i, step)] * surface.direction[(i, c)] } else { 0.0 }
         });
         let spreading = loading.wear.spreading();
@@ -498,6 +502,11 @@ fn product_without_signs(to: &mut Mat<f64>, left: &Mat<f64>, right: MatRef<'_, f
         let rows = right.subrows(columns.start, columns.len());
         matmul(to.as_mut(), Accum::Add, part.as_ref(), rows, 1.0, Par::Seq);
     }
+}
+
+/// The matrix with the sum of each pair of columns in both.
+fn pair_sums(of: &Mat<f64>) -> Mat<f64> {
+    Mat::from_fn(of.nrows(), of.ncols(), |i, m| of[(i, m)] + of[(i, m ^ 1)])
 }
 
 /// Columns of a matrix, some at a time.

@@ -116,7 +116,9 @@ impl Model {
             };
         }
         let tangential = self.schedule.conditions().mode.is_tangential();
-        match loading.path.as_deref().filter(|_| !tangential) {
+        // Along the steps springs are followed by more corners than the path has.
+        let followed = loading.steps.as_ref().map(|steps| steps.path());
+        match followed.or(loading.path.as_deref()).filter(|_| !tangential) {
             Some(path) => self.spring_loop(loading, path, compression, fields),
             None => {
                 let lift = loading.path.as_ref().map_or(loading.lift, |path| path.points[0].lift);

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
-use crate::contact::spring::{Response, Shakedown, SpringCycle, steady_cycle};
+use crate::contact::spring::{Response, Shakedown, SpringCycle, Steps, steady_cycle};
 use crate::contact::stick_slip::slip_amplitude_of_spring;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
@@ -24,6 +24,8 @@ pub(super) struct Motion {
     pub free: Vec<f64>,
     /// One where all slip along a line, else two.
     pub components: usize,
+    /// Whether steps come in pairs, the nodes of [`Steps`], of which one alone may be of either sign.
+    pub paired: bool,
     /// What presses in each step, m: the mean compression, or what resists slip where wear goes by energy; shape
     /// `(springs - 1, steps)`, or one column if it is the same in all.
     pub load: Mat<f64>,
@@ -71,6 +73,9 @@ impl Model {
         fields: &Fields,
         slopes: bool,
     ) -> Motion {
+        if let Some(steps) = &loading.steps {
+            return self.stepped_motion(loading, steps, compression, slopes);
+        }
         match &loading.path {
             Some(path) => self.resolved_motion(loading, path, compression, slopes),
             None => self.closed_form_motion(loading, compression, fields, slopes),
@@ -117,6 +122,7 @@ impl Model {
             slip: Mat::from_fn(inner, 1, |j, _| 4.0 * slip[j].0),
             free: vec![4.0 * amplitude],
             components: 1,
+            paired: false,
             load: Mat::from_fn(inner, 1, |j, _| bearing.of(compression[j], loading.lift)),
             energies: lifted.iter().zip(&slip).map(energies).collect(),
             slip_slope: Mat::from_fn(rows, 1, |j, _| 4.0 * slip[j].1),
@@ -156,6 +162,7 @@ impl Model {
             slip: Mat::zeros(inner, columns),
             free: values.clone(),
             components,
+            paired: false,
             load: Mat::zeros(0, 0),
             energies: Vec::with_capacity(inner),
             slip_slope: Mat::zeros(if slopes { inner } else { 0 }, columns),
@@ -180,6 +187,62 @@ impl Model {
         motion.load_slope = Mat::from_fn(if slopes { inner } else { 0 }, different, |j, m| {
             self.slope(|q| mean(q, m), compression[j])
         });
+        motion
+    }
+
+    /// Springs through the steps of a path along which the indenter moves up and down.
+    fn stepped_motion(
+        &self,
+        loading: &CycleLoading,
+        steps: &Steps,
+        compression: &[f64],
+        slopes: bool,
+    ) -> Motion {
+        let (inner, columns) = (compression.len(), steps.columns());
+        let ratio = self.contact.half_space().stiffness_ratio();
+        let difference = DIFFERENCE * self.contact.slip_compression();
+        let rows = if slopes { inner } else { 0 };
+        let mut motion = Motion {
+            amplitude: loading.amplitude,
+            slip: Mat::zeros(inner, columns),
+            free: vec![0.0; columns],
+            components: 1,
+            paired: true,
+            load: Mat::zeros(inner, columns),
+            energies: Vec::with_capacity(inner),
+            slip_slope: Mat::zeros(rows, columns),
+            load_slope: Mat::zeros(rows, columns),
+            amplitude_slope: None,
+        };
+        let mut cycle = SpringCycle::default();
+        let mut passed = |compression: f64, slip: &mut [f64]| {
+            let (law, shakedown) = (&*loading.friction, Shakedown::default());
+            steady_cycle(steps.path(), law, ratio, compression, &shakedown, &mut cycle);
+            steps.slip(&cycle, compression, slip);
+            Energies { dissipation: cycle.dissipation, jump_loss: cycle.jump_loss, work: cycle.work }
+        };
+        // Springs without compression are never loaded.
+        let (mut values, mut after) = (vec![0.0; columns], vec![0.0; columns]);
+        let per_compression = Bearing::new(loading).of(1.0, 0.0);
+        for (j, q) in compression.iter().enumerate() {
+            let pressed = q.max(0.0);
+            motion.energies.push(passed(pressed, &mut values));
+            for (m, value) in values.iter().enumerate() {
+                motion.slip[(j, m)] = *value;
+            }
+            if slopes {
+                passed(pressed + difference, &mut after);
+                for (m, (after, value)) in after.iter().zip(&values).enumerate() {
+                    motion.slip_slope[(j, m)] = (after - value) / difference;
+                }
+            }
+            steps.load(*q, |m, load, slope| {
+                motion.load[(j, m)] = per_compression * load;
+                if slopes {
+                    motion.load_slope[(j, m)] = per_compression * slope;
+                }
+            });
+        }
         motion
     }
 

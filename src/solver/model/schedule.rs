@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::first_force::first_force;
 use crate::contact::InitialContact;
-use crate::contact::spring::{Response, stick_compression};
+use crate::contact::spring::{Response, Steps, stick_compression};
 use crate::error::{Error, Result};
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::FrictionLaw;
@@ -53,6 +53,8 @@ pub struct CycleLoading {
     pub path: Option<Arc<Path>>,
     /// What springs do on that path, where their limit alone decides it.
     pub response: Option<Arc<Response>>,
+    /// The steps of that path where the indenter moves up and down along a line and a constant coefficient of friction decides how springs slip.
+    pub steps: Option<Arc<Steps>>,
     /// Cycles in that period.
     pub cycles_per_period: f64,
     /// Settled cycles that this one wears as much as: `FROM_REST` in the first cycle from rest, else one.
@@ -99,6 +101,9 @@ pub struct Resolution {
 /// Substeps of a period by default: enough where only the reversals matter, and for paths that turn or press.
 const FEWEST_SUBSTEPS: usize = 2;
 const SUBSTEPS: usize = 96;
+
+/// Substeps for which there is one step of the wear where springs are followed within it.
+const SUBSTEPS_PER_STEP: usize = 4;
 
 /// What acts when.
 #[derive(Debug, Clone)]
@@ -156,6 +161,7 @@ impl Schedule {
                 lift: 0.0,
                 path: None,
                 response: None,
+                steps: None,
                 cycles_per_period: 1.0,
                 share: 1.0,
             };
@@ -165,8 +171,20 @@ impl Schedule {
                 let substeps = resolution.substeps.unwrap_or(fewest);
                 let scaled = conditions.mode.scaled(block.amplitude_factor);
                 let mode = scaled.as_ref().unwrap_or(&conditions.mode);
-                let sampled = SampledPath::new(&**mode, amplitude, indentation, substeps);
+                let slope =
+                    conditions.constant_friction().map(|it| it / contact.half_space().stiffness_ratio());
+                let sample = |substeps: usize| match slope {
+                    Some(slope) => SampledPath::with_turns(&**mode, amplitude, indentation, substeps, slope),
+                    None => SampledPath::new(&**mode, amplitude, indentation, substeps),
+                };
+                let sampled = sample(if slope.is_some() { substeps.max(SUBSTEPS) } else { substeps });
                 depth = sampled.largest_indentation;
+                if let Some(slope) = slope.filter(|_| !sampled.path.is_level() && sampled.path.is_straight())
+                {
+                    let count = substeps.div_ceil(SUBSTEPS_PER_STEP);
+                    let path = sample(count * Steps::CORNERS).path;
+                    loading.steps = Steps::new(path, count, slope).map(Arc::new);
+                }
                 loading.cycles_per_period = f64::from(sampled.oscillations);
                 loading.response = response(&sampled.path, &*loading.friction, &loadings);
                 loading.path = Some(Arc::new(sampled.path));
@@ -180,6 +198,9 @@ impl Schedule {
             match loading.path.as_mut().map(Arc::make_mut) {
                 Some(path) => path.points.iter_mut().for_each(|point| point.lift += lift),
                 None => loading.lift = lift,
+            }
+            if let Some(steps) = loading.steps.as_mut().filter(|_| lift != 0.0) {
+                Arc::make_mut(steps).lift(lift);
             }
         }
         let friction_along_energy = conditions.friction.along_energy();
@@ -328,6 +349,11 @@ impl Schedule {
         self.loadings.iter().any(|loading| loading.path.as_ref().is_some_and(|path| !path.is_level()))
     }
 
+    /// Whether the slip in all resolved periods is taken by [`Steps`].
+    pub fn takes_steps(&self) -> bool {
+        self.loadings.iter().all(|loading| loading.steps.is_some())
+    }
+
     /// Whether periods are passed through step by step.
     pub fn resolves(&self) -> bool {
         self.loadings.iter().any(|loading| loading.path.is_some())
@@ -338,8 +364,11 @@ impl Schedule {
         if self.conditions.mode.is_tangential() {
             return plain;
         }
-        let paths = self.loadings.iter().filter_map(|loading| loading.path.as_ref());
-        paths.map(|path| path.points.len()).max().unwrap_or(plain)
+        let followed = |loading: &CycleLoading| {
+            let steps = loading.steps.as_ref().map(|steps| steps.path().points.len());
+            steps.or(loading.path.as_ref().map(|path| path.points.len()))
+        };
+        self.loadings.iter().filter_map(followed).max().unwrap_or(plain)
     }
 
     /// Whether the indenter leaves the x axis in some block.
