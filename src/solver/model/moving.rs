@@ -17,11 +17,13 @@
 //! and `λ` stays finite: `g_0'(c) c' = G' e^(-λ)`. Where nothing wears, `S` is `S_0` less what was left behind,
 //! `K' = -(G' - G_0') Φ`, which the contact edge needs to know: there `S = S_0 + K`.
 
+mod at_rest;
 mod jump;
 mod stage;
 
 use std::f64::consts::PI;
 
+use super::first_force::first_slip_compression;
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
 use super::{Fields, Model, State, StickZone};
 use crate::contact::InitialContact;
@@ -63,6 +65,9 @@ enum Cause {
     BothForces(f64),
     /// The same while friction falls: the edge recedes to where unworn ground alone bears `F_N - F_x/μ`, see [`held_stick_radius`].
     ReleasedForces(f64),
+    /// This normal force, N, is held, and the tangential amplitude follows from a balance of forces: height and compression at the edge are both
+    /// solved for, see [`Model::bearing`].
+    TwoBalances(f64),
 }
 
 impl Cause {
@@ -72,7 +77,8 @@ impl Cause {
             Self::NormalForce(force)
             | Self::Sliding(force)
             | Self::BothForces(force)
-            | Self::ReleasedForces(force) => Some(force),
+            | Self::ReleasedForces(force)
+            | Self::TwoBalances(force) => Some(force),
             Self::Friction | Self::Tangential => None,
         }
     }
@@ -86,6 +92,8 @@ pub struct MovingStick {
     outwards: bool,
     /// Whether it does so between blocks only.
     jumps: bool,
+    /// Whether it may turn: `outwards` is where it is first taken to move.
+    turns: bool,
     /// Logarithms of the squares of the first and last radius of the stations.
     span: [f64; 2],
 }
@@ -108,8 +116,10 @@ pub struct StickEdge {
     pub places_at_rest: Vec<f64>,
     /// See [`StickEdge::places_at_rest`].
     pub raised_at_rest: Vec<f64>,
-    /// Mean rates of area, m², and depth, m, per cycle in the last step.
-    pub rates: [f64; 2],
+    /// `q_c`, m, where it is solved for beside the depth; else zero.
+    pub slip_compression: f64,
+    /// Mean rates of area, m², depth and that compression, m, per cycle in the last step.
+    pub rates: [f64; 3],
 }
 
 impl MovingStick {
@@ -131,14 +141,17 @@ impl MovingStick {
         if slides && !follows {
             let sliding = conditions.holds_normal_force && conditions.blocks.is_empty();
             let cause = Cause::Sliding(contact.normal_force());
-            return Ok(sliding.then_some(Self { cause, outwards: false, jumps: false, span: [0.0; 2] }));
+            let staying = Self { cause, outwards: false, jumps: false, turns: false, span: [0.0; 2] };
+            return Ok(sliding.then_some(staying));
         }
+        let [falls, rises] = schedule.friction_change().directions();
+        let coulomb = conditions.friction.coefficient().is_some();
+        let force = contact.normal_force();
         let cause = match (conditions.holds_normal_force, conditions.tangential_control) {
-            (true, TangentialControl::Displacement) => Some(Cause::NormalForce(contact.normal_force())),
-            (true, _) if *schedule.friction_change() == History::Constant => {
-                Some(Cause::BothForces(contact.normal_force()))
-            }
-            (true, _) => Some(Cause::ReleasedForces(contact.normal_force())),
+            (true, TangentialControl::Displacement) => Some(Cause::NormalForce(force)),
+            (true, TangentialControl::Force) if coulomb && !falls && !rises => Some(Cause::BothForces(force)),
+            (true, TangentialControl::Force) if coulomb && !rises => Some(Cause::ReleasedForces(force)),
+            (true, _) => Some(Cause::TwoBalances(force)),
             (false, TangentialControl::Displacement) => {
                 let changes = *schedule.friction_change() != History::Constant;
                 match &conditions.blocks[..] {
@@ -157,7 +170,7 @@ impl MovingStick {
                             return Ok(None);
                         }
                         let (cause, span) = (Cause::Friction, [0.0; 2]);
-                        return Ok(Some(Self { cause, outwards: true, jumps, span }));
+                        return Ok(Some(Self { cause, outwards: true, jumps, turns: false, span }));
                     }
                 }
             }
@@ -172,17 +185,22 @@ impl MovingStick {
                     .into(),
             });
         }
-        let [falls, rises] = schedule.friction_change().directions();
+        let turns = match cause {
+            Cause::NormalForce(_) => falls,
+            Cause::TwoBalances(_) => falls || !coulomb,
+            Cause::Tangential => rises && follows,
+            _ => false,
+        };
         let outwards = match cause {
-            Cause::NormalForce(_) if falls || !conditions.blocks.is_empty() => {
+            Cause::NormalForce(_) if !conditions.blocks.is_empty() => {
                 return Err(Error::Inconsistent {
                     what: "loading.normal_force",
-                    why: "is held with a constant or rising coefficient of friction and without blocks only: else the edge of stick \
-                          moves to and fro over worn ground; hold the indentation"
+                    why: "is held without blocks only: else the edge of stick moves to and fro over worn ground; hold the indentation"
                         .into(),
                 });
             }
-            Cause::NormalForce(_) | Cause::Sliding(_) => true,
+            Cause::NormalForce(_) | Cause::TwoBalances(_) => rises || !falls,
+            Cause::Sliding(_) => true,
             Cause::BothForces(_) | Cause::ReleasedForces(_) => false,
             Cause::Friction if falls && rises => {
                 check_rest(schedule, contact)?;
@@ -190,9 +208,19 @@ impl MovingStick {
             }
             Cause::Friction => rises,
             Cause::Tangential if !follows => return Ok(None),
-            Cause::Tangential => false,
+            Cause::Tangential => rises,
         };
-        Ok(Some(Self { cause, outwards, jumps: false, span: [0.0; 2] }))
+        Ok(Some(Self { cause, outwards, jumps: false, turns, span: [0.0; 2] }))
+    }
+
+    /// Whether it may come over worn ground under both forces or a rig beside a normal one, so that the end depends on the way there.
+    pub fn passes_worn_ground(&self) -> bool {
+        matches!(self.cause, Cause::TwoBalances(_))
+    }
+
+    /// Whether it may leave worn ground behind.
+    fn leaves_ground(&self) -> bool {
+        self.outwards || self.turns
     }
 
     /// The contact with the largest indentation that can come, of which the limit bounds where wear can reach.
@@ -205,9 +233,10 @@ impl MovingStick {
             return contact.with_core(FARTHEST * contact.indentation(), core);
         }
         match self.cause {
-            Cause::NormalForce(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => {
-                Ok(contact.under_held_forces()?.unwrap_or_else(|| contact.clone()))
-            }
+            Cause::NormalForce(_)
+            | Cause::BothForces(_)
+            | Cause::ReleasedForces(_)
+            | Cause::TwoBalances(_) => Ok(contact.under_held_forces()?.unwrap_or_else(|| contact.clone())),
             _ => Ok(contact.clone()),
         }
     }
@@ -216,7 +245,7 @@ impl MovingStick {
     pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
         match self.cause {
             _ if self.rests() => asked,
-            _ if self.recedes() => Clustering::RecedingStick,
+            _ if self.turns || self.recedes() => Clustering::RecedingStick,
             _ => Clustering::CreepingStick,
         }
     }
@@ -228,12 +257,12 @@ impl MovingStick {
 
     /// Whether the edge moves inwards, upon unworn ground.
     pub fn recedes(&self) -> bool {
-        !self.outwards && !self.rests()
+        !self.leaves_ground() && !self.rests()
     }
 
     /// Whether the edge moves outwards during steps, over worn ground.
     pub(super) fn creeps(&self) -> bool {
-        self.outwards && !self.rests()
+        self.outwards && !self.turns && !self.rests()
     }
 
     /// Whether the edge stays where it is during a step.
@@ -253,7 +282,7 @@ impl MovingStick {
 
     /// What was left behind at a squared radius, m², outside the first contact; none within it.
     pub(super) fn left_behind_outside(&self, stick: &StickEdge, squared: f64) -> Option<f64> {
-        (self.outwards && squared >= self.span[0].exp())
+        (self.leaves_ground() && squared >= self.span[0].exp())
             .then(|| self.left_behind(&stick.left_behind, squared))
     }
 
@@ -298,7 +327,12 @@ impl MovingStick {
                     ..StickEdge::default()
                 });
             }
-            Cause::Tangential => model.first_slip_compression(&loading)?,
+            Cause::Tangential => {
+                first_slip_compression(&model.contact, &loading, model.contact.slip_compression())?
+            }
+            Cause::TwoBalances(_) => {
+                first_slip_compression(&model.contact, &loading, model.contact.indentation())?
+            }
             _ => loading.slip_compression(model.contact.half_space().stiffness_ratio()),
         };
         let depth = model.contact.indentation() - compression;
@@ -315,8 +349,8 @@ impl MovingStick {
         }
         let radius = profile.radius_at(depth)?;
         let load = unworn_load(profile, radius, compression);
-        let behind = if self.outwards { STATIONS } else { 0 };
-        let nodes = if self.outwards { model.output.offsets().len() } else { 0 };
+        let behind = if self.leaves_ground() { STATIONS } else { 0 };
+        let nodes = if self.leaves_ground() { model.output.offsets().len() } else { 0 };
         Ok(StickEdge {
             area: radius * radius,
             depth: solved,
@@ -325,21 +359,20 @@ impl MovingStick {
             wear_depth: vec![0.0; nodes],
             places_at_rest: vec![],
             raised_at_rest: vec![],
-            rates: [0.0; 2],
+            slip_compression: if matches!(self.cause, Cause::TwoBalances(_)) { compression } else { 0.0 },
+            rates: [0.0; 3],
         })
     }
 }
 
-/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and it only ever moves inwards.
+/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and it does not jump.
 ///
 /// # Errors
 /// As [`slides_at_once`].
 pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
-    let [_, rises] = schedule.friction_change().directions();
-    let inwards = !rises && conditions.blocks.is_empty();
     Ok(conditions.tangential_control != TangentialControl::Displacement
-        && inwards
+        && conditions.blocks.is_empty()
         && !slides_at_once(schedule, contact)?)
 }
 
@@ -414,16 +447,6 @@ fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
     let beside = [
         (conditions.friction_history != History::Constant, "friction.history", "leave it out"),
         (!conditions.blocks.is_empty(), "loading.blocks", "leave them out"),
-        (
-            conditions.holds_normal_force,
-            "loading.normal_force",
-            "give loading.initial_force or loading.indentation",
-        ),
-        (
-            conditions.tangential_control != TangentialControl::Displacement,
-            "a held tangential force or a rig",
-            "give the amplitude of the contact",
-        ),
         (schedule.lifts(), "an indentation that changes within a period", "leave out the normal oscillation"),
         (slides, "an amplitude at which the contact slides as a whole", "reduce the amplitude"),
     ];
@@ -463,6 +486,7 @@ impl Model {
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
             Cause::NormalForce(_) => loading.slip_compression(self.contact.half_space().stiffness_ratio()),
+            Cause::TwoBalances(_) => stick.slip_compression,
             Cause::Sliding(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => stick.depth,
         };
         StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
@@ -472,7 +496,12 @@ impl Model {
     /// where a normal force is held.
     pub(super) fn depth_over_core(&self, stick_zone: &StickZone) -> f64 {
         match self.moving.as_ref().map(|moving| moving.cause) {
-            Some(Cause::NormalForce(_) | Cause::BothForces(_) | Cause::ReleasedForces(_)) => {
+            Some(
+                Cause::NormalForce(_)
+                | Cause::BothForces(_)
+                | Cause::ReleasedForces(_)
+                | Cause::TwoBalances(_),
+            ) => {
                 let height = self.contact.equivalent_profile().value(stick_zone.stick_area.sqrt());
                 stick_zone.slip_compression + height
             }
@@ -494,6 +523,7 @@ impl Model {
 
     /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
+        let loading = self.after_energy(loading, state.dissipated_energy);
         match (self.moving.as_ref().map(|moving| moving.cause), &state.stick) {
             (Some(Cause::Tangential), Some(stick)) => {
                 self.displaced(loading, self.contact.indentation() - stick.depth)
@@ -501,7 +531,8 @@ impl Model {
             (Some(Cause::BothForces(_) | Cause::ReleasedForces(_)), Some(stick)) => {
                 self.displaced(loading, stick.depth)
             }
-            _ => self.after_energy(loading, state.dissipated_energy),
+            (Some(Cause::TwoBalances(_)), Some(stick)) => self.displaced(loading, stick.slip_compression),
+            _ => loading,
         }
     }
 
@@ -530,7 +561,11 @@ impl Model {
         match (&self.moving, &state.stick) {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
                 let loading = self.schedule.loading(state.cycles, state.cycles);
+                let loading = self.after_energy(loading, state.dissipated_energy);
                 stick.depth + self.stick_zone_in(Some(stick), &loading).slip_compression
+            }
+            (Some(MovingStick { cause: Cause::TwoBalances(_), .. }), Some(stick)) => {
+                stick.depth + stick.slip_compression
             }
             (Some(MovingStick { cause: Cause::ReleasedForces(_), .. }), Some(stick)) => {
                 stick.depth + self.contact.equivalent_profile().value(stick.area.sqrt())
@@ -569,19 +604,5 @@ impl Model {
     pub(super) fn between_springs(&self, values: &[f64], x: f64) -> f64 {
         let mesh = self.operators.abel.mesh();
         mesh.interpolate(values, mesh.place(x))
-    }
-
-    /// Compression at the edge of stick of the unworn contact in the balance of forces, m.
-    fn first_slip_compression(&self, loading: &CycleLoading) -> Result<f64> {
-        let ratio = self.contact.half_space().stiffness_ratio();
-        let depth = self.contact.indentation();
-        let largest = self.contact.slip_compression();
-        let excess = |compression: f64| {
-            let amplitude = loading.friction.static_strength(compression) / ratio;
-            let force = super::first_force::first_force(&self.contact, &*loading.friction, amplitude, depth)
-                .unwrap_or(f64::NAN);
-            loading.excess(force, amplitude)
-        };
-        bracketed(excess, 1e-12 * largest, largest, 0.0)
     }
 }

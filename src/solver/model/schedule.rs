@@ -384,36 +384,18 @@ impl Schedule {
     }
 }
 
-/// Refuses a held normal force beside a rig, and beside a held tangential one where the edge of stick would move.
+/// Refuses blocks where a normal force is held beside a rig or a tangential force.
 fn check_forces(conditions: &Conditions) -> Result<()> {
-    if !conditions.holds_normal_force {
+    let balanced = conditions.tangential_control != TangentialControl::Displacement;
+    if !conditions.holds_normal_force || !balanced || conditions.blocks.is_empty() {
         return Ok(());
     }
-    let beside = |other: &str, cure: &str| {
-        Err(Error::Inconsistent { what: "loading.normal_force", why: format!("is held, {other}; {cure}") })
-    };
-    match conditions.tangential_control {
-        TangentialControl::Displacement => Ok(()),
-        TangentialControl::Rig { stiffness } => beside(
-            &format!(
-                "and so is what loading.rig_stiffness = {stiffness:e} N/m asks for, which this version does not follow together"
-            ),
-            "give loading.initial_force or loading.indentation instead, or remove loading.rig_stiffness",
-        ),
-        TangentialControl::Force => {
-            let history = &conditions.friction_history;
-            let along_energy = conditions.friction.along_energy() != History::Constant;
-            let coulomb = conditions.friction.coefficient().is_some() && !along_energy;
-            if coulomb && conditions.blocks.is_empty() && !history.directions()[1] {
-                return Ok(());
-            }
-            beside(
-                "and so is the tangential force, under which the edge of stick stays where it is with a constant coefficient of friction, and recedes over \
-                 unworn ground with one that falls: else it moves over worn ground, which is not followed under both forces",
-                "take friction.coulomb, constant or falling, and no blocks, or give loading.initial_force or loading.indentation instead",
-            )
-        }
-    }
+    Err(Error::Inconsistent {
+        what: "loading.normal_force",
+        why: "is held, and so is a tangential force or what a rig asks for: under blocks the edge of stick jumps over worn ground, which is not followed \
+              there; give loading.initial_force or loading.indentation instead"
+            .into(),
+    })
 }
 
 /// Tangential amplitude that is given, m: of the contact, or of the far end of a rig.

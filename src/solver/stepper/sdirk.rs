@@ -46,7 +46,18 @@ impl Stepper for Sdirk {
         Ok(match &state.stick {
             None => step(RestingContact::new(model, state, *tolerance, newton, tried), cycles),
             Some(stick) => {
-                step(MovingContact::new(model, state, stick, *tolerance, newton, stick_trial), cycles)
+                let mut towards = |outwards: bool| {
+                    newton.outdate();
+                    let contact =
+                        MovingContact::new(model, state, stick, *tolerance, newton, stick_trial, outwards);
+                    step(contact, cycles)
+                };
+                let outwards = model.goes_outwards(stick);
+                let first = towards(outwards);
+                if !model.turns() || went(&first, stick.area, outwards).is_ok() {
+                    return Ok(first);
+                }
+                nearer(first, towards(!outwards), stick.area, outwards)
             }
         })
     }
@@ -58,6 +69,26 @@ impl Stepper for Sdirk {
     fn estimate_order(&self) -> f64 {
         3.0
     }
+}
+
+/// Whether an edge of stick went to the side to which it was taken to move; else by how much it went to the other, m².
+fn went(trial: &Trial, area: f64, outwards: bool) -> std::result::Result<(), f64> {
+    let now = trial.state.as_ref().and_then(|state| state.stick.as_ref()).map(|stick| stick.area);
+    match now {
+        Some(now) if (now >= area) == outwards => Ok(()),
+        Some(now) => Err((now - area).abs()),
+        None => Err(f64::INFINITY),
+    }
+}
+
+/// Of two steps, the first with the edge of stick taken to move to the side it went before, the one in which it went as was taken; where it turns within
+/// the step, the one in which it did the less of the other.
+fn nearer(first: Trial, second: Trial, area: f64, outwards: bool) -> Trial {
+    let evaluations = first.rate_evaluations + second.rate_evaluations;
+    let other =
+        [went(&first, area, outwards), went(&second, area, !outwards)].map(|it| it.err().unwrap_or(0.0));
+    let chosen = if other[1] < other[0] { second } else { first };
+    Trial { rate_evaluations: evaluations, ..chosen }
 }
 
 /// A step of `cycles` cycles, stage by stage.

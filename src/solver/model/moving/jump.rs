@@ -169,7 +169,8 @@ impl Model {
                 wear_depth: stick.wear_depth.clone(),
                 places_at_rest,
                 raised_at_rest,
-                rates: [0.0; 2],
+                slip_compression: stick.slip_compression,
+                rates: [0.0; 3],
             }),
             ..state
         })
