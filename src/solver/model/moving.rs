@@ -18,6 +18,7 @@
 //! `K' = -(G' - G_0') Φ`, which the contact edge needs to know: there `S = S_0 + K`.
 
 mod at_rest;
+mod causes;
 mod jump;
 mod stage;
 
@@ -46,9 +47,6 @@ const LOST: f64 = 4.0;
 
 /// Radius, over that of the contact, of the core of a mesh that follows an edge of stick that recedes until none is left: stick is lost within 1e-3 of the time when it is as small as that.
 pub(super) const LAST_CORE: f64 = 0.02;
-
-/// Compressions that differ by less than this part are equal but for rounding.
-const SAME_COMPRESSION: f64 = 1e-9;
 
 /// What moves the edge of stick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,6 +92,10 @@ pub struct MovingStick {
     jumps: bool,
     /// Whether it may turn: `outwards` is where it is first taken to move.
     turns: bool,
+    /// Whether it jumps between blocks besides.
+    in_blocks: bool,
+    /// Whether the compression there is kept besides: it is solved for, or changes under a held normal force.
+    keeps: bool,
     /// Logarithms of the squares of the first and last radius of the stations.
     span: [f64; 2],
 }
@@ -123,96 +125,6 @@ pub struct StickEdge {
 }
 
 impl MovingStick {
-    /// How the edge of stick moves under a schedule; none if it stays, or moves to and fro.
-    ///
-    /// # Arguments
-    /// * `slides` -- whether no stick is left in some cycle
-    ///
-    /// # Errors
-    /// [`Error::Inconsistent`] for a force that is held while friction falls or amplitudes grow, and for friction that changes under
-    /// normal oscillation, or is less in between than in the end, and for blocks of which the last slips less far than others before, unless they
-    /// differ by their amplitudes alone.
-    pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
-        let conditions = schedule.conditions();
-        if *schedule.friction_along_energy() != History::Constant {
-            check_along_energy(schedule, slides)?;
-        }
-        let follows = follows_held_force(schedule, contact)?;
-        if slides && !follows {
-            let sliding = conditions.holds_normal_force && conditions.blocks.is_empty();
-            let cause = Cause::Sliding(contact.normal_force());
-            let staying = Self { cause, outwards: false, jumps: false, turns: false, span: [0.0; 2] };
-            return Ok(sliding.then_some(staying));
-        }
-        let [falls, rises] = schedule.friction_change().directions();
-        let coulomb = conditions.friction.coefficient().is_some();
-        let force = contact.normal_force();
-        let cause = match (conditions.holds_normal_force, conditions.tangential_control) {
-            (true, TangentialControl::Displacement) => Some(Cause::NormalForce(force)),
-            (true, TangentialControl::Force) if coulomb && !falls && !rises => Some(Cause::BothForces(force)),
-            (true, TangentialControl::Force) if coulomb && !rises => Some(Cause::ReleasedForces(force)),
-            (true, _) => Some(Cause::TwoBalances(force)),
-            (false, TangentialControl::Displacement) => {
-                let changes = *schedule.friction_change() != History::Constant;
-                match &conditions.blocks[..] {
-                    [] => changes.then_some(Cause::Friction),
-                    blocks => {
-                        let shrink =
-                            blocks.windows(2).any(|pair| pair[1].amplitude_factor < pair[0].amplitude_factor)
-                                && blocks.iter().all(|it| {
-                                    it.indentation_factor == 1.0
-                                        && (f64::MIN_POSITIVE..=blocks[0].amplitude_factor)
-                                            .contains(&it.amplitude_factor)
-                                });
-                        let jumps = shrink && !changes && !conditions.repeat;
-                        if !jumps {
-                            check_rest(schedule, contact)?;
-                            return Ok(None);
-                        }
-                        let (cause, span) = (Cause::Friction, [0.0; 2]);
-                        return Ok(Some(Self { cause, outwards: true, jumps, turns: false, span }));
-                    }
-                }
-            }
-            (false, _) => Some(Cause::Tangential),
-        };
-        let Some(cause) = cause else { return Ok(None) };
-        if cause == Cause::Friction && schedule.lifts() {
-            return Err(Error::Inconsistent {
-                what: "friction.history",
-                why: "is not followed where the indentation changes within a period: springs that are loaded for a part of it would be \
-                      worn too deep at an edge of stick that moves; leave out the history, or the normal oscillation"
-                    .into(),
-            });
-        }
-        let turns = match cause {
-            Cause::NormalForce(_) => falls,
-            Cause::TwoBalances(_) => falls || !coulomb,
-            Cause::Tangential => rises && follows,
-            _ => false,
-        };
-        let outwards = match cause {
-            Cause::NormalForce(_) if !conditions.blocks.is_empty() => {
-                return Err(Error::Inconsistent {
-                    what: "loading.normal_force",
-                    why: "is held without blocks only: else the edge of stick moves to and fro over worn ground; hold the indentation"
-                        .into(),
-                });
-            }
-            Cause::NormalForce(_) | Cause::TwoBalances(_) => rises || !falls,
-            Cause::Sliding(_) => true,
-            Cause::BothForces(_) | Cause::ReleasedForces(_) => false,
-            Cause::Friction if falls && rises => {
-                check_rest(schedule, contact)?;
-                return Ok(None);
-            }
-            Cause::Friction => rises,
-            Cause::Tangential if !follows => return Ok(None),
-            Cause::Tangential => rises,
-        };
-        Ok(Some(Self { cause, outwards, jumps: false, turns, span: [0.0; 2] }))
-    }
-
     /// Whether it may come over worn ground under both forces or a rig beside a normal one, so that the end depends on the way there.
     pub fn passes_worn_ground(&self) -> bool {
         matches!(self.cause, Cause::TwoBalances(_))
@@ -220,7 +132,7 @@ impl MovingStick {
 
     /// Whether it may leave worn ground behind.
     fn leaves_ground(&self) -> bool {
-        self.outwards || self.turns
+        self.outwards || self.turns || self.in_blocks
     }
 
     /// The contact with the largest indentation that can come, of which the limit bounds where wear can reach.
@@ -245,7 +157,7 @@ impl MovingStick {
     pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
         match self.cause {
             _ if self.rests() => asked,
-            _ if self.turns || self.recedes() => Clustering::RecedingStick,
+            _ if self.recedes() => Clustering::RecedingStick,
             _ => Clustering::CreepingStick,
         }
     }
@@ -262,7 +174,7 @@ impl MovingStick {
 
     /// Whether the edge moves outwards during steps, over worn ground.
     pub(super) fn creeps(&self) -> bool {
-        self.outwards && !self.turns && !self.rests()
+        self.leaves_ground() && !self.rests()
     }
 
     /// Whether the edge stays where it is during a step.
@@ -359,7 +271,7 @@ impl MovingStick {
             wear_depth: vec![0.0; nodes],
             places_at_rest: vec![],
             raised_at_rest: vec![],
-            slip_compression: if matches!(self.cause, Cause::TwoBalances(_)) { compression } else { 0.0 },
+            slip_compression: if self.keeps { compression } else { 0.0 },
             rates: [0.0; 3],
         })
     }
@@ -371,8 +283,9 @@ impl MovingStick {
 /// As [`slides_at_once`].
 pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
+    let coulomb = conditions.friction.coefficient().is_some();
     Ok(conditions.tangential_control != TangentialControl::Displacement
-        && conditions.blocks.is_empty()
+        && conditions.blocks.iter().all(|block| block.amplitude_factor > 0.0 && coulomb)
         && !slides_at_once(schedule, contact)?)
 }
 
@@ -381,19 +294,25 @@ pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) 
 /// # Errors
 /// As [`EquivalentProfile::radius_at`].
 pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
-    let (loading, depth) = (schedule.loading(0.0, 0.0), contact.indentation());
+    let depth = contact.indentation();
     let ratio = contact.half_space().stiffness_ratio();
     let core = LOST.sqrt() * LAST_CORE * contact.contact_radius();
     let at_core = depth - contact.equivalent_profile().value(core);
-    Ok(match loading.control {
-        AmplitudeControl::Displacement => false,
-        AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
-        AmplitudeControl::Rig(_) => {
-            let amplitude = loading.friction.static_strength(at_core) / ratio;
-            let force = super::first_force::first_force(contact, &*loading.friction, amplitude, depth)?;
-            loading.excess(force, amplitude) <= 0.0
+    for loading in schedule.first_cycles() {
+        let slides = match loading.control {
+            AmplitudeControl::Displacement => false,
+            AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
+            AmplitudeControl::Rig(_) => {
+                let amplitude = loading.friction.static_strength(at_core) / ratio;
+                let force = super::first_force::first_force(contact, &*loading.friction, amplitude, depth)?;
+                loading.excess(force, amplitude) <= 0.0
+            }
+        };
+        if slides {
+            return Ok(true);
         }
-    })
+    }
+    Ok(false)
 }
 
 /// Stick radius, m, under both forces held while the ground within it is unworn; none where stick cannot bear them.
@@ -412,53 +331,6 @@ pub(super) fn held_stick_radius(
         |radius: f64| contact.half_space().normal_stiffness() * profile.load_integral(radius) - borne;
     let edge = contact.contact_radius();
     (borne > 0.0).then(|| bracketed(excess, 1e-9 * edge, edge, 0.0).ok()).flatten()
-}
-
-/// Refuses an edge of stick that comes to rest on worn ground within the mesh: errors of the springs next to it grow with slip and move it inwards.
-/// Worn volumes were 0.4 to 8 % off with any number of springs.
-fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
-    let ratio = contact.half_space().stiffness_ratio();
-    let largest = |loadings: &mut dyn Iterator<Item = CycleLoading>| {
-        loadings.map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
-    };
-    let [last, most] = [largest(&mut schedule.lasting()), largest(&mut schedule.extremes())];
-    if last >= most * (1.0 - SAME_COMPRESSION) {
-        return Ok(());
-    }
-    let part = last / most;
-    let in_the_end = format!(
-        "in the end springs slip below {part:.4} of the largest compression at which they slipped before, so that the edge of stick comes to rest \
-         within worn ground, which is not followed to any accuracy"
-    );
-    let (what, cure) = if schedule.conditions().blocks.is_empty() {
-        ("friction.history", "let the factors only fall, only rise, or end at their smallest")
-    } else {
-        (
-            "loading.blocks",
-            "repeat them, end with the one that slips farthest, or begin with it and let only positive amplitude factors differ",
-        )
-    };
-    Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
-}
-
-/// Refuses what is not followed while friction changes with the energy that it dissipates.
-fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
-    let conditions = schedule.conditions();
-    let beside = [
-        (conditions.friction_history != History::Constant, "friction.history", "leave it out"),
-        (!conditions.blocks.is_empty(), "loading.blocks", "leave them out"),
-        (schedule.lifts(), "an indentation that changes within a period", "leave out the normal oscillation"),
-        (slides, "an amplitude at which the contact slides as a whole", "reduce the amplitude"),
-    ];
-    match beside.iter().find(|(is_there, ..)| *is_there) {
-        None => Ok(()),
-        Some((_, what, cure)) => Err(Error::Inconsistent {
-            what: "friction",
-            why: format!(
-                "changes with the energy that it dissipates, and so does the edge of stick; that is not followed beside {what}; {cure}"
-            ),
-        }),
-    }
 }
 
 /// `∫_0^c x^k q dx` of unworn ground, m^(2+k).
@@ -485,8 +357,9 @@ impl Model {
         let (Some(moving), Some(stick)) = (&self.moving, stick) else { return self.stick_zone };
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
+            _ if moving.keeps => stick.slip_compression,
             Cause::NormalForce(_) => loading.slip_compression(self.contact.half_space().stiffness_ratio()),
-            Cause::TwoBalances(_) => stick.slip_compression,
+            Cause::TwoBalances(_) => unreachable!("guessed above"),
             Cause::Sliding(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => stick.depth,
         };
         StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::first_force::first_force;
 use crate::contact::InitialContact;
 use crate::contact::spring::{Response, stick_compression};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::history::History;
@@ -119,9 +119,8 @@ impl Schedule {
     /// What acts on a contact under some conditions.
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] where a normal force is held beside a tangential one or a rig; those of the indentation of a block.
+    /// Those of the indentation of a block.
     pub fn new(contact: &InitialContact, conditions: &Conditions, resolution: Resolution) -> Result<Self> {
-        check_forces(conditions)?;
         let whole = Block { duration: f64::INFINITY, amplitude_factor: 1.0, indentation_factor: 1.0 };
         let blocks = if conditions.blocks.is_empty() { vec![whole] } else { conditions.blocks.clone() };
         let clock_rate = match conditions.clock {
@@ -382,20 +381,6 @@ impl Schedule {
     pub fn makes_weak_kinks(&self) -> bool {
         self.is_steady() && !self.lifts() && self.conditions.wear.spreading().is_none()
     }
-}
-
-/// Refuses blocks where a normal force is held beside a rig or a tangential force.
-fn check_forces(conditions: &Conditions) -> Result<()> {
-    let balanced = conditions.tangential_control != TangentialControl::Displacement;
-    if !conditions.holds_normal_force || !balanced || conditions.blocks.is_empty() {
-        return Ok(());
-    }
-    Err(Error::Inconsistent {
-        what: "loading.normal_force",
-        why: "is held, and so is a tangential force or what a rig asks for: under blocks the edge of stick jumps over worn ground, which is not followed \
-              there; give loading.initial_force or loading.indentation instead"
-            .into(),
-    })
 }
 
 /// Tangential amplitude that is given, m: of the contact, or of the far end of a rig.

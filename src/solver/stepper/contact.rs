@@ -7,6 +7,7 @@ use super::moving::MovingStage;
 use super::newton::Newton;
 use super::resting::{RestingStage, Tried, newton_tolerance};
 use super::tableau::ALEXANDER;
+use crate::laws::history::History;
 use crate::numerics::grid::lagrange;
 use crate::solver::model::{
     Fields, Model, Past, State, StickEdge, StickStage, StickTarget, StickTrial, Target, Unknowns,
@@ -174,6 +175,8 @@ pub(super) struct MovingContact<'a> {
     tolerance: f64,
     newton: &'a mut Newton,
     trial: &'a mut StickTrial,
+    /// Energy that friction dissipates in a cycle, J, in the stage solved last or at the start; zero where nothing goes by it.
+    dissipation: f64,
     /// Whether the edge of stick is taken to move outwards, over worn ground.
     outwards: bool,
     /// The start and the stages solved.
@@ -190,7 +193,8 @@ impl<'a> MovingContact<'a> {
         trial: &'a mut StickTrial,
         outwards: bool,
     ) -> Self {
-        Self { model, state, stick, tolerance, newton, trial, outwards, known: vec![Unknowns::of(state)] }
+        let known = vec![Unknowns::of(state)];
+        Self { model, state, stick, tolerance, newton, trial, outwards, dissipation: 0.0, known }
     }
 
     fn target(&self, index: usize, gathered: &[f64], cycles: f64) -> StickTarget {
@@ -223,7 +227,7 @@ impl<'a> MovingContact<'a> {
         evaluations: &mut u64,
     ) -> Option<StickStage<'a>> {
         let loading = target.springs.loading.clone();
-        let (mut rate, mut last) = (0.0, f64::NAN);
+        let (mut rate, mut last) = (self.dissipation, f64::NAN);
         for _ in 0..ENERGY_CORRECTIONS {
             let energy = target.energy + target.springs.step * rate;
             target.springs.loading = self.model.after_energy(loading.clone(), energy);
@@ -243,6 +247,9 @@ impl<'a> MovingContact<'a> {
                 }
             }
             rate = self.trial.cycle.dissipation;
+            if *self.model.schedule().friction_along_energy() != History::Constant {
+                self.dissipation = rate;
+            }
         }
         None
     }
@@ -273,6 +280,11 @@ impl Stages for MovingContact<'_> {
     fn start(&mut self) -> Vec<f64> {
         let (state, stick) = (self.state, self.stick);
         let fields = self.model.fields(state);
+        if *self.model.schedule().friction_along_energy() != History::Constant {
+            let loading = self.model.schedule().loading(state.cycles, state.cycles);
+            let loading = self.model.loading_in(state, loading);
+            self.dissipation = self.model.cycle(&loading, &state.compression, &fields).dissipation;
+        }
         let compression = fields.stick_zone.slip_compression;
         let of_edges = [
             state.slip_area,

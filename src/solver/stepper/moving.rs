@@ -51,6 +51,7 @@ impl<'a> MovingStage<'a> {
             at.compression.iter_mut().for_each(|q| *q *= factor);
             at.stick_depth = self.held - known;
         }
+        self.stage.scale(at);
         *evaluations += 1;
         newton.solve(self, at, evaluations)
     }

@@ -8,6 +8,9 @@ use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::solver::model::{Model, State, StickTrial};
 
+/// Change of the squared radius of stick, relative, to the side to which it was not taken to move, that a step in which it turns may make.
+const TURNING: f64 = 1e-5;
+
 /// Singly diagonally implicit Runge-Kutta method of Alexander, whether the edge of stick rests or moves.
 ///
 /// On an ordinary differential equation it is of order 3 with an estimate of order 2. Here the contact edge obeys a constraint whose
@@ -57,7 +60,7 @@ impl Stepper for Sdirk {
                 if !model.turns() || went(&first, stick.area, outwards).is_ok() {
                     return Ok(first);
                 }
-                nearer(first, towards(!outwards), stick.area, outwards)
+                turned(first, towards(!outwards), stick.area, outwards)
             }
         })
     }
@@ -81,14 +84,18 @@ fn went(trial: &Trial, area: f64, outwards: bool) -> std::result::Result<(), f64
     }
 }
 
-/// Of two steps, the first with the edge of stick taken to move to the side it went before, the one in which it went as was taken; where it turns within
-/// the step, the one in which it did the less of the other.
-fn nearer(first: Trial, second: Trial, area: f64, outwards: bool) -> Trial {
-    let evaluations = first.rate_evaluations + second.rate_evaluations;
-    let other =
-        [went(&first, area, outwards), went(&second, area, !outwards)].map(|it| it.err().unwrap_or(0.0));
-    let chosen = if other[1] < other[0] { second } else { first };
-    Trial { rate_evaluations: evaluations, ..chosen }
+/// Of two steps, the first with the edge of stick taken to move to the side it went before, the one in which it went as was taken; or the first, if it
+/// turns just before its end.
+fn turned(first: Trial, second: Trial, area: f64, outwards: bool) -> Trial {
+    let rate_evaluations = first.rate_evaluations + second.rate_evaluations;
+    let back = went(&first, area, outwards).err().unwrap_or_default();
+    if went(&second, area, !outwards).is_ok() {
+        Trial { rate_evaluations, ..second }
+    } else if back <= TURNING * area {
+        Trial { rate_evaluations, ..first }
+    } else {
+        Trial::failed(rate_evaluations)
+    }
 }
 
 /// A step of `cycles` cycles, stage by stage.

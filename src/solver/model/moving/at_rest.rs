@@ -70,7 +70,7 @@ impl Model {
     /// # Arguments
     /// * `before` -- squared radius of the edge before the step, m²
     pub fn with_ground_at_rest(&self, mut stick: StickEdge, before: f64) -> StickEdge {
-        if !self.turns() {
+        if !self.moving.as_ref().is_some_and(|moving| moving.turns || moving.in_blocks) {
             return stick;
         }
         let (places, raised) = (&mut stick.places_at_rest, &mut stick.raised_at_rest);
@@ -90,12 +90,28 @@ impl Model {
 
     /// See [`Model::bearing`]; zero where nothing asks for it.
     pub(super) fn bearing_under(&self, loading: &CycleLoading, slip_compression: f64) -> f64 {
-        let Some(MovingStick { cause: Cause::TwoBalances(force), .. }) = &self.moving else { return 0.0 };
+        match &self.moving {
+            Some(MovingStick { cause: Cause::TwoBalances(force), .. }) => {
+                self.bearing_of(loading, *force, slip_compression)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The same of a normal force, N; zero under friction that is not Coulomb's.
+    pub(super) fn bearing_of(&self, loading: &CycleLoading, force: f64, slip_compression: f64) -> f64 {
         let Some(coefficient) = loading.friction.coefficient() else { return 0.0 };
         let half_space = self.contact.half_space();
         let amplitude = coefficient * slip_compression / half_space.stiffness_ratio();
         let [by_force, by_displacement] = loading.control.factors();
         let tangential = (loading.asked() - by_displacement * amplitude) / by_force;
         0.5 * (force - tangential / coefficient) / half_space.normal_stiffness()
+    }
+
+    /// Slope of [`Model::bearing`] by the compression, m^(1+k): that of a rig.
+    pub(super) fn bearing_slope(&self, loading: &CycleLoading) -> f64 {
+        let half_space = self.contact.half_space();
+        let [by_force, by_displacement] = loading.control.factors();
+        0.5 * by_displacement / by_force / (half_space.stiffness_ratio() * half_space.normal_stiffness())
     }
 }

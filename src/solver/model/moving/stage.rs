@@ -81,6 +81,17 @@ impl StickStage<'_> {
         (self.moving.cause == Cause::Friction && !self.moving.jumps).then(|| self.driven_slip_compression())
     }
 
+    /// Scales the compressions of a guess to that at the edge of stick, which is as well known where friction changes under a held normal force.
+    pub fn scale(&self, at: &mut Unknowns) {
+        if !self.moving.keeps || matches!(self.moving.cause, Cause::TwoBalances(_)) {
+            return;
+        }
+        let known = self.driven_slip_compression();
+        let factor = known / at.slip_compression;
+        at.compression.iter_mut().for_each(|q| *q *= factor);
+        at.slip_compression = known;
+    }
+
     /// Rounding of an edge of stick that recedes, over the distance of the first spring from it: slip there is known no better.
     pub fn rounding(&self) -> f64 {
         let target = &self.target;
@@ -389,7 +400,11 @@ impl StickStage<'_> {
         let exponent = 1.0 + self.model.contact.half_space().grading();
         let gained = self.bearing(at) - self.target.bearing;
         let rise = exponent * gained / at.stick_area.powf(0.5 * exponent);
-        Some((at.stick_depth - self.target.stick.depth - rise) / trial.stick_zone.slip_compression)
+        // How much more of it the spring of a rig asks for where the compression grows.
+        let more = exponent * self.model.bearing_slope(&self.target.springs.loading)
+            / at.stick_area.powf(0.5 * exponent);
+        let scale = (1.0 + more) * trial.stick_zone.slip_compression;
+        Some((at.stick_depth - self.target.stick.depth - rise) / scale)
     }
 
     /// A quantity at the edge of stick, by the parabola through the first three springs.
