@@ -1,7 +1,8 @@
 //! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
-use super::first_force::first_slip_compression;
-use super::moving::{LAST_CORE, follows_held_force, held_stick_radius, slides_at_once};
+use super::moving::{
+    LAST_CORE, first_slip_compression, follows_held_force, held_stick_radius, slides_at_once,
+};
 use super::schedule::{CycleLoading, Schedule};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -155,7 +156,7 @@ impl Schedule {
 }
 
 /// Least radius of stick, m, that a balance of tangential forces under a held normal force leaves: in the first cycle, or when wear has taken all load off the
-/// springs that slip and unworn ground within bears both.
+/// springs that slip and unworn ground within bears both; zero where the contact slides at once.
 ///
 /// ```text
 /// F_N = 2 c_N ∫_0^c x^k (d - g_0) dx,    F_x = 2 c_N τ(d - g_0(c)) c^(1+k)/(1+k)
@@ -167,7 +168,7 @@ fn least_stick_radius(contact: &InitialContact, loading: &CycleLoading) -> Resul
     let (profile, half_space) = (contact.equivalent_profile(), contact.half_space());
     let (ratio, exponent) = (half_space.stiffness_ratio(), 1.0 + half_space.grading());
     let edge = contact.contact_radius();
-    let first = first_slip_compression(contact, loading, contact.indentation())?;
+    let Ok(first) = first_slip_compression(contact, loading, contact.indentation()) else { return Ok(0.0) };
     let first = profile.radius_at(contact.indentation() - first)?;
     let stiffness = half_space.normal_stiffness();
     let excess = |radius: f64| {

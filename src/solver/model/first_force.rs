@@ -1,11 +1,9 @@
 //! Tangential force in the first cycle.
 
-use super::schedule::CycleLoading;
 use crate::contact::InitialContact;
 use crate::error::Result;
 use crate::laws::friction::FrictionLaw;
 use crate::numerics::quadrature::Rule;
-use crate::numerics::roots::bracketed;
 
 /// Nodes of the quadrature over the springs that slip.
 const NODES: usize = 100;
@@ -37,23 +35,4 @@ pub(super) fn first_force(
     };
     let slipping = (high - low) / exponent * rule.mean(strength);
     Ok(2.0 * half_space.normal_stiffness() * (stuck + slipping))
-}
-
-/// Compression at the edge of stick of the unworn contact in the balance of forces, m; at most the largest there can be.
-///
-/// # Errors
-/// [`Error::NotConverged`](crate::Error::NotConverged) if even that is not enough.
-pub(super) fn first_slip_compression(
-    contact: &InitialContact,
-    loading: &CycleLoading,
-    largest: f64,
-) -> Result<f64> {
-    let ratio = contact.half_space().stiffness_ratio();
-    let depth = contact.indentation();
-    let excess = |compression: f64| {
-        let amplitude = loading.friction.static_strength(compression) / ratio;
-        let force = first_force(contact, &*loading.friction, amplitude, depth).unwrap_or(f64::NAN);
-        loading.excess(force, amplitude)
-    };
-    bracketed(excess, 1e-12 * largest, largest, 0.0)
 }

@@ -24,7 +24,6 @@ mod stage;
 
 use std::f64::consts::PI;
 
-use super::first_force::first_slip_compression;
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
 use super::{Fields, Model, State, StickZone};
 use crate::contact::InitialContact;
@@ -478,4 +477,24 @@ impl Model {
         let mesh = self.operators.abel.mesh();
         mesh.interpolate(values, mesh.place(x))
     }
+}
+
+/// Compression at the edge of stick of the unworn contact in the balance of forces, m; at most the largest there can be.
+///
+/// # Errors
+/// [`Error::NotConverged`](crate::Error::NotConverged) if even that is not enough.
+pub(super) fn first_slip_compression(
+    contact: &InitialContact,
+    loading: &CycleLoading,
+    largest: f64,
+) -> Result<f64> {
+    let ratio = contact.half_space().stiffness_ratio();
+    let depth = contact.indentation();
+    let excess = |compression: f64| {
+        let amplitude = loading.friction.static_strength(compression) / ratio;
+        let force = super::first_force::first_force(contact, &*loading.friction, amplitude, depth)
+            .unwrap_or(f64::NAN);
+        loading.excess(force, amplitude)
+    };
+    bracketed(excess, 1e-12 * largest, largest, 0.0)
 }

@@ -1,7 +1,7 @@
 //! What a stage of an implicit step solves for, and what it starts from.
 
+use super::State;
 use super::schedule::CycleLoading;
-use super::{State, StickEdge};
 
 /// Unknowns of a stage.
 #[derive(Debug, Clone)]
@@ -21,8 +21,9 @@ pub struct Unknowns {
 impl Unknowns {
     /// Those of a state.
     pub fn of(state: &State) -> Self {
-        let of_stick = |it: &StickEdge| [it.area, it.depth, it.slip_compression];
-        let [stick_area, stick_depth, slip_compression] = state.stick.as_ref().map_or([0.0; 3], of_stick);
+        let stick = state.stick.as_ref();
+        let [stick_area, stick_depth, slip_compression] =
+            stick.map_or([0.0; 3], |it| [it.area, it.depth, it.slip_compression]);
         let (compression, slip_area) = (state.compression.clone(), state.slip_area);
         Self { compression, slip_area, stick_area, stick_depth, slip_compression }
     }

@@ -30,6 +30,9 @@ impl MovingStick {
         }
         let in_blocks = !conditions.blocks.is_empty();
         if slides && !follows {
+            if conditions.holds_normal_force {
+                check_sliding_under_force(conditions, contact)?;
+            }
             let sliding = conditions.holds_normal_force && !in_blocks;
             return Ok(sliding.then_some(Self::by(Cause::Sliding(force))));
         }
@@ -41,7 +44,7 @@ impl MovingStick {
         let moving = match (conditions.holds_normal_force, conditions.tangential_control) {
             (true, TangentialControl::Displacement) => Self {
                 outwards: rises || !falls,
-                turns: falls,
+                turns: falls || in_blocks,
                 in_blocks,
                 keeps: falls || in_blocks || by_energy,
                 ..Self::by(Cause::NormalForce(force))
@@ -54,7 +57,7 @@ impl MovingStick {
                 Self {
                     keeps: true,
                     outwards: rises || !falls,
-                    turns: falls || !coulomb,
+                    turns: falls || !coulomb || in_blocks,
                     in_blocks,
                     ..Self::by(cause)
                 }
@@ -148,6 +151,23 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
         )
     };
     Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
+}
+
+/// Refuses a contact that slides as a whole in some cycles only under a held normal force, where blocks or a rig decide which.
+fn check_sliding_under_force(conditions: &Conditions, contact: &InitialContact) -> Result<()> {
+    let beside = match conditions.tangential_control {
+        TangentialControl::Displacement if conditions.blocks.is_empty() => return Ok(()),
+        TangentialControl::Displacement => "loading.blocks",
+        _ => "loading.tangential_control or loading.rig_stiffness",
+    };
+    Err(Error::Inconsistent {
+        what: "loading.normal_force",
+        why: format!(
+            "is held, and at an amplitude of {:e} m the contact slides as a whole in some cycles, but not in all; beside {beside} that is not followed; \
+             change the amplitude, or hold the indentation",
+            contact.amplitude()
+        ),
+    })
 }
 
 /// Refuses blocks under a held normal force between which the edge of stick has no place on the profile as it is.
