@@ -7,14 +7,10 @@ use crate::numerics::grid::lagrange;
 use crate::solver::model::schedule::CycleLoading;
 use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
 
-/// Change of slip area, stick area or depth, relative, by which slopes are found; of the latter two where the edge recedes no more than this part of the first spring's
+/// Change of slip area, stick area or depth, relative, by which slopes are found; where the edge recedes no more than this part of the first spring's
 /// `ξ`, for a change as large as that one takes all slip there away.
 const DIFFERENCE: f64 = 1e-7;
 const OF_FIRST_SPRING: f64 = 1e-4;
-
-/// The same of the slip area where the edge recedes: it moves a spring by a part of its distance from the edge, while slip there is known to the rounding of
-/// the edge over that distance.
-const OF_ANNULUS: f64 = 1e-5;
 
 /// Indentation over the height of the profile at the edge of stick up to which rounding is not magnified.
 const OF_STEEPNESS: f64 = 10.0;
@@ -147,8 +143,7 @@ impl StickStage<'_> {
         let size = trial.residual.len();
         let mut matrix = Mat::zeros(size, size);
         self.fill_by_compressions(at, trial, &mut matrix);
-        let most = if self.recedes() { OF_ANNULUS } else { DIFFERENCE };
-        let step = most * at.slip_area;
+        let step = self.difference() * at.slip_area;
         let moved = Unknowns { slip_area: at.slip_area + step, ..at.clone() };
         self.fill_by_difference(n - 1, step, &moved, trial, &mut matrix)?;
         if self.moving.rests() {
