@@ -233,36 +233,13 @@ fn falling_friction_lets_the_edge_recede_to_where_the_forces_say() {
     }
 }
 
-/// What would move the edge of stick, or accelerate the contact, is refused with its key.
+/// What would accelerate the contact is refused with its key.
 #[test]
-fn what_would_move_the_edge_is_refused() {
+fn what_would_accelerate_is_refused() {
     let text = scene(0.0, 2.0, 0.7, ARCHARD, "tau = 1").text().to_owned();
-    let cases = [
-        ("stick_ratio = 0.7", "amplitude = 1e-3", "loading.amplitude", "accelerate"),
-        (
-            "tau = 1",
-            "tau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 0.5",
-            "loading.normal_force",
-            "blocks",
-        ),
-        (
-            "[friction.coulomb]\ncoefficient = 0.5",
-            "[friction.load-dependent]\ncoefficient = 0.5\nexponent = 0.9",
-            "loading.normal_force",
-            "friction.coulomb",
-        ),
-        (
-            "[friction.coulomb]",
-            "[friction.history]\nfactors = [1.0, 1.2]\nat_tau = [0.0, 1.0]\n[friction.coulomb]",
-            "loading.normal_force",
-            "constant or falling",
-        ),
-    ];
-    for (old, new, key, word) in cases {
-        let scene = Scene::from_str(&text.replace(old, new));
-        let error = scene.and_then(|scene| Simulation::new(&scene).map(drop)).unwrap_err().to_string();
-        assert!(error.contains(key) && error.contains(word), "{new}: {error}");
-    }
+    let scene = Scene::from_str(&text.replace("stick_ratio = 0.7", "amplitude = 1e-3"));
+    let error = scene.and_then(|scene| Simulation::new(&scene).map(drop)).unwrap_err().to_string();
+    assert!(error.contains("loading.amplitude") && error.contains("accelerate"), "{error}");
 }
 
 /// `c/a0 = (1 - F_x/(μ_f F_N))^(1/(n+1+k))`, and nothing else about the scene.

@@ -277,10 +277,6 @@ fn gross_slip_under_any_friction_blocks_and_a_rig_wears_by_energy_and_ends_in_a_
     for grading in [-0.3, 0.0, 0.5] {
         for (friction, line, table) in SLIDING {
             for load in ["normal_force", "initial_force"] {
-                // A rig is not followed beside a held normal force.
-                if load == "normal_force" && line.starts_with("rig") {
-                    continue;
-                }
                 let by_load = friction.contains("load-dependent");
                 let wear = if by_load { "[wear.archard]" } else { "[wear.dissipated-energy]" };
                 let run = |tau: f64, numerics: &str| {

@@ -359,3 +359,17 @@ pub(super) const STICK_REALS: [Field<StickEdge, f64>; 5] = [
         |it| &mut it.rates[1],
     ),
 ];
+
+/// The same where a balance of tangential forces decides it beside a held normal force.
+pub(super) const BALANCED_STICK_REALS: [Field<StickEdge, f64>; 2] = [
+    field(
+        quantity("slip_compression", "m", "compression at the edge of stick"),
+        |it| &it.slip_compression,
+        |it| &mut it.slip_compression,
+    ),
+    field(
+        quantity("slip_compression_rate", "m", "gain of that compression per cycle in the last step"),
+        |it| &it.rates[2],
+        |it| &mut it.rates[2],
+    ),
+];

@@ -251,6 +251,9 @@ fn put_stick(stick: &StickEdge) -> Dataset {
         stored.add(Variable::new(RAISED_AT_REST, &[place], stick.raised_at_rest.clone()));
     }
     put_scalars(&mut stored, &STICK_REALS, stick);
+    if stick.slip_compression != 0.0 {
+        put_scalars(&mut stored, &BALANCED_STICK_REALS, stick);
+    }
     stored
 }
 
@@ -406,6 +409,9 @@ fn stick(mut stored: Dataset) -> Result<StickEdge> {
         stick.raised_at_rest = stored.take(RAISED_AT_REST, &[Some(stick.places_at_rest.len())])?;
     }
     take_scalars(&mut stored, &STICK_REALS, &mut stick)?;
+    if stored.has(BALANCED_STICK_REALS[0].quantity.name) {
+        take_scalars(&mut stored, &BALANCED_STICK_REALS, &mut stick)?;
+    }
     Ok(stick)
 }
 

@@ -24,7 +24,7 @@ const AT_EDGE: f64 = -0.5;
 const POWER: [f64; 2] = [2.0, 0.9];
 
 /// Nodes up to which that exponent holds; of more it falls, so that the last cell stays about as wide.
-const NODES_OF_POWER: f64 = 16.0;
+const NODES_OF_POWER: f64 = 24.0;
 
 /// Nodes of the rules on a panel beside half of those of the polynomial.
 const BEYOND_DEGREE: usize = 16;

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
-use crate::solver::model::{Model, OperatorStore, Resolution, Schedule};
+use crate::solver::model::{Model, MovingStick, OperatorStore, Resolution, Schedule};
 use crate::solver::simulation::{Plan, Simulation};
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossSdirk, Sdirk, Stepper};
 
@@ -61,7 +61,8 @@ impl Parts {
         let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
         let by_energy = *model.schedule().friction_along_energy() != History::Constant;
         let conditions = scene.conditions();
-        let path_dependent = conditions.holds_normal_force && !conditions.holds_both_forces();
+        let held = conditions.holds_normal_force && !conditions.holds_both_forces();
+        let path_dependent = held || model.moving().is_some_and(MovingStick::passes_worn_ground);
         let unlimited = model.slides() || path_dependent || by_energy;
         let limit = if unlimited { None } else { LimitingShape::under(model.contact(), conditions)? };
         check_stepper(numerics.stepper, &model)?;

@@ -1,7 +1,9 @@
 //! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
-use super::moving::{LAST_CORE, follows_held_force, held_stick_radius, slides_at_once};
-use super::schedule::Schedule;
+use super::moving::{
+    LAST_CORE, first_slip_compression, follows_held_force, held_stick_radius, slides_at_once,
+};
+use super::schedule::{CycleLoading, Schedule};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
@@ -53,9 +55,15 @@ impl Schedule {
         let depth = self.largest_indentation();
         let first = self.conditions().tangential_control == TangentialControl::Displacement;
         let profile = contact.equivalent_profile();
-        let both = self.conditions().holds_both_forces();
-        let compression = if both && *self.friction_change() != History::Constant {
-            // Falling friction lets the edge of stick recede over unworn ground.
+        let conditions = self.conditions();
+        let both = conditions.holds_both_forces();
+        let coulomb = conditions.friction.coefficient().is_some();
+        let compression = if conditions.holds_normal_force && !first && !(both && coulomb) {
+            let least = self.extremes().map(|loading| least_stick_radius(contact, &loading));
+            let least = least.collect::<Result<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);
+            depth - profile.value(least)
+        } else if both && *self.friction_change() != History::Constant {
+            // Falling friction lets the edge of stick recede over unworn ground; rising friction lets it creep from where it is at first.
             let edge = |loading| held_stick_radius(contact, contact.normal_force(), &loading);
             let least = self.extremes().map(|loading| edge(loading).unwrap_or_default());
             depth - profile.value(least.fold(f64::INFINITY, f64::min))
@@ -73,7 +81,7 @@ impl Schedule {
         let grading = contact.half_space().grading();
         let slides = compression > largest;
         let accelerates = match self.conditions().tangential_control {
-            TangentialControl::Force if self.conditions().holds_both_forces() => slides,
+            TangentialControl::Force if both => slides,
             TangentialControl::Force => slides_at_once(self, contact)?,
             _ => false,
         };
@@ -145,4 +153,33 @@ impl Schedule {
         }
         Ok(largest)
     }
+}
+
+/// Least radius of stick, m, that a balance of tangential forces under a held normal force leaves: in the first cycle, or when wear has taken all load off the
+/// springs that slip and unworn ground within bears both; zero where the contact slides at once.
+///
+/// ```text
+/// F_N = 2 c_N ∫_0^c x^k (d - g_0) dx,    F_x = 2 c_N τ(d - g_0(c)) c^(1+k)/(1+k)
+/// ```
+///
+/// # Errors
+/// As [`EquivalentProfile::radius_at`].
+fn least_stick_radius(contact: &InitialContact, loading: &CycleLoading) -> Result<f64> {
+    let (profile, half_space) = (contact.equivalent_profile(), contact.half_space());
+    let (ratio, exponent) = (half_space.stiffness_ratio(), 1.0 + half_space.grading());
+    let edge = contact.contact_radius();
+    let Ok(first) = first_slip_compression(contact, loading, contact.indentation()) else { return Ok(0.0) };
+    let first = profile.radius_at(contact.indentation() - first)?;
+    let stiffness = half_space.normal_stiffness();
+    let excess = |radius: f64| {
+        let area = radius.powf(exponent) / exponent;
+        let shed = 0.5 * (contact.normal_force() / stiffness - profile.load_integral(radius)) / area;
+        let strength = loading.friction.static_strength(shed);
+        loading.excess(2.0 * stiffness * strength * area, strength / ratio)
+    };
+    let inwards = |i: usize| edge * (-16.0 * i as f64 / (SEARCH as f64 * exponent)).exp();
+    Ok(match (1..=SEARCH).find(|i| excess(inwards(*i)) >= 0.0) {
+        Some(i) => bracketed(excess, inwards(i), inwards(i - 1), 0.0)?.min(first),
+        None => 0.0,
+    })
 }

@@ -17,6 +17,8 @@
 //! and `λ` stays finite: `g_0'(c) c' = G' e^(-λ)`. Where nothing wears, `S` is `S_0` less what was left behind,
 //! `K' = -(G' - G_0') Φ`, which the contact edge needs to know: there `S = S_0 + K`.
 
+mod at_rest;
+mod causes;
 mod jump;
 mod stage;
 
@@ -45,9 +47,6 @@ const LOST: f64 = 4.0;
 /// Radius, over that of the contact, of the core of a mesh that follows an edge of stick that recedes until none is left: stick is lost within 1e-3 of the time when it is as small as that.
 pub(super) const LAST_CORE: f64 = 0.02;
 
-/// Compressions that differ by less than this part are equal but for rounding.
-const SAME_COMPRESSION: f64 = 1e-9;
-
 /// What moves the edge of stick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Cause {
@@ -63,6 +62,9 @@ enum Cause {
     BothForces(f64),
     /// The same while friction falls: the edge recedes to where unworn ground alone bears `F_N - F_x/μ`, see [`held_stick_radius`].
     ReleasedForces(f64),
+    /// This normal force, N, is held, and the tangential amplitude follows from a balance of forces: height and compression at the edge are both
+    /// solved for, see [`Model::bearing`].
+    TwoBalances(f64),
 }
 
 impl Cause {
@@ -72,7 +74,8 @@ impl Cause {
             Self::NormalForce(force)
             | Self::Sliding(force)
             | Self::BothForces(force)
-            | Self::ReleasedForces(force) => Some(force),
+            | Self::ReleasedForces(force)
+            | Self::TwoBalances(force) => Some(force),
             Self::Friction | Self::Tangential => None,
         }
     }
@@ -86,6 +89,12 @@ pub struct MovingStick {
     outwards: bool,
     /// Whether it does so between blocks only.
     jumps: bool,
+    /// Whether it may turn: `outwards` is where it is first taken to move.
+    turns: bool,
+    /// Whether it jumps between blocks besides.
+    in_blocks: bool,
+    /// Whether the compression there is kept besides: it is solved for, or changes under a held normal force.
+    keeps: bool,
     /// Logarithms of the squares of the first and last radius of the stations.
     span: [f64; 2],
 }
@@ -108,91 +117,21 @@ pub struct StickEdge {
     pub places_at_rest: Vec<f64>,
     /// See [`StickEdge::places_at_rest`].
     pub raised_at_rest: Vec<f64>,
-    /// Mean rates of area, m², and depth, m, per cycle in the last step.
-    pub rates: [f64; 2],
+    /// `q_c`, m, where it is solved for beside the depth; else zero.
+    pub slip_compression: f64,
+    /// Mean rates of area, m², depth and that compression, m, per cycle in the last step.
+    pub rates: [f64; 3],
 }
 
 impl MovingStick {
-    /// How the edge of stick moves under a schedule; none if it stays, or moves to and fro.
-    ///
-    /// # Arguments
-    /// * `slides` -- whether no stick is left in some cycle
-    ///
-    /// # Errors
-    /// [`Error::Inconsistent`] for a force that is held while friction falls or amplitudes grow, and for friction that changes under
-    /// normal oscillation, or is less in between than in the end, and for blocks of which the last slips less far than others before, unless they
-    /// differ by their amplitudes alone.
-    pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
-        let conditions = schedule.conditions();
-        if *schedule.friction_along_energy() != History::Constant {
-            check_along_energy(schedule, slides)?;
-        }
-        let follows = follows_held_force(schedule, contact)?;
-        if slides && !follows {
-            let sliding = conditions.holds_normal_force && conditions.blocks.is_empty();
-            let cause = Cause::Sliding(contact.normal_force());
-            return Ok(sliding.then_some(Self { cause, outwards: false, jumps: false, span: [0.0; 2] }));
-        }
-        let cause = match (conditions.holds_normal_force, conditions.tangential_control) {
-            (true, TangentialControl::Displacement) => Some(Cause::NormalForce(contact.normal_force())),
-            (true, _) if *schedule.friction_change() == History::Constant => {
-                Some(Cause::BothForces(contact.normal_force()))
-            }
-            (true, _) => Some(Cause::ReleasedForces(contact.normal_force())),
-            (false, TangentialControl::Displacement) => {
-                let changes = *schedule.friction_change() != History::Constant;
-                match &conditions.blocks[..] {
-                    [] => changes.then_some(Cause::Friction),
-                    blocks => {
-                        let shrink =
-                            blocks.windows(2).any(|pair| pair[1].amplitude_factor < pair[0].amplitude_factor)
-                                && blocks.iter().all(|it| {
-                                    it.indentation_factor == 1.0
-                                        && (f64::MIN_POSITIVE..=blocks[0].amplitude_factor)
-                                            .contains(&it.amplitude_factor)
-                                });
-                        let jumps = shrink && !changes && !conditions.repeat;
-                        if !jumps {
-                            check_rest(schedule, contact)?;
-                            return Ok(None);
-                        }
-                        let (cause, span) = (Cause::Friction, [0.0; 2]);
-                        return Ok(Some(Self { cause, outwards: true, jumps, span }));
-                    }
-                }
-            }
-            (false, _) => Some(Cause::Tangential),
-        };
-        let Some(cause) = cause else { return Ok(None) };
-        if cause == Cause::Friction && schedule.lifts() {
-            return Err(Error::Inconsistent {
-                what: "friction.history",
-                why: "is not followed where the indentation changes within a period: springs that are loaded for a part of it would be \
-                      worn too deep at an edge of stick that moves; leave out the history, or the normal oscillation"
-                    .into(),
-            });
-        }
-        let [falls, rises] = schedule.friction_change().directions();
-        let outwards = match cause {
-            Cause::NormalForce(_) if falls || !conditions.blocks.is_empty() => {
-                return Err(Error::Inconsistent {
-                    what: "loading.normal_force",
-                    why: "is held with a constant or rising coefficient of friction and without blocks only: else the edge of stick \
-                          moves to and fro over worn ground; hold the indentation"
-                        .into(),
-                });
-            }
-            Cause::NormalForce(_) | Cause::Sliding(_) => true,
-            Cause::BothForces(_) | Cause::ReleasedForces(_) => false,
-            Cause::Friction if falls && rises => {
-                check_rest(schedule, contact)?;
-                return Ok(None);
-            }
-            Cause::Friction => rises,
-            Cause::Tangential if !follows => return Ok(None),
-            Cause::Tangential => false,
-        };
-        Ok(Some(Self { cause, outwards, jumps: false, span: [0.0; 2] }))
+    /// Whether it may come over worn ground under both forces or a rig beside a normal one, so that the end depends on the way there.
+    pub fn passes_worn_ground(&self) -> bool {
+        matches!(self.cause, Cause::TwoBalances(_))
+    }
+
+    /// Whether it may leave worn ground behind.
+    fn leaves_ground(&self) -> bool {
+        self.outwards || self.turns || self.in_blocks
     }
 
     /// The contact with the largest indentation that can come, of which the limit bounds where wear can reach.
@@ -205,9 +144,10 @@ impl MovingStick {
             return contact.with_core(FARTHEST * contact.indentation(), core);
         }
         match self.cause {
-            Cause::NormalForce(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => {
-                Ok(contact.under_held_forces()?.unwrap_or_else(|| contact.clone()))
-            }
+            Cause::NormalForce(_)
+            | Cause::BothForces(_)
+            | Cause::ReleasedForces(_)
+            | Cause::TwoBalances(_) => Ok(contact.under_held_forces()?.unwrap_or_else(|| contact.clone())),
             _ => Ok(contact.clone()),
         }
     }
@@ -228,12 +168,12 @@ impl MovingStick {
 
     /// Whether the edge moves inwards, upon unworn ground.
     pub fn recedes(&self) -> bool {
-        !self.outwards && !self.rests()
+        !self.leaves_ground() && !self.rests()
     }
 
     /// Whether the edge moves outwards during steps, over worn ground.
     pub(super) fn creeps(&self) -> bool {
-        self.outwards && !self.rests()
+        self.leaves_ground() && !self.rests()
     }
 
     /// Whether the edge stays where it is during a step.
@@ -253,7 +193,7 @@ impl MovingStick {
 
     /// What was left behind at a squared radius, m², outside the first contact; none within it.
     pub(super) fn left_behind_outside(&self, stick: &StickEdge, squared: f64) -> Option<f64> {
-        (self.outwards && squared >= self.span[0].exp())
+        (self.leaves_ground() && squared >= self.span[0].exp())
             .then(|| self.left_behind(&stick.left_behind, squared))
     }
 
@@ -298,7 +238,12 @@ impl MovingStick {
                     ..StickEdge::default()
                 });
             }
-            Cause::Tangential => model.first_slip_compression(&loading)?,
+            Cause::Tangential => {
+                first_slip_compression(&model.contact, &loading, model.contact.slip_compression())?
+            }
+            Cause::TwoBalances(_) => {
+                first_slip_compression(&model.contact, &loading, model.contact.indentation())?
+            }
             _ => loading.slip_compression(model.contact.half_space().stiffness_ratio()),
         };
         let depth = model.contact.indentation() - compression;
@@ -315,8 +260,8 @@ impl MovingStick {
         }
         let radius = profile.radius_at(depth)?;
         let load = unworn_load(profile, radius, compression);
-        let behind = if self.outwards { STATIONS } else { 0 };
-        let nodes = if self.outwards { model.output.offsets().len() } else { 0 };
+        let behind = if self.leaves_ground() { STATIONS } else { 0 };
+        let nodes = if self.leaves_ground() { model.output.offsets().len() } else { 0 };
         Ok(StickEdge {
             area: radius * radius,
             depth: solved,
@@ -325,21 +270,21 @@ impl MovingStick {
             wear_depth: vec![0.0; nodes],
             places_at_rest: vec![],
             raised_at_rest: vec![],
-            rates: [0.0; 2],
+            slip_compression: if self.keeps { compression } else { 0.0 },
+            rates: [0.0; 3],
         })
     }
 }
 
-/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and it only ever moves inwards.
+/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and it does not jump.
 ///
 /// # Errors
 /// As [`slides_at_once`].
 pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
-    let [_, rises] = schedule.friction_change().directions();
-    let inwards = !rises && conditions.blocks.is_empty();
+    let coulomb = conditions.friction.coefficient().is_some();
     Ok(conditions.tangential_control != TangentialControl::Displacement
-        && inwards
+        && conditions.blocks.iter().all(|block| block.amplitude_factor > 0.0 && coulomb)
         && !slides_at_once(schedule, contact)?)
 }
 
@@ -348,19 +293,25 @@ pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) 
 /// # Errors
 /// As [`EquivalentProfile::radius_at`].
 pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
-    let (loading, depth) = (schedule.loading(0.0, 0.0), contact.indentation());
+    let depth = contact.indentation();
     let ratio = contact.half_space().stiffness_ratio();
     let core = LOST.sqrt() * LAST_CORE * contact.contact_radius();
     let at_core = depth - contact.equivalent_profile().value(core);
-    Ok(match loading.control {
-        AmplitudeControl::Displacement => false,
-        AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
-        AmplitudeControl::Rig(_) => {
-            let amplitude = loading.friction.static_strength(at_core) / ratio;
-            let force = super::first_force::first_force(contact, &*loading.friction, amplitude, depth)?;
-            loading.excess(force, amplitude) <= 0.0
+    for loading in schedule.first_cycles() {
+        let slides = match loading.control {
+            AmplitudeControl::Displacement => false,
+            AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
+            AmplitudeControl::Rig(_) => {
+                let amplitude = loading.friction.static_strength(at_core) / ratio;
+                let force = super::first_force::first_force(contact, &*loading.friction, amplitude, depth)?;
+                loading.excess(force, amplitude) <= 0.0
+            }
+        };
+        if slides {
+            return Ok(true);
         }
-    })
+    }
+    Ok(false)
 }
 
 /// Stick radius, m, under both forces held while the ground within it is unworn; none where stick cannot bear them.
@@ -379,63 +330,6 @@ pub(super) fn held_stick_radius(
         |radius: f64| contact.half_space().normal_stiffness() * profile.load_integral(radius) - borne;
     let edge = contact.contact_radius();
     (borne > 0.0).then(|| bracketed(excess, 1e-9 * edge, edge, 0.0).ok()).flatten()
-}
-
-/// Refuses an edge of stick that comes to rest on worn ground within the mesh: errors of the springs next to it grow with slip and move it inwards.
-/// Worn volumes were 0.4 to 8 % off with any number of springs.
-fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
-    let ratio = contact.half_space().stiffness_ratio();
-    let largest = |loadings: &mut dyn Iterator<Item = CycleLoading>| {
-        loadings.map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
-    };
-    let [last, most] = [largest(&mut schedule.lasting()), largest(&mut schedule.extremes())];
-    if last >= most * (1.0 - SAME_COMPRESSION) {
-        return Ok(());
-    }
-    let part = last / most;
-    let in_the_end = format!(
-        "in the end springs slip below {part:.4} of the largest compression at which they slipped before, so that the edge of stick comes to rest \
-         within worn ground, which is not followed to any accuracy"
-    );
-    let (what, cure) = if schedule.conditions().blocks.is_empty() {
-        ("friction.history", "let the factors only fall, only rise, or end at their smallest")
-    } else {
-        (
-            "loading.blocks",
-            "repeat them, end with the one that slips farthest, or begin with it and let only positive amplitude factors differ",
-        )
-    };
-    Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
-}
-
-/// Refuses what is not followed while friction changes with the energy that it dissipates.
-fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
-    let conditions = schedule.conditions();
-    let beside = [
-        (conditions.friction_history != History::Constant, "friction.history", "leave it out"),
-        (!conditions.blocks.is_empty(), "loading.blocks", "leave them out"),
-        (
-            conditions.holds_normal_force,
-            "loading.normal_force",
-            "give loading.initial_force or loading.indentation",
-        ),
-        (
-            conditions.tangential_control != TangentialControl::Displacement,
-            "a held tangential force or a rig",
-            "give the amplitude of the contact",
-        ),
-        (schedule.lifts(), "an indentation that changes within a period", "leave out the normal oscillation"),
-        (slides, "an amplitude at which the contact slides as a whole", "reduce the amplitude"),
-    ];
-    match beside.iter().find(|(is_there, ..)| *is_there) {
-        None => Ok(()),
-        Some((_, what, cure)) => Err(Error::Inconsistent {
-            what: "friction",
-            why: format!(
-                "changes with the energy that it dissipates, and so does the edge of stick; that is not followed beside {what}; {cure}"
-            ),
-        }),
-    }
 }
 
 /// `∫_0^c x^k q dx` of unworn ground, m^(2+k).
@@ -462,7 +356,9 @@ impl Model {
         let (Some(moving), Some(stick)) = (&self.moving, stick) else { return self.stick_zone };
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
+            _ if moving.keeps => stick.slip_compression,
             Cause::NormalForce(_) => loading.slip_compression(self.contact.half_space().stiffness_ratio()),
+            Cause::TwoBalances(_) => unreachable!("guessed above"),
             Cause::Sliding(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => stick.depth,
         };
         StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
@@ -472,7 +368,12 @@ impl Model {
     /// where a normal force is held.
     pub(super) fn depth_over_core(&self, stick_zone: &StickZone) -> f64 {
         match self.moving.as_ref().map(|moving| moving.cause) {
-            Some(Cause::NormalForce(_) | Cause::BothForces(_) | Cause::ReleasedForces(_)) => {
+            Some(
+                Cause::NormalForce(_)
+                | Cause::BothForces(_)
+                | Cause::ReleasedForces(_)
+                | Cause::TwoBalances(_),
+            ) => {
                 let height = self.contact.equivalent_profile().value(stick_zone.stick_area.sqrt());
                 stick_zone.slip_compression + height
             }
@@ -494,6 +395,7 @@ impl Model {
 
     /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
+        let loading = self.after_energy(loading, state.dissipated_energy);
         match (self.moving.as_ref().map(|moving| moving.cause), &state.stick) {
             (Some(Cause::Tangential), Some(stick)) => {
                 self.displaced(loading, self.contact.indentation() - stick.depth)
@@ -501,7 +403,8 @@ impl Model {
             (Some(Cause::BothForces(_) | Cause::ReleasedForces(_)), Some(stick)) => {
                 self.displaced(loading, stick.depth)
             }
-            _ => self.after_energy(loading, state.dissipated_energy),
+            (Some(Cause::TwoBalances(_)), Some(stick)) => self.displaced(loading, stick.slip_compression),
+            _ => loading,
         }
     }
 
@@ -530,7 +433,11 @@ impl Model {
         match (&self.moving, &state.stick) {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
                 let loading = self.schedule.loading(state.cycles, state.cycles);
+                let loading = self.after_energy(loading, state.dissipated_energy);
                 stick.depth + self.stick_zone_in(Some(stick), &loading).slip_compression
+            }
+            (Some(MovingStick { cause: Cause::TwoBalances(_), .. }), Some(stick)) => {
+                stick.depth + stick.slip_compression
             }
             (Some(MovingStick { cause: Cause::ReleasedForces(_), .. }), Some(stick)) => {
                 stick.depth + self.contact.equivalent_profile().value(stick.area.sqrt())
@@ -570,18 +477,24 @@ impl Model {
         let mesh = self.operators.abel.mesh();
         mesh.interpolate(values, mesh.place(x))
     }
+}
 
-    /// Compression at the edge of stick of the unworn contact in the balance of forces, m.
-    fn first_slip_compression(&self, loading: &CycleLoading) -> Result<f64> {
-        let ratio = self.contact.half_space().stiffness_ratio();
-        let depth = self.contact.indentation();
-        let largest = self.contact.slip_compression();
-        let excess = |compression: f64| {
-            let amplitude = loading.friction.static_strength(compression) / ratio;
-            let force = super::first_force::first_force(&self.contact, &*loading.friction, amplitude, depth)
-                .unwrap_or(f64::NAN);
-            loading.excess(force, amplitude)
-        };
-        bracketed(excess, 1e-12 * largest, largest, 0.0)
-    }
+/// Compression at the edge of stick of the unworn contact in the balance of forces, m; at most the largest there can be.
+///
+/// # Errors
+/// [`Error::NotConverged`](crate::Error::NotConverged) if even that is not enough.
+pub(super) fn first_slip_compression(
+    contact: &InitialContact,
+    loading: &CycleLoading,
+    largest: f64,
+) -> Result<f64> {
+    let ratio = contact.half_space().stiffness_ratio();
+    let depth = contact.indentation();
+    let excess = |compression: f64| {
+        let amplitude = loading.friction.static_strength(compression) / ratio;
+        let force = super::first_force::first_force(contact, &*loading.friction, amplitude, depth)
+            .unwrap_or(f64::NAN);
+        loading.excess(force, amplitude)
+    };
+    bracketed(excess, 1e-12 * largest, largest, 0.0)
 }

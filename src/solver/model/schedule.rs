@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::first_force::first_force;
 use crate::contact::InitialContact;
 use crate::contact::spring::{Response, Steps, stick_compression};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::history::History;
@@ -124,9 +124,8 @@ impl Schedule {
     /// What acts on a contact under some conditions.
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] where a normal force is held beside a tangential one or a rig; those of the indentation of a block.
+    /// Those of the indentation of a block.
     pub fn new(contact: &InitialContact, conditions: &Conditions, resolution: Resolution) -> Result<Self> {
-        check_forces(conditions)?;
         let whole = Block { duration: f64::INFINITY, amplitude_factor: 1.0, indentation_factor: 1.0 };
         let blocks = if conditions.blocks.is_empty() { vec![whole] } else { conditions.blocks.clone() };
         let clock_rate = match conditions.clock {
@@ -410,38 +409,6 @@ impl Schedule {
     /// Whether cycles are the same, at a constant indentation, and wear is local: at most resolved cycles or a threshold make kinks along the annulus.
     pub fn makes_weak_kinks(&self) -> bool {
         self.is_steady() && !self.lifts() && self.conditions.wear.spreading().is_none()
-    }
-}
-
-/// Refuses a held normal force beside a rig, and beside a held tangential one where the edge of stick would move.
-fn check_forces(conditions: &Conditions) -> Result<()> {
-    if !conditions.holds_normal_force {
-        return Ok(());
-    }
-    let beside = |other: &str, cure: &str| {
-        Err(Error::Inconsistent { what: "loading.normal_force", why: format!("is held, {other}; {cure}") })
-    };
-    match conditions.tangential_control {
-        TangentialControl::Displacement => Ok(()),
-        TangentialControl::Rig { stiffness } => beside(
-            &format!(
-                "and so is what loading.rig_stiffness = {stiffness:e} N/m asks for, which this version does not follow together"
-            ),
-            "give loading.initial_force or loading.indentation instead, or remove loading.rig_stiffness",
-        ),
-        TangentialControl::Force => {
-            let history = &conditions.friction_history;
-            let along_energy = conditions.friction.along_energy() != History::Constant;
-            let coulomb = conditions.friction.coefficient().is_some() && !along_energy;
-            if coulomb && conditions.blocks.is_empty() && !history.directions()[1] {
-                return Ok(());
-            }
-            beside(
-                "and so is the tangential force, under which the edge of stick stays where it is with a constant coefficient of friction, and recedes over \
-                 unworn ground with one that falls: else it moves over worn ground, which is not followed under both forces",
-                "take friction.coulomb, constant or falling, and no blocks, or give loading.initial_force or loading.indentation instead",
-            )
-        }
     }
 }
 

@@ -14,13 +14,18 @@ pub struct Unknowns {
     pub stick_area: f64,
     /// See [`Unknowns::stick_area`].
     pub stick_depth: f64,
+    /// `q_c`, m, where it is solved for beside the height: a normal force is held beside a balance of tangential forces.
+    pub slip_compression: f64,
 }
 
 impl Unknowns {
     /// Those of a state.
     pub fn of(state: &State) -> Self {
-        let [stick_area, stick_depth] = state.stick.as_ref().map_or([0.0; 2], |it| [it.area, it.depth]);
-        Self { compression: state.compression.clone(), slip_area: state.slip_area, stick_area, stick_depth }
+        let stick = state.stick.as_ref();
+        let [stick_area, stick_depth, slip_compression] =
+            stick.map_or([0.0; 3], |it| [it.area, it.depth, it.slip_compression]);
+        let (compression, slip_area) = (state.compression.clone(), state.slip_area);
+        Self { compression, slip_area, stick_area, stick_depth, slip_compression }
     }
 
     /// Some cycles after a state, at the rates of the last step.
@@ -30,22 +35,24 @@ impl Unknowns {
         for (q, rate) in at.compression.iter_mut().zip(&state.compression_rate) {
             *q += cycles * rate;
         }
-        let [area, depth] = state.stick.as_ref().map_or([0.0; 2], |stick| stick.rates);
+        let [area, depth, slip_compression] = state.stick.as_ref().map_or([0.0; 3], |stick| stick.rates);
         at.stick_area += cycles * area;
         at.stick_depth += cycles * depth;
+        at.slip_compression += cycles * slip_compression;
         at
     }
 
-    /// Takes a correction away: of the compressions, of `Z` and, where they are solved for, of `C` and `G`.
+    /// Takes a correction away: of the compressions, of `Z` and, where they are solved for, of `C`, `G` and `q_c`.
     pub fn correct(&mut self, correction: &[f64]) {
         let (of_springs, others) = correction.split_at(self.compression.len());
         for (q, change) in self.compression.iter_mut().zip(of_springs) {
             *q -= change;
         }
         self.slip_area -= others[0];
-        if let [_, area, depth] = others {
+        if let [_, area, depth, rest @ ..] = others {
             self.stick_area -= area;
             self.stick_depth -= depth;
+            self.slip_compression -= rest.first().copied().unwrap_or_default();
         }
     }
 }

@@ -7,6 +7,7 @@ use super::moving::MovingStage;
 use super::newton::Newton;
 use super::resting::{RestingStage, Tried, newton_tolerance};
 use super::tableau::ALEXANDER;
+use crate::laws::history::History;
 use crate::numerics::grid::lagrange;
 use crate::solver::model::{
     Fields, Model, Past, State, StickEdge, StickStage, StickTarget, StickTrial, Target, Unknowns,
@@ -174,6 +175,10 @@ pub(super) struct MovingContact<'a> {
     tolerance: f64,
     newton: &'a mut Newton,
     trial: &'a mut StickTrial,
+    /// Energy that friction dissipates in a cycle, J, in the stage solved last or at the start; zero where nothing goes by it.
+    dissipation: f64,
+    /// Whether the edge of stick is taken to move outwards, over worn ground.
+    outwards: bool,
     /// The start and the stages solved.
     known: Vec<Unknowns>,
 }
@@ -186,23 +191,28 @@ impl<'a> MovingContact<'a> {
         tolerance: f64,
         newton: &'a mut Newton,
         trial: &'a mut StickTrial,
+        outwards: bool,
     ) -> Self {
-        Self { model, state, stick, tolerance, newton, trial, known: vec![Unknowns::of(state)] }
+        let known = vec![Unknowns::of(state)];
+        Self { model, state, stick, tolerance, newton, trial, outwards, dissipation: 0.0, known }
     }
 
     fn target(&self, index: usize, gathered: &[f64], cycles: f64) -> StickTarget {
         let springs = target(self.model, self.state, gathered, index, cycles);
-        let [slip_compression, area, depth, load] =
-            *gathered[self.model.springs() + 1..].first_chunk().expect("four numbers of the edge of stick");
+        let [slip_compression, area, depth, load, bearing] =
+            *gathered[self.model.springs() + 1..].first_chunk().expect("five numbers of the edge of stick");
         let left_behind = self.carried(gathered)[0].to_vec();
-        let stick = StickEdge { area, depth, load, left_behind, ..StickEdge::default() };
+        let (places_at_rest, raised_at_rest) =
+            (self.stick.places_at_rest.clone(), self.stick.raised_at_rest.clone());
+        let carried = StickEdge { places_at_rest, raised_at_rest, ..StickEdge::default() };
+        let stick = StickEdge { area, depth, load, left_behind, ..carried };
         let energy = gathered[gathered.len() - 2];
-        StickTarget { springs, stick, slip_compression, energy }
+        StickTarget { springs, stick, slip_compression, bearing, energy, outwards: self.outwards }
     }
 
     /// What was left behind, and wear depth, among the quantities.
     fn carried<'b>(&self, quantities: &'b [f64]) -> [&'b [f64]; 2] {
-        let all = &quantities[self.model.springs() + 5..quantities.len() - 2];
+        let all = &quantities[self.model.springs() + 6..quantities.len() - 2];
         let (left_behind, wear_depth) = all.split_at(self.stick.left_behind.len());
         [left_behind, wear_depth]
     }
@@ -217,7 +227,7 @@ impl<'a> MovingContact<'a> {
         evaluations: &mut u64,
     ) -> Option<StickStage<'a>> {
         let loading = target.springs.loading.clone();
-        let (mut rate, mut last) = (0.0, f64::NAN);
+        let (mut rate, mut last) = (self.dissipation, f64::NAN);
         for _ in 0..ENERGY_CORRECTIONS {
             let energy = target.energy + target.springs.step * rate;
             target.springs.loading = self.model.after_energy(loading.clone(), energy);
@@ -237,6 +247,9 @@ impl<'a> MovingContact<'a> {
                 }
             }
             rate = self.trial.cycle.dissipation;
+            if *self.model.schedule().friction_along_energy() != History::Constant {
+                self.dissipation = rate;
+            }
         }
         None
     }
@@ -258,6 +271,7 @@ impl<'a> MovingContact<'a> {
             slip_area: sum(&|it| it.slip_area),
             stick_area: sum(&|it| it.stick_area),
             stick_depth: sum(&|it| it.stick_depth),
+            slip_compression: sum(&|it| it.slip_compression),
         }
     }
 }
@@ -266,8 +280,20 @@ impl Stages for MovingContact<'_> {
     fn start(&mut self) -> Vec<f64> {
         let (state, stick) = (self.state, self.stick);
         let fields = self.model.fields(state);
-        let of_edges =
-            [state.slip_area, fields.stick_zone.slip_compression, stick.area, stick.depth, stick.load];
+        if *self.model.schedule().friction_along_energy() != History::Constant {
+            let loading = self.model.schedule().loading(state.cycles, state.cycles);
+            let loading = self.model.loading_in(state, loading);
+            self.dissipation = self.model.cycle(&loading, &state.compression, &fields).dissipation;
+        }
+        let compression = fields.stick_zone.slip_compression;
+        let of_edges = [
+            state.slip_area,
+            compression,
+            stick.area,
+            stick.depth,
+            stick.load,
+            self.model.bearing(state, compression),
+        ];
         let carried = stick.left_behind.iter().chain(&stick.wear_depth);
         let sums = [state.dissipated_energy, state.volume_by_rate];
         fields.log_slip.iter().chain(&of_edges).chain(carried).chain(&sums).copied().collect()
@@ -289,11 +315,13 @@ impl Stages for MovingContact<'_> {
         let before = self.known.last()?.clone();
         let mut at = self.guess(index, cycles);
         let stage = self.converged(self.target(index, &gathered, cycles), &mut at, before, evaluations)?;
+        let bearing = stage.bearing(&at);
         let stick = stage.rates(&at, self.trial);
         let (trial, step) = (&*self.trial, ALEXANDER.diagonal * cycles);
         let now = trial.fields.log_slip.iter().chain([&at.slip_area, &trial.stick_zone.slip_compression]);
         let found = slopes(now, &gathered, step)
             .chain([stick.area, stick.depth, stick.load])
+            .chain(slopes([&bearing], &gathered[self.model.springs() + 5..], step))
             .chain(stick.left_behind)
             .chain(stick.wear_depth)
             .chain([trial.cycle.dissipation, trial.cycle.volume])
@@ -315,9 +343,15 @@ impl Stages for MovingContact<'_> {
             load: self.trial.stick_zone.stick_load,
             left_behind,
             wear_depth,
-            rates: [(at.stick_area - self.stick.area) / cycles, (at.stick_depth - self.stick.depth) / cycles],
+            slip_compression: at.slip_compression,
+            rates: [
+                (at.stick_area - self.stick.area) / cycles,
+                (at.stick_depth - self.stick.depth) / cycles,
+                (at.slip_compression - self.stick.slip_compression) / cycles,
+            ],
             ..self.stick.clone()
         };
+        let stick = self.model.with_ground_at_rest(stick, self.stick.area);
         let after = state_after(self.state, at, &quantities, self.trial.cycle.stick_radius, cycles);
         let mut next = State { stick: Some(stick), past: Past::default(), ..after };
         self.model.settle_depth(&mut next, &self.trial.fields);

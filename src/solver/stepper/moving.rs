@@ -38,6 +38,11 @@ impl<'a> MovingStage<'a> {
         Self { stage, tolerance, held: model.contact().indentation(), round_off, stick_round_off, trial }
     }
 
+    /// What is left of the balances, behind the equations of springs and edges.
+    fn balances(&self) -> &[f64] {
+        &self.trial.residual[self.stage.target().springs.log_slip.len() + 1..]
+    }
+
     /// Newton's method from a guess; where the compression at the edge of stick is known, with that one: next to the edge slip is the small
     /// difference of both.
     pub fn solve(&mut self, at: &mut Unknowns, newton: &mut Newton, evaluations: &mut u64) -> bool {
@@ -46,6 +51,7 @@ impl<'a> MovingStage<'a> {
             at.compression.iter_mut().for_each(|q| *q *= factor);
             at.stick_depth = self.held - known;
         }
+        self.stage.scale(at);
         *evaluations += 1;
         newton.solve(self, at, evaluations)
     }
@@ -79,7 +85,7 @@ impl Equations for MovingStage<'_> {
     fn is_last(&self, correction: &Correction) -> bool {
         correction.springs <= self.tolerance * correction.compression + 10.0 * ROUND_OFF + self.round_off
             && correction.stick <= self.stick_round_off
-            && self.trial.residual.last().is_some_and(|it| it.abs() <= BALANCED)
+            && self.balances().iter().all(|it| it.abs() <= BALANCED)
     }
 
     /// The edge of stick has to be found to the last digit.

@@ -61,7 +61,7 @@ impl Correction {
         let (of_springs, others) = change.split_at(at.compression.len());
         let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
         let stick = match others {
-            [_, area, depth] => (area.abs() / at.stick_area).max(depth.abs() / scale),
+            [_, area, depths @ ..] => (area.abs() / at.stick_area).max(largest(depths)),
             _ => 0.0,
         };
         Self {
@@ -183,6 +183,7 @@ impl Newton {
             slip_area: at.slip_area,
             stick_area: 0.0,
             stick_depth: 0.0,
+            slip_compression: 0.0,
         };
         self.outdate();
         if equations.evaluate(&unknowns) {

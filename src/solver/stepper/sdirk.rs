@@ -8,6 +8,9 @@ use super::{Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::solver::model::{Model, State, StickTrial};
 
+/// Change of the squared radius of stick, relative, to the side to which it was not taken to move, that a step in which it turns may make.
+const TURNING: f64 = 1e-5;
+
 /// Singly diagonally implicit Runge-Kutta method of Alexander, whether the edge of stick rests or moves.
 ///
 /// On an ordinary differential equation it is of order 3 with an estimate of order 2. Here the contact edge obeys a constraint whose
@@ -46,7 +49,18 @@ impl Stepper for Sdirk {
         Ok(match &state.stick {
             None => step(RestingContact::new(model, state, *tolerance, newton, tried), cycles),
             Some(stick) => {
-                step(MovingContact::new(model, state, stick, *tolerance, newton, stick_trial), cycles)
+                let mut towards = |outwards: bool| {
+                    newton.outdate();
+                    let contact =
+                        MovingContact::new(model, state, stick, *tolerance, newton, stick_trial, outwards);
+                    step(contact, cycles)
+                };
+                let outwards = model.goes_outwards(stick);
+                let first = towards(outwards);
+                if !model.turns() || went(&first, stick.area, outwards).is_ok() {
+                    return Ok(first);
+                }
+                turned(first, towards(!outwards), stick.area, outwards)
             }
         })
     }
@@ -57,6 +71,30 @@ impl Stepper for Sdirk {
 
     fn estimate_order(&self) -> f64 {
         3.0
+    }
+}
+
+/// Whether an edge of stick went to the side to which it was taken to move; else by how much it went to the other, m².
+fn went(trial: &Trial, area: f64, outwards: bool) -> std::result::Result<(), f64> {
+    let now = trial.state.as_ref().and_then(|state| state.stick.as_ref()).map(|stick| stick.area);
+    match now {
+        Some(now) if (now >= area) == outwards => Ok(()),
+        Some(now) => Err((now - area).abs()),
+        None => Err(f64::INFINITY),
+    }
+}
+
+/// Of two steps, the first with the edge of stick taken to move to the side it went before, the one in which it went as was taken; or the first, if it
+/// turns just before its end.
+fn turned(first: Trial, second: Trial, area: f64, outwards: bool) -> Trial {
+    let rate_evaluations = first.rate_evaluations + second.rate_evaluations;
+    let back = went(&first, area, outwards).err().unwrap_or_default();
+    if went(&second, area, !outwards).is_ok() {
+        Trial { rate_evaluations, ..second }
+    } else if back <= TURNING * area {
+        Trial { rate_evaluations, ..first }
+    } else {
+        Trial::failed(rate_evaluations)
     }
 }
 

@@ -3,10 +3,14 @@
 use super::StickEdge;
 use crate::error::Result;
 use crate::numerics::roots::bracketed;
+use crate::solver::model::schedule::{AmplitudeControl, CycleLoading};
 use crate::solver::model::{Model, Past, State, StickZone};
 
 /// Steps of the integrals over the ground that comes to rest, or that leaves it, in a jump of the edge of stick.
 const JUMP_STEPS: usize = 1000;
+
+/// Of how many of these places one is kept for the cubics of an edge that may turn.
+const SMOOTHED: usize = 25;
 
 /// Squared radii and compressions that differ by less than this part are the same by two ways.
 const SAME_PLACE: f64 = 1e-12;
@@ -18,6 +22,8 @@ struct Ground<'a> {
     stick_area: f64,
     /// `Z`, m².
     slip_area: f64,
+    /// `d`, m.
+    indentation: f64,
     /// Compressions at the springs, the contact edge included, m.
     compression: Vec<f64>,
     /// That at the edge of stick, m.
@@ -29,7 +35,12 @@ impl Ground<'_> {
     /// By how much wear has raised the equivalent profile at a squared radius, m.
     fn raised(&self, squared: f64) -> f64 {
         if squared < self.stick_area {
-            return self.stick.raised_at_rest(squared);
+            let jumps = self.model.moving.as_ref().is_some_and(|moving| moving.jumps);
+            return if jumps {
+                self.stick.raised_at_rest(squared)
+            } else {
+                self.stick.ground_at_rest(squared)[0]
+            };
         }
         let (nodes, model) = (&self.model.operators.abel.nodes()[1..], self.model);
         let compression = match (squared - self.stick_area) / self.slip_area {
@@ -39,13 +50,13 @@ impl Ground<'_> {
             }
             x => model.between_springs(&self.compression, x),
         };
-        model.contact.indentation() - compression - model.contact.equivalent_profile().value(squared.sqrt())
+        self.indentation - compression - model.contact.equivalent_profile().value(squared.sqrt())
     }
 
     /// Compression at a squared radius, m.
     fn compression(&self, squared: f64) -> f64 {
         let unworn = self.model.contact.equivalent_profile().value(squared.sqrt());
-        self.model.contact.indentation() - unworn - self.raised(squared)
+        self.indentation - unworn - self.raised(squared)
     }
 }
 
@@ -74,10 +85,17 @@ impl Model {
     /// [`Error::NotConverged`](crate::Error::NotConverged) if no spring has the compression at which stick would end.
     pub fn begin_block(&self, state: State) -> Result<State> {
         let (Some(moving), Some(stick)) = (&self.moving, &state.stick) else { return Ok(state) };
+        if !moving.jumps && !moving.in_blocks {
+            return Ok(state);
+        }
         let loading = self.schedule.loading(state.cycles, state.cycles);
-        let compression = loading.slip_compression(self.contact.half_space().stiffness_ratio());
-        let before = self.contact.indentation() - stick.depth;
-        if !moving.jumps || (compression / before - 1.0).abs() < SAME_PLACE {
+        let loading = self.after_energy(loading, state.dissipated_energy);
+        let indentation = self.indentation(&state);
+        let before = indentation - stick.depth;
+        let ratio = self.contact.half_space().stiffness_ratio();
+        let driven =
+            (loading.control == AmplitudeControl::Displacement).then(|| loading.slip_compression(ratio));
+        if driven.is_some_and(|compression| (compression / before - 1.0).abs() < SAME_PLACE) {
             return Ok(state);
         }
         let profile = self.contact.equivalent_profile();
@@ -85,10 +103,21 @@ impl Model {
         let mut on_springs = state.compression.clone();
         on_springs.push(0.0);
         let (old, slip_area) = (stick.area, state.slip_area);
-        let ground =
-            Ground { model: self, stick_area: old, slip_area, compression: on_springs, before, stick };
-        let excess = |squared: f64| ground.compression(squared) - compression;
+        let ground = Ground {
+            model: self,
+            stick_area: old,
+            slip_area,
+            indentation,
+            compression: on_springs,
+            before,
+            stick,
+        };
         let [least, most] = [self.stick_zone.stick_area, old + slip_area];
+        let compression = match driven {
+            Some(compression) => compression,
+            None => ground.compression(self.edge_in_balance(&ground, &loading, [least, most], &state)?),
+        };
+        let excess = |squared: f64| ground.compression(squared) - compression;
         let new = match compression {
             _ if compression < before => bracketed(excess, old, most, 0.0)?,
             _ if excess(least) <= 0.0 => least,
@@ -124,8 +153,11 @@ impl Model {
         }
         if new > old {
             let known = usize::from(!places_at_rest.is_empty());
-            places_at_rest.extend(&places[known..]);
-            raised_at_rest.extend(&raised[known..]);
+            // Cubics through all of them would show the swings between springs.
+            let every = if moving.jumps { 1 } else { SMOOTHED };
+            let kept = |values: &[f64]| values.iter().copied().step_by(every).skip(known).collect::<Vec<_>>();
+            places_at_rest.extend(kept(&places));
+            raised_at_rest.extend(kept(&raised));
         } else {
             let kept = places_at_rest.partition_point(|place| *place < new * (1.0 - SAME_PLACE));
             places_at_rest.truncate(kept);
@@ -155,7 +187,7 @@ impl Model {
         let off = self.mismatch_at(&next, slip_area, |i, _| slip[i]) - behind;
         left_behind.iter_mut().for_each(|value| *value += off);
         let moved = self.compression_at(&next, slip_area, |i, _| slip[i]);
-        Ok(State {
+        let next = State {
             slip_area,
             compression_rate: vec![0.0; moved.len()],
             compression: moved,
@@ -163,15 +195,50 @@ impl Model {
             past: Past::default(),
             stick: Some(StickEdge {
                 area: new,
-                depth: self.contact.indentation() - compression,
+                depth: indentation - compression,
                 load,
                 left_behind,
                 wear_depth: stick.wear_depth.clone(),
                 places_at_rest,
                 raised_at_rest,
-                rates: [0.0; 2],
+                slip_compression: if moving.keeps { compression } else { 0.0 },
+                rates: [0.0; 3],
             }),
             ..state
-        })
+        };
+        Ok(if moving.in_blocks { self.close_force(next) } else { next })
+    }
+
+    /// Squared radius, m², at which stick ends where a balance of tangential forces begins anew on the profile as it is: the load within, beyond that of
+    /// the compression at the edge, is what the balance leaves of the normal force. As [`Model::bearing`] it follows the height of the edge.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`](crate::Error::NotConverged) if there is no such place within the contact.
+    fn edge_in_balance(
+        &self,
+        ground: &Ground,
+        loading: &CycleLoading,
+        [least, most]: [f64; 2],
+        state: &State,
+    ) -> Result<f64> {
+        let exponent = 1.0 + self.contact.half_space().grading();
+        let old = ground.stick_area;
+        let of_edge = |squared: f64, compression: f64| compression * squared.powf(0.5 * exponent) / exponent;
+        let normal = self.normal_force(&self.fields(state));
+        let excess = |squared: f64| {
+            let cells = |i: usize| old + (squared - old) * (i as f64 / JUMP_STEPS as f64).powi(4);
+            let mut borne = ground.stick.load - of_edge(old, ground.before);
+            let (mut place, mut compression) = (old, ground.before);
+            for i in 1..=JUMP_STEPS {
+                let (next, at_next) = (cells(i), ground.compression(cells(i)));
+                borne += (compression - at_next) * of_edge(0.5 * (place + next), 1.0);
+                (place, compression) = (next, at_next);
+            }
+            borne - self.bearing_of(loading, normal, compression)
+        };
+        if excess(least) >= 0.0 {
+            return Ok(least);
+        }
+        bracketed(excess, least, most, 0.0)
     }
 }

@@ -24,6 +24,10 @@ pub struct StickTarget {
     pub stick: StickEdge,
     /// `q_c`, m.
     pub slip_compression: f64,
+    /// See [`Model::bearing`].
+    pub bearing: f64,
+    /// Whether the edge is taken to move outwards, over worn ground.
+    pub outwards: bool,
     /// Energy that friction has dissipated, J, without that of this stage.
     pub energy: f64,
 }
@@ -77,11 +81,22 @@ impl StickStage<'_> {
         (self.moving.cause == Cause::Friction && !self.moving.jumps).then(|| self.driven_slip_compression())
     }
 
+    /// Scales the compressions of a guess to that at the edge of stick, which is as well known where friction changes under a held normal force.
+    pub fn scale(&self, at: &mut Unknowns) {
+        if !self.moving.keeps || matches!(self.moving.cause, Cause::TwoBalances(_)) {
+            return;
+        }
+        let known = self.driven_slip_compression();
+        let factor = known / at.slip_compression;
+        at.compression.iter_mut().for_each(|q| *q *= factor);
+        at.slip_compression = known;
+    }
+
     /// Rounding of an edge of stick that recedes, over the distance of the first spring from it: slip there is known no better.
     pub fn rounding(&self) -> f64 {
         let target = &self.target;
         let first = target.springs.slip_area * self.model.operators.abel.nodes()[1];
-        if self.moving.recedes() { f64::EPSILON * target.stick.area / first } else { 0.0 }
+        if self.recedes() { f64::EPSILON * target.stick.area / first } else { 0.0 }
     }
 
     /// By how much rounding of the indentation is magnified in the place of an edge that moves outwards: next to the axis profiles are flat.
@@ -116,13 +131,17 @@ impl StickStage<'_> {
         let stick_edge = self.at_stick_edge(at, &passed, trial);
         let depth = self.balance(at, &passed, &loading, trial);
         trial.residual.extend([contact_edge, stick_edge, depth]);
+        if let Some(tangential) = self.tangential_balance(at, &loading, trial) {
+            trial.residual.push(tangential);
+        }
         trial.residual.iter().all(|value| value.is_finite())
     }
 
     /// Newton's matrix: columns the compressions, contact edge, stick edge and depth. None if a state next to this one is none of a contact.
     pub fn matrix(&self, at: &Unknowns, trial: &StickTrial) -> Option<Mat<f64>> {
         let n = self.model.springs();
-        let mut matrix = Mat::zeros(n + 2, n + 2);
+        let size = trial.residual.len();
+        let mut matrix = Mat::zeros(size, size);
         self.fill_by_compressions(at, trial, &mut matrix);
         let step = self.difference() * at.slip_area;
         let moved = Unknowns { slip_area: at.slip_area + step, ..at.clone() };
@@ -143,6 +162,11 @@ impl StickStage<'_> {
                 self.fill_by_difference(n + 1, step, &moved, trial, &mut matrix)?;
             }
         }
+        if size > n + 2 {
+            let step = self.difference() * trial.stick_zone.slip_compression;
+            let moved = Unknowns { slip_compression: at.slip_compression + step, ..at.clone() };
+            self.fill_by_difference(n + 2, step, &moved, trial, &mut matrix)?;
+        }
         Some(matrix)
     }
 
@@ -153,7 +177,7 @@ impl StickStage<'_> {
         let per_step = target.springs.step.recip();
         let (area, q) = (at.stick_area, trial.stick_zone.slip_compression);
         let (mut left_behind, mut wear_depth) = (vec![], vec![]);
-        if self.moving.outwards {
+        if self.moving.leaves_ground() {
             let uniform = |squared: f64| model.unworn.at_stick(area, q, squared - area).limit_slip / q;
             let kept = |squared| -per_step * (passed.risen - passed.unworn_rise) * uniform(squared);
             left_behind = self.moving.stations().map(kept).collect();
@@ -192,6 +216,7 @@ impl StickStage<'_> {
         match self.moving.cause {
             Cause::Tangential => self.model.contact.indentation() - at.stick_depth,
             Cause::Sliding(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => at.stick_depth,
+            Cause::TwoBalances(_) => at.slip_compression,
             _ => self.driven_slip_compression(),
         }
     }
@@ -205,7 +230,7 @@ impl StickStage<'_> {
     fn loading(&self, at: &Unknowns) -> CycleLoading {
         let loading = self.target.springs.loading.clone();
         match self.moving.cause {
-            Cause::Tangential | Cause::BothForces(_) | Cause::ReleasedForces(_) => {
+            Cause::Tangential | Cause::BothForces(_) | Cause::ReleasedForces(_) | Cause::TwoBalances(_) => {
                 self.model.displaced(loading, self.slip_compression(at))
             }
             _ => loading,
@@ -222,9 +247,20 @@ impl StickStage<'_> {
         let radius = at.stick_area.sqrt();
         let slope = self.model.contact.equivalent_profile().derivative(radius);
         let unworn_rise = 0.5 * slope / radius * area;
-        // Inwards the profile met is the unworn one; next to the edge any difference would count by the inverse of the distance.
-        let risen = if self.moving.recedes() { unworn_rise } else { risen };
+        // Inwards the profile met is the one at rest; next to the edge any difference would count by the inverse of the distance.
+        let met = || unworn_rise + stick.ground_at_rest(at.stick_area)[1] * area;
+        let risen = if self.recedes() { met() } else { risen };
         Passed { area, risen, unworn_rise }
+    }
+
+    /// Whether the edge is taken to move inwards, over ground at rest.
+    fn recedes(&self) -> bool {
+        !self.target.outwards && !self.moving.rests()
+    }
+
+    /// See [`Model::bearing`].
+    pub fn bearing(&self, at: &Unknowns) -> f64 {
+        self.model.bearing_under(&self.target.springs.loading, at.slip_compression)
     }
 
     /// Where the mesh begins: the load grows by that of the ground passed, and with `q_c` on all of the stick zone where a normal force is held.
@@ -238,7 +274,7 @@ impl StickStage<'_> {
                 + (slip_compression - target.slip_compression) * radius.powf(exponent) / exponent
         } else {
             let deeper = match self.moving.cause {
-                Cause::NormalForce(_) | Cause::ReleasedForces(_) => {
+                Cause::NormalForce(_) | Cause::ReleasedForces(_) | Cause::TwoBalances(_) => {
                     passed.risen + slip_compression - target.slip_compression
                 }
                 _ => 0.0,
@@ -284,7 +320,7 @@ impl StickStage<'_> {
 
     /// `ξ ∂/∂ξ` at the inner springs. Where an edge recedes, leaning to where the ground comes from: else what springs next to it are off by grows.
     fn along_annulus(&self, values: &[f64], motion: &[f64]) -> Vec<f64> {
-        if !self.moving.recedes() {
+        if !self.recedes() {
             return self.model.along_annulus(values);
         }
         let operators = &self.model.operators;
@@ -304,7 +340,7 @@ impl StickStage<'_> {
 
     /// `K` at the contact edge, m, at the end of the stage.
     fn left_behind(&self, at: &Unknowns, passed: &Passed, stick_zone: &StickZone) -> f64 {
-        if !self.moving.outwards {
+        if !self.moving.leaves_ground() {
             return 0.0;
         }
         let q = stick_zone.slip_compression;
@@ -319,7 +355,7 @@ impl StickStage<'_> {
         if self.moving.rests() {
             return at.stick_area / self.target.stick.area - 1.0;
         }
-        if self.moving.outwards {
+        if self.target.outwards {
             let slope = self.extrapolated(|i| (-trial.fields.log_slip[i]).exp());
             return (passed.unworn_rise - passed.risen * slope) / q;
         }
@@ -328,7 +364,8 @@ impl StickStage<'_> {
             let radius = held_stick_radius(contact, force, &self.target.springs.loading);
             return radius.map_or(f64::NAN, |radius| at.stick_area / (radius * radius) - 1.0);
         }
-        (contact.equivalent_profile().value(at.stick_area.sqrt()) - at.stick_depth) / q
+        let met = contact.equivalent_profile().value(at.stick_area.sqrt());
+        (met + self.target.stick.ground_at_rest(at.stick_area)[0] - at.stick_depth) / q
     }
 
     /// What decides the height of the profile there: friction, or a balance of forces.
@@ -340,13 +377,34 @@ impl StickStage<'_> {
             Cause::NormalForce(force)
             | Cause::Sliding(force)
             | Cause::BothForces(force)
-            | Cause::ReleasedForces(force) => model.normal_force(&trial.fields) / force - 1.0,
-            Cause::Tangential => {
-                let force = model.force(loading, &at.compression, &trial.fields, loading.amplitude);
-                let asked = &self.target.springs.loading;
-                asked.excess(force, loading.amplitude) / asked.asked()
-            }
+            | Cause::ReleasedForces(force)
+            | Cause::TwoBalances(force) => model.normal_force(&trial.fields) / force - 1.0,
+            Cause::Tangential => self.excess(at, loading, trial),
         }
+    }
+
+    /// What is left of the balance of tangential forces, relative.
+    fn excess(&self, at: &Unknowns, loading: &CycleLoading, trial: &StickTrial) -> f64 {
+        let force = self.model.force(loading, &at.compression, &trial.fields, loading.amplitude);
+        let asked = &self.target.springs.loading;
+        asked.excess(force, loading.amplitude) / asked.asked()
+    }
+
+    /// The balance of tangential forces beside a normal one: under Coulomb's law by the rise of the profile at the edge that it asks for, which the
+    /// quadrature over the springs leaves alone; none where there is no such balance.
+    fn tangential_balance(&self, at: &Unknowns, loading: &CycleLoading, trial: &StickTrial) -> Option<f64> {
+        let Cause::TwoBalances(_) = self.moving.cause else { return None };
+        if loading.friction.coefficient().is_none() {
+            return Some(self.excess(at, loading, trial));
+        }
+        let exponent = 1.0 + self.model.contact.half_space().grading();
+        let gained = self.bearing(at) - self.target.bearing;
+        let rise = exponent * gained / at.stick_area.powf(0.5 * exponent);
+        // How much more of it the spring of a rig asks for where the compression grows.
+        let more = exponent * self.model.bearing_slope(&self.target.springs.loading)
+            / at.stick_area.powf(0.5 * exponent);
+        let scale = (1.0 + more) * trial.stick_zone.slip_compression;
+        Some((at.stick_depth - self.target.stick.depth - rise) / scale)
     }
 
     /// A quantity at the edge of stick, by the parabola through the first three springs.
@@ -382,12 +440,43 @@ impl StickStage<'_> {
             }
             matrix[(inner, j)] =
                 slopes[inner] * fields.slip_depth[inner] / (fields.slip_depth[inner] - behind);
-            if self.moving.outwards && !self.moving.jumps {
+            if self.target.outwards && !self.moving.jumps {
                 let slope = self.extrapolated(|i| (-fields.log_slip[i]).exp() * slopes[i]);
                 matrix[(n, j)] = passed.risen * slope / trial.stick_zone.slip_compression;
             }
             matrix[(n + 1, j)] = self.balance_by_compression(j, at.compression[j], &loading, trial);
+            if let Cause::TwoBalances(_) = self.moving.cause
+                && loading.friction.coefficient().is_none()
+            {
+                matrix[(n + 2, j)] = self.excess_by_compression(j, at.compression[j], &loading, trial);
+            }
         }
+    }
+
+    /// What presses on a spring, N, over its compression, m.
+    fn weight(&self, spring: usize, trial: &StickTrial) -> f64 {
+        self.model.contact.half_space().normal_stiffness()
+            * trial.fields.slip_area
+            * self.model.operators.abel.spring_sum()[spring]
+            * trial.fields.density_factor[spring]
+    }
+
+    fn excess_by_compression(
+        &self,
+        spring: usize,
+        q: f64,
+        loading: &CycleLoading,
+        trial: &StickTrial,
+    ) -> f64 {
+        let strength = |q: f64| loading.friction.kinetic_strength(q);
+        if strength(q) >= self.model.contact.half_space().stiffness_ratio() * loading.amplitude {
+            return 0.0;
+        }
+        let step = DIFFERENCE * trial.stick_zone.slip_compression;
+        let slope = (strength(q + step) - strength(q)) / step;
+        let asked = &self.target.springs.loading;
+        let [by_force, _] = asked.control.factors();
+        by_force * self.weight(spring, trial) * slope / asked.asked()
     }
 
     fn balance_by_compression(
@@ -397,33 +486,20 @@ impl StickStage<'_> {
         loading: &CycleLoading,
         trial: &StickTrial,
     ) -> f64 {
-        let half_space = self.model.contact.half_space();
-        let weight = half_space.normal_stiffness()
-            * trial.fields.slip_area
-            * self.model.operators.abel.spring_sum()[spring]
-            * trial.fields.density_factor[spring];
+        let weight = self.weight(spring, trial);
         match self.moving.cause {
             Cause::Friction => 0.0,
             Cause::NormalForce(force)
             | Cause::Sliding(force)
             | Cause::BothForces(force)
-            | Cause::ReleasedForces(force) => weight / force,
-            Cause::Tangential => {
-                let strength = |q: f64| loading.friction.kinetic_strength(q);
-                if strength(q) >= half_space.stiffness_ratio() * loading.amplitude {
-                    return 0.0;
-                }
-                let step = DIFFERENCE * trial.stick_zone.slip_compression;
-                let slope = (strength(q + step) - strength(q)) / step;
-                let asked = &self.target.springs.loading;
-                let [by_force, _] = asked.control.factors();
-                by_force * weight * slope / asked.asked()
-            }
+            | Cause::ReleasedForces(force)
+            | Cause::TwoBalances(force) => weight / force,
+            Cause::Tangential => self.excess_by_compression(spring, q, loading, trial),
         }
     }
 
     fn difference(&self) -> f64 {
-        let most = if self.moving.recedes() { OF_FIRST_SPRING } else { f64::INFINITY };
+        let most = if self.recedes() { OF_FIRST_SPRING } else { f64::INFINITY };
         DIFFERENCE.min(most * self.model.operators.abel.nodes()[1])
     }
 

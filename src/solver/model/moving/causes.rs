@@ -1,0 +1,214 @@
+//! What moves the edge of stick, and where it is not followed.
+
+use super::{Cause, MovingStick, follows_held_force};
+use crate::contact::InitialContact;
+use crate::error::{Error, Result};
+use crate::laws::conditions::Conditions;
+use crate::laws::history::History;
+use crate::laws::loading::TangentialControl;
+use crate::solver::model::schedule::{CycleLoading, Schedule};
+
+/// Compressions that differ by less than this part are equal but for rounding.
+const SAME_COMPRESSION: f64 = 1e-9;
+
+impl MovingStick {
+    /// How the edge of stick moves under a schedule; none if it stays, or if the mesh from where it is innermost serves.
+    ///
+    /// # Arguments
+    /// * `slides` -- whether no stick is left in some cycle
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] for friction that changes under normal oscillation; for blocks of other indentations of which the last slips less far than
+    /// others before; for pauses under a held normal force.
+    pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
+        let conditions = schedule.conditions();
+        let force = contact.normal_force();
+        let follows = follows_held_force(schedule, contact)?;
+        let by_energy = *schedule.friction_along_energy() != History::Constant;
+        if by_energy {
+            check_along_energy(schedule, slides && !follows)?;
+        }
+        let in_blocks = !conditions.blocks.is_empty();
+        if slides && !follows {
+            if conditions.holds_normal_force {
+                check_sliding_under_force(conditions, contact)?;
+            }
+            let sliding = conditions.holds_normal_force && !in_blocks;
+            return Ok(sliding.then_some(Self::by(Cause::Sliding(force))));
+        }
+        let [falls, rises] = schedule.friction_change().directions();
+        let coulomb = conditions.friction.coefficient().is_some();
+        if in_blocks && conditions.holds_normal_force {
+            check_blocks_under_force(conditions)?;
+        }
+        let moving = match (conditions.holds_normal_force, conditions.tangential_control) {
+            (true, TangentialControl::Displacement) => Self {
+                outwards: rises || !falls,
+                turns: falls || in_blocks,
+                in_blocks,
+                keeps: falls || in_blocks || by_energy,
+                ..Self::by(Cause::NormalForce(force))
+            },
+            (true, TangentialControl::Force) if coulomb && !rises && !in_blocks => {
+                Self::by(if falls { Cause::ReleasedForces(force) } else { Cause::BothForces(force) })
+            }
+            (true, _) => {
+                let cause = Cause::TwoBalances(force);
+                Self {
+                    keeps: true,
+                    outwards: rises || !falls,
+                    turns: falls || !coulomb || in_blocks,
+                    in_blocks,
+                    ..Self::by(cause)
+                }
+            }
+            (false, TangentialControl::Displacement) => return Self::by_friction(schedule, contact),
+            (false, _) if !follows => return Ok(None),
+            (false, _) => {
+                Self { outwards: rises, turns: rises || in_blocks, in_blocks, ..Self::by(Cause::Tangential) }
+            }
+        };
+        Ok(Some(moving))
+    }
+
+    fn by(cause: Cause) -> Self {
+        Self {
+            cause,
+            outwards: false,
+            jumps: false,
+            turns: false,
+            in_blocks: false,
+            keeps: false,
+            span: [0.0; 2],
+        }
+    }
+
+    /// How friction or blocks move it at the indentation that is held.
+    fn by_friction(schedule: &Schedule, contact: &InitialContact) -> Result<Option<Self>> {
+        let conditions = schedule.conditions();
+        let changes = *schedule.friction_change() != History::Constant;
+        let [falls, rises] = schedule.friction_change().directions();
+        let blocks = &conditions.blocks;
+        let amplitudes = || blocks.iter().map(|block| block.amplitude_factor);
+        let by = Self::by(Cause::Friction);
+        if blocks.is_empty() && changes && schedule.lifts() {
+            return Err(Error::Inconsistent {
+                what: "friction.history",
+                why: "is not followed where the indentation changes within a period: springs that are loaded for a part of it would be \
+                      worn too deep at an edge of stick that moves; leave out the history, or the normal oscillation"
+                    .into(),
+            });
+        }
+        let level =
+            at_one_indentation(conditions) && amplitudes().all(|factor| factor > 0.0) && !schedule.lifts();
+        let turning = Self { outwards: !falls, turns: true, in_blocks: !blocks.is_empty(), ..by.clone() };
+        if *schedule.friction_along_energy() != History::Constant && !blocks.is_empty() && level {
+            return Ok(Some(turning));
+        }
+        if !blocks.is_empty() || falls && rises {
+            let shrink = amplitudes().zip(amplitudes().skip(1)).any(|(one, next)| next < one)
+                && amplitudes().all(|factor| factor <= blocks[0].amplitude_factor);
+            if level && shrink && !changes && !conditions.repeat {
+                return Ok(Some(Self { outwards: true, jumps: true, ..by }));
+            }
+            return match check_rest(schedule, contact) {
+                Ok(()) => Ok(None),
+                Err(_) if level => Ok(Some(turning)),
+                Err(error) => Err(error),
+            };
+        }
+        Ok(changes.then_some(Self { outwards: rises, ..by }))
+    }
+}
+
+/// Whether blocks differ by their amplitudes alone.
+fn at_one_indentation(conditions: &Conditions) -> bool {
+    conditions.blocks.iter().all(|block| block.indentation_factor == 1.0)
+}
+
+/// Refuses an edge of stick that comes to rest on worn ground within the mesh: errors of the springs next to it grow with slip and move it inwards.
+/// Worn volumes were 0.4 to 8 % off with any number of springs.
+fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
+    let ratio = contact.half_space().stiffness_ratio();
+    let largest = |loadings: &mut dyn Iterator<Item = CycleLoading>| {
+        loadings.map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
+    };
+    let [last, most] = [largest(&mut schedule.lasting()), largest(&mut schedule.extremes())];
+    if last >= most * (1.0 - SAME_COMPRESSION) {
+        return Ok(());
+    }
+    let part = last / most;
+    let in_the_end = format!(
+        "in the end springs slip below {part:.4} of the largest compression at which they slipped before, so that the edge of stick comes to rest \
+         within worn ground, which is not followed to any accuracy"
+    );
+    let (what, cure) = if schedule.conditions().blocks.is_empty() {
+        ("friction.history", "let the factors only fall, only rise, or end at their smallest")
+    } else {
+        (
+            "loading.blocks",
+            "repeat them, end with the one that slips farthest, or begin with it and let only positive amplitude factors differ",
+        )
+    };
+    Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
+}
+
+/// Refuses a contact that slides as a whole in some cycles only under a held normal force, where blocks or a rig decide which.
+fn check_sliding_under_force(conditions: &Conditions, contact: &InitialContact) -> Result<()> {
+    let beside = match conditions.tangential_control {
+        TangentialControl::Displacement if conditions.blocks.is_empty() => return Ok(()),
+        TangentialControl::Displacement => "loading.blocks",
+        _ => "loading.tangential_control or loading.rig_stiffness",
+    };
+    Err(Error::Inconsistent {
+        what: "loading.normal_force",
+        why: format!(
+            "is held, and at an amplitude of {:e} m the contact slides as a whole in some cycles, but not in all; beside {beside} that is not followed; \
+             change the amplitude, or hold the indentation",
+            contact.amplitude()
+        ),
+    })
+}
+
+/// Refuses blocks under a held normal force between which the edge of stick has no place on the profile as it is.
+fn check_blocks_under_force(conditions: &Conditions) -> Result<()> {
+    let balanced = conditions.tangential_control != TangentialControl::Displacement;
+    let (what, why) = if conditions.blocks.iter().any(|block| block.amplitude_factor <= 0.0) {
+        (
+            "loading.blocks",
+            "has a pause, in which a contact under a held normal force has no edge of stick; leave it out",
+        )
+    } else if balanced && conditions.friction.coefficient().is_none() {
+        (
+            "loading.blocks",
+            "is followed beside two balances of forces under Coulomb's friction only; take friction.coulomb, or hold the indentation",
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Error::Inconsistent { what, why: why.into() })
+}
+
+/// Refuses what is not followed while friction changes with the energy that it dissipates.
+fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
+    let conditions = schedule.conditions();
+    let beside = [
+        (conditions.friction_history != History::Constant, "friction.history", "leave it out"),
+        (
+            !at_one_indentation(conditions),
+            "loading.blocks of other indentations",
+            "let only amplitude factors differ",
+        ),
+        (schedule.lifts(), "an indentation that changes within a period", "leave out the normal oscillation"),
+        (slides, "an amplitude at which the contact slides as a whole", "reduce the amplitude"),
+    ];
+    match beside.iter().find(|(is_there, ..)| *is_there) {
+        None => Ok(()),
+        Some((_, what, cure)) => Err(Error::Inconsistent {
+            what: "friction",
+            why: format!(
+                "changes with the energy that it dissipates, and so does the edge of stick; that is not followed beside {what}; {cure}"
+            ),
+        }),
+    }
+}

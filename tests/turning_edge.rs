@@ -1,0 +1,173 @@
+//! Edges of stick that creep, turn and jump over worn ground: both forces held, a rig beside a held normal force, friction that rises and falls, blocks.
+
+use std::f64::consts::PI;
+use std::str::FromStr;
+
+use fretwear::scene::Scene;
+use fretwear::{Results, Simulation};
+
+const PER_ENERGY: f64 = 3.334e-13;
+const COULOMB: &str = "[friction.coulomb]\ncoefficient = 0.5";
+const NORMAL: &str = "normal_force = 266.6666666666667";
+const PRESSED: &str = "indentation = 1e-6";
+const FORCE: &str = "tangential_control = \"force\"";
+const RIG: &str = "rig_stiffness = 3e8";
+const GROWING: &str = "[[loading.blocks]]\ntau = 0.3\namplitude_factor = 0.7\n[[loading.blocks]]\ntau = 1";
+const SHRINKING: &str = "[[loading.blocks]]\ntau = 0.3\n[[loading.blocks]]\ntau = 1\namplitude_factor = 0.7";
+const REPEATED: &str = "[[loading.blocks]]\ntau = 0.3\namplitude_factor = 0.7\n[[loading.blocks]]\ntau = 0.3";
+
+fn history(factor: f64) -> String {
+    format!("{COULOMB}\n[friction.history]\nfinal_factor = {factor}\ntau = 1")
+}
+
+fn table(factors: &str) -> String {
+    format!("{COULOMB}\n[friction.history]\nfactors = {factors}\nat_tau = [0, 0.6, 1.2]")
+}
+
+fn by_energy(last: f64) -> String {
+    format!(
+        "[friction.wear-dependent]\nfirst_coefficient = 0.5\nlast_coefficient = {last}\nenergy_density = 1e3"
+    )
+}
+
+/// A paraboloid of 1 m radius that is pressed by 1 µm at first.
+fn scene(load: &str, control: &str, friction: &str, blocks: &str, duration: &str, numerics: &str) -> Scene {
+    Scene::from_str(&format!(
+        "[indenter.paraboloid]\nradius = 1.0\n\
+         [half_space]\ngrading = 0\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666667\n\
+         {friction}\n[wear.dissipated-energy]\ncoefficient = {PER_ENERGY}\n\
+         [loading]\n{load}\nstick_ratio = 0.7\n{control}\n{duration}\n{blocks}\n[numerics]\n{numerics}\n[output]\nsnapshots = 4\n"
+    ))
+    .unwrap()
+}
+
+fn run(scene: &Scene) -> Results {
+    Simulation::new(scene).unwrap().run().unwrap()
+}
+
+fn on(springs: usize) -> String {
+    format!("springs = {springs}\ntolerance = 1e-5")
+}
+
+/// `2π ∫ w r dr` by trapezoids over the profile.
+fn volume_of_profile(results: &Results) -> f64 {
+    let (radius, depth) = (results.radius(), &results.last().wear_depth);
+    let cells = radius.windows(2).zip(depth.windows(2));
+    cells.map(|(r, w)| 0.5 * PI * (w[0] + w[1]) * (r[1] * r[1] - r[0] * r[0])).sum()
+}
+
+#[test]
+fn volumes_converge_over_springs_and_are_those_of_profile_and_energy() {
+    let force_repeated = format!("{FORCE}\nrepeat = true");
+    let rig_repeated = format!("{RIG}\nrepeat = true");
+    let load_dependent =
+        |exponent: f64| format!("[friction.load-dependent]\ncoefficient = 0.5\nexponent = {exponent}");
+    let mut cases: Vec<(&str, &str, String, &str)> = vec![
+        (NORMAL, FORCE, load_dependent(-0.2), ""),
+        (NORMAL, FORCE, load_dependent(0.2), ""),
+        (PRESSED, "", table("[1.0, 1.4, 1.2]"), ""),
+        (PRESSED, "", table("[1.0, 0.8, 1.1]"), ""),
+        (NORMAL, "", table("[1.0, 1.3, 0.9]"), ""),
+        (PRESSED, "", by_energy(0.6), GROWING),
+        (PRESSED, "", by_energy(0.4), SHRINKING),
+        (PRESSED, "repeat = true", by_energy(0.6), REPEATED),
+        (PRESSED, "", history(1.2), GROWING),
+        (PRESSED, "", history(0.8), SHRINKING),
+        (PRESSED, "repeat = true", history(1.2), REPEATED),
+        (NORMAL, "repeat = true", COULOMB.into(), REPEATED),
+        (NORMAL, &force_repeated, COULOMB.into(), REPEATED),
+        (NORMAL, &rig_repeated, COULOMB.into(), REPEATED),
+        (PRESSED, &force_repeated, COULOMB.into(), REPEATED),
+        (NORMAL, RIG, COULOMB.into(), ""),
+    ];
+    for (load, control) in [(NORMAL, ""), (NORMAL, FORCE), (NORMAL, RIG), (PRESSED, FORCE)] {
+        for friction in [history(1.2), history(0.8), by_energy(0.6), by_energy(0.4)] {
+            cases.push((load, control, friction, ""));
+        }
+        for blocks in [GROWING, SHRINKING] {
+            cases.push((load, control, COULOMB.into(), blocks));
+        }
+    }
+    for (load, control, friction, blocks) in &cases {
+        let at = |springs: usize| {
+            let results = run(&scene(load, control, friction, blocks, "tau = 1.5", &on(springs)));
+            let last = results.last();
+            let energy = PER_ENERGY * last.dissipated_energy / last.wear_volume - 1.0;
+            let profile = volume_of_profile(&results) / last.wear_volume - 1.0;
+            (last.wear_volume, energy, profile)
+        };
+        // On 240 springs steps of two of the blocks under a held normal force come to no end.
+        let springs = if *load == NORMAL && !blocks.is_empty() { [30, 120] } else { [60, 240] };
+        let [few, many] = springs.map(at);
+        let off = few.0 / many.0 - 1.0;
+        println!(
+            "{off:.1e}, energy {:.1e}, profile {:.1e}: {load} {control} {friction} {blocks}",
+            many.1, many.2
+        );
+        assert!(off.abs() < 1e-3, "{load} {control} {friction} {blocks}: {off:e}");
+        let balance = if friction.contains("load-dependent") { 0.0 } else { many.1 };
+        assert!(
+            balance.abs() < 1e-3 && many.2.abs() < 2e-2,
+            "{load} {control} {friction} {blocks}: {many:?}"
+        );
+    }
+}
+
+#[test]
+fn friction_that_changes_by_nothing_is_constant() {
+    for (load, control) in [(NORMAL, FORCE), (PRESSED, FORCE), (PRESSED, RIG)] {
+        let at = |friction: &str| run(&scene(load, control, friction, "", "tau = 3", &on(60)));
+        let [plain, rising] = [at(COULOMB), at(&history(1.0))].map(|it| it.last().wear_volume);
+        assert_eq!(plain.to_bits(), rising.to_bits(), "{load} {control}");
+        let little = at(&history(1.0 + 1e-9)).last().wear_volume / plain - 1.0;
+        println!("{load} {control}: {little:e} by a rise of 1e-9, on another mesh");
+        assert!(little.abs() < 3e-4, "{load} {control}: {little:e}");
+    }
+}
+
+/// A rig lies between the amplitudes of displacement and of force.
+#[test]
+fn under_a_held_normal_force_a_stiff_rig_holds_the_amplitude_and_a_soft_one_the_force() {
+    let at =
+        |control: &str| run(&scene(NORMAL, control, COULOMB, "", "tau = 3", &on(120))).last().wear_volume;
+    let [stiff, amplitude] = ["rig_stiffness = 1e14", ""].map(at);
+    let [soft, force] = ["rig_stiffness = 1e3", FORCE].map(at);
+    let between = at(RIG);
+    println!("{stiff:e} {amplitude:e}, {between:e}, {soft:e} {force:e}");
+    assert!((stiff / amplitude - 1.0).abs() < 1e-5, "{stiff:e} {amplitude:e}");
+    assert!((soft / force - 1.0).abs() < 1e-4, "{soft:e} {force:e}");
+    assert!(amplitude < between && between < force);
+}
+
+/// Unworn ground within the last edge bears `F_N - F_x/μ_f`, whatever blocks there were before.
+#[test]
+fn blocks_that_grow_under_both_forces_end_at_the_closed_form_of_the_last() {
+    let end = |blocks: &str, numerics: &str| {
+        run(&scene(NORMAL, FORCE, COULOMB, blocks, "until_rate = 1e-8", numerics))
+    };
+    let limit = end("", "").limit().expect("a limit").wear_volume();
+    let found = end(GROWING, &on(120));
+    let off = found.last().wear_volume / limit - 1.0;
+    let stick = found.last().stick_radius / 7e-4 - 1.0;
+    println!("{off:e}, edge {stick:e}");
+    assert!(off.abs() < 1e-4 && stick.abs() < 1e-5, "{off:e} {stick:e}");
+}
+
+/// Where some cycles slide and others do not, the force would have to be held over both meshes.
+#[test]
+fn what_slides_in_some_cycles_under_a_held_normal_force_is_refused() {
+    let refused = |control: &str, friction: &str, blocks: &str| {
+        let scene = scene(NORMAL, control, friction, blocks, "tau = 1", "");
+        let text = scene.text().replace("stick_ratio = 0.7", "amplitude_ratio = 1.7");
+        let error = Simulation::new(&Scene::from_str(&text).unwrap()).map(drop).unwrap_err().to_string();
+        println!("{error}");
+        error
+    };
+    let blocks = "[[loading.blocks]]\ntau = 0.3\namplitude_factor = 0.5\n[[loading.blocks]]\ntau = 1";
+    let error = refused("", COULOMB, blocks);
+    assert!(error.contains("loading.normal_force") && error.contains("loading.blocks"), "{error}");
+    let pause = SHRINKING.replace("0.7", "0");
+    let scene = scene(NORMAL, "", COULOMB, &pause, "tau = 1", "");
+    let error = Simulation::new(&scene).map(drop).unwrap_err().to_string();
+    assert!(error.contains("loading.blocks") && error.contains("pause"), "{error}");
+}
