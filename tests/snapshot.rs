@@ -117,7 +117,8 @@ fn checkpoint() -> Checkpoint {
                 places_at_rest: vec![0.1, 0.2, 0.25],
                 raised_at_rest: vec![0.0, 0.01, 0.03],
                 wear_depth: curve(31, 7),
-                rates: [1e-300, -1e-17 / 3.0],
+                slip_compression: 1e-7 / 3.0,
+                rates: [1e-300, -1e-17 / 3.0, 5e-324],
             }),
             past: Past {
                 order: 3,
