@@ -13,7 +13,7 @@ pub(super) const ROUND_OFF: f64 = 1e-14;
 const RESIDUAL_ROUND_OFF: f64 = 64.0;
 
 /// The largest part of the tolerance of the time stepping that Newton's method may leave, and its bounds.
-const OF_TOLERANCE: f64 = 3e-2;
+const OF_TOLERANCE: f64 = 1e-2;
 const BOUNDS: [f64; 2] = [1e-12, 1e-5];
 
 /// Fields and cycle of the unknowns tried last.
