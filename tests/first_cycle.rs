@@ -62,7 +62,7 @@ impl Case {
         let wear = self.wear.replace("{k}", &format!("{:e}", 0.25 * tau_per_cycle));
         let text = format!(
             "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = 0\nnormal_stiffness = 1.0\nstiffness_ratio = 1.0\n{}\n{wear}\n\
-             [loading]\n{}\nwear_from = \"{from}\"\ncycles = {cycles:e}\n[numerics]\naccuracy = 1e-4\n[output]\nsnapshots = 2\n",
+             [loading]\n{}\nwear_from = \"{from}\"\ncycles = {cycles:e}\n[numerics]\naccuracy = 1e-5\n[output]\nsnapshots = 2\n",
             self.friction, self.loading
         );
         text.parse().unwrap_or_else(|error| panic!("{text}: {error}"))
