@@ -40,7 +40,7 @@ mod writer;
 #[cfg(feature = "hdf5")]
 pub(crate) use atomic::{AtomicFile, failure, remove_abandoned};
 #[cfg(feature = "hdf5")]
-pub(crate) use cells::cell;
+pub(crate) use cells::{cell, table};
 pub use dataset::{Attribute, Dataset, Number, Values, Variable, Words};
 #[cfg(feature = "hdf5")]
 pub(crate) use fingerprint::Fingerprint;

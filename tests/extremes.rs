@@ -382,7 +382,7 @@ fn what_a_run_refuses_for_its_mesh_the_check_refuses_with_the_same_words() {
         assert_eq!(said(&checked), said(&run));
     }
     let scene = Scene::from_toml(&with(2.0, 0.5, 24).text(), "extreme.toml").unwrap();
-    assert_eq!(CheckReport::new(&scene).unwrap().regime, "partial-slip");
+    assert_eq!(CheckReport::new(&scene).unwrap().form.contact.regime().name(), "partial-slip");
 }
 
 /// The radii and depths of a run with some numerics.

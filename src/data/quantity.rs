@@ -134,6 +134,11 @@ impl<R> Reading<R> {
         Self { heading, ..self }
     }
 
+    /// Its name and its value for a record.
+    pub fn entry(&self, record: &R) -> (&'static str, Value) {
+        (self.quantity.name, (self.of)(record))
+    }
+
     /// The variable along a dimension of which each place is a record.
     pub fn variable(&self, dimension: &str, records: &[R]) -> Variable {
         let values = Value::all(records.iter().map(self.of), self.is_word);
@@ -166,7 +171,7 @@ impl<T> FromIterator<(&'static str, T)> for Entries<T> {
 impl Entries {
     /// All readings of a record.
     pub fn new<R>(readings: &[Reading<R>], record: &R) -> Self {
-        readings.iter().map(|it| (it.quantity.name, (it.of)(record))).collect()
+        readings.iter().map(|it| it.entry(record)).collect()
     }
 
     /// All readings of a record that may not be there; nothing is read off then.
@@ -188,7 +193,7 @@ impl Entries {
             let found = readings.iter().find(|it| it.quantity.name == name);
             found.unwrap_or_else(|| panic!("{name} is not declared"))
         };
-        names.split_whitespace().map(named).map(|it| (it.quantity.name, (it.of)(record))).collect()
+        names.split_whitespace().map(named).map(|it| it.entry(record)).collect()
     }
 }
 

@@ -2,15 +2,18 @@
 
 use serde::Serialize;
 
+use super::conditions;
+use super::limit::put_closed_form;
 use super::text::{Scale, TextTable, number};
-use super::{conditions, unsigned_zero};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::indenter::{SmoothedBy, Smoothing};
 use crate::contact::stick_slip::Regime;
+use crate::data::quantity::Entries;
 use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::loading::Duration;
+use crate::run::readings::{ClosedForm, closed_form};
 use crate::run::{Expected, Method, Simulation};
 use crate::scene::Scene;
 
@@ -23,6 +26,14 @@ const FEW_ROWS: usize = 10;
 /// Dimensionless time of one cycle up to which the shape hardly changes within it.
 const LONG_CYCLE: f64 = 0.01;
 
+/// Names of what is said of the medium, as in the JSON.
+const MEDIUM: &str = "grading normal_stiffness tangential_stiffness stiffness_ratio";
+
+/// Names of what is said of the first contact and of the limit, as in the JSON.
+const CONTACT: &str = "friction_coefficient wear_coefficient indentation normal_force mean_pressure amplitude amplitude_full_sliding \
+                       regime contact_radius_initial stick_radius stick_ratio contact_radius_limit wear_volume_limit wear_depth_max \
+                       normal_force_limit tau_per_cycle";
+
 /// The quantities derived from a scene, in SI; the fields are the keys of the JSON.
 ///
 /// # Examples
@@ -33,7 +44,7 @@ const LONG_CYCLE: f64 = 0.01;
 ///
 /// let scene = Scene::from_path(Path::new("data/scenes/paraboloid.toml"))?;
 /// let report = CheckReport::new(&scene)?;
-/// assert!((report.contact_radius_initial - 8.7e-5).abs() < 1e-6);
+/// assert!((report.form.contact.contact_radius() - 8.7e-5).abs() < 1e-6);
 /// assert!(report.text().contains("regime                             partial-slip"));
 /// assert!(json(&report).contains("\"regime\": \"partial-slip\""));
 /// # Ok::<(), fretwear::Error>(())
@@ -46,48 +57,15 @@ pub struct CheckReport {
     pub indenter: String,
     /// How the rows of a measured profile were smoothed; none where they are taken as they are.
     pub smoothing: Option<Smoothing>,
-    /// Grading `k`.
-    pub grading: f64,
-    /// `c_N`, N/m^(2+k).
-    pub normal_stiffness: f64,
-    /// `c_T`, N/m^(2+k).
-    pub tangential_stiffness: f64,
-    /// `M`.
-    pub stiffness_ratio: f64,
+    #[serde(flatten)]
+    medium: Entries,
     /// Laws, mode, blocks and control.
     pub conditions: Conditions,
-    /// `μ_f`, of Coulomb's law that stands for the law of friction.
-    pub friction_coefficient: f64,
-    /// `k_w`, 1/Pa, of Archard's law that stands for the law of wear.
-    pub wear_coefficient: f64,
-    /// `d`, m.
-    pub indentation: f64,
-    /// `F_N` before any wear, N.
-    pub normal_force: f64,
-    /// Mean pressure before any wear, Pa.
-    pub mean_pressure: f64,
-    /// `U`, m.
-    pub amplitude: f64,
-    /// `μ_f d/M`, m.
-    pub amplitude_full_sliding: f64,
-    /// `stick`, `partial-slip` or `full-sliding`.
-    pub regime: &'static str,
-    /// `a0`, m.
-    pub contact_radius_initial: f64,
-    /// `c`, m; none under full sliding, as all that follows of the limit.
-    pub stick_radius: Option<f64>,
-    /// `c/a0`.
-    pub stick_ratio: Option<f64>,
-    /// `a∞`, m.
-    pub contact_radius_limit: Option<f64>,
-    /// `ΔV∞`, m³.
-    pub wear_volume_limit: Option<f64>,
-    /// Largest depth of the limit, m.
-    pub wear_depth_max: Option<f64>,
-    /// `F∞`, N.
-    pub normal_force_limit: Option<f64>,
-    /// Dimensionless time of one cycle.
-    pub tau_per_cycle: f64,
+    #[serde(flatten)]
+    contact: Entries,
+    /// What the numbers are read off; under full sliding it has no limit.
+    #[serde(skip)]
+    pub form: ClosedForm,
     /// Cycles planned; none if the rate of wear decides.
     pub cycles: Option<f64>,
     /// Dimensionless time planned; none if the rate of wear decides.
@@ -118,54 +96,29 @@ impl CheckReport {
     /// Derives the quantities, also of a scene that cannot be run.
     ///
     /// # Errors
-    /// As [`InitialContact::new`] and [`Duration::span`].
+    /// As [`InitialContact::new`](crate::contact::InitialContact::new) and [`Duration::span`].
     pub fn derived(scene: &Scene) -> Result<Self> {
-        let contact = scene.contact()?;
-        let limit = LimitingShape::under(&contact, scene.conditions());
-        let unlimited = limit.as_ref().err().map(|error| format!("the first cycle has no limit: {error}"));
-        let limit = limit.ok().flatten();
-        let of_limit =
-            |value: fn(&LimitingShape) -> f64| limit.as_ref().map(|shape| unsigned_zero(value(shape)));
-        let half_space = contact.half_space();
+        let (form, unlimited) = ClosedForm::with_or_without_limit(scene)?;
         let duration = scene.loading().duration;
-        let span = duration.span(contact.tau_per_cycle())?;
+        let span = duration.span(form.contact.tau_per_cycle())?;
         let mut warnings = scene.warnings().to_vec();
-        warnings.extend(unlimited);
-        warnings.extend(doubts(&contact, limit.as_ref()));
+        warnings.extend(unlimited.map(|error| format!("the first cycle has no limit: {error}")));
+        warnings.extend(doubts(&form.contact, form.limit.as_ref()));
+        let entries = |names| closed_form(names).map(|it| it.entry(&form)).collect();
         Ok(Self {
             title: scene.title().map(str::to_owned),
-            indenter: contact.indenter().words(),
+            indenter: form.contact.indenter().words(),
             smoothing: scene.table().and_then(|table| table.smoothing().copied()),
-            grading: half_space.grading(),
-            normal_stiffness: half_space.normal_stiffness(),
-            tangential_stiffness: half_space.stiffness_ratio() * half_space.normal_stiffness(),
-            stiffness_ratio: half_space.stiffness_ratio(),
+            medium: entries(MEDIUM),
             conditions: scene.conditions().clone(),
-            friction_coefficient: contact.friction().coefficient,
-            wear_coefficient: contact.wear().coefficient,
-            indentation: contact.indentation(),
-            normal_force: contact.normal_force(),
-            mean_pressure: contact.mean_pressure(),
-            amplitude: contact.amplitude(),
-            amplitude_full_sliding: contact.amplitude_full_sliding(),
-            regime: contact.regime().name(),
-            contact_radius_initial: contact.contact_radius(),
-            stick_radius: contact.stick_radius(),
-            stick_ratio: contact.stick_logarithm().map(|logarithm| (-logarithm).exp()),
-            contact_radius_limit: of_limit(LimitingShape::contact_radius_limit),
-            wear_volume_limit: of_limit(LimitingShape::wear_volume),
-            wear_depth_max: of_limit(LimitingShape::wear_depth_max),
-            normal_force_limit: limit.as_ref().map(|shape| match scene.conditions().holds_normal_force {
-                true => contact.normal_force(),
-                false => contact.normal_force() * shape.load_fraction(),
-            }),
-            tau_per_cycle: contact.tau_per_cycle(),
+            contact: entries(CONTACT),
             cycles: span.map(|[cycles, _]| cycles),
             tau: span.map(|[_, tau]| tau),
             until_rate: if let Duration::UntilRate(rate) = duration { Some(rate) } else { None },
             method: None,
             seconds_expected: None,
             warnings,
+            form,
         })
     }
 
@@ -176,40 +129,15 @@ impl CheckReport {
 
     /// Its lines.
     pub(crate) fn table(&self) -> TextTable {
-        let lengths = |value: Option<f64>| value.map(|value| Scale::LENGTH.show(value));
-        let stiffness = |value: f64| format!("{} N/m^{}", number(value), number(2.0 + self.grading));
         let mut rows = TextTable::titled(self.title.as_deref());
         rows.row("indenter", &self.indenter);
         if let Some(smoothing) = &self.smoothing {
             put_smoothing(&mut rows, smoothing);
         }
-        rows.row("grading k", number(self.grading));
-        rows.row("normal stiffness c_N", stiffness(self.normal_stiffness));
-        rows.row("tangential stiffness c_T", stiffness(self.tangential_stiffness));
-        rows.row("stiffness ratio M", number(self.stiffness_ratio));
-        rows.row("friction coefficient", number(self.friction_coefficient));
-        rows.row("wear coefficient", format!("{} 1/Pa", number(self.wear_coefficient)));
+        put_closed_form(&mut rows, closed_form(MEDIUM), &self.form);
         conditions::put(&mut rows, &self.conditions);
         rows.gap();
-        rows.row("indentation d", Scale::LENGTH.show(self.indentation));
-        rows.row("normal force F_N, unworn", Scale::FORCE.show(self.normal_force));
-        rows.row("mean pressure, unworn", Scale::PRESSURE.show(self.mean_pressure));
-        rows.row("amplitude U", Scale::LENGTH.show(self.amplitude));
-        rows.row("amplitude of full sliding", Scale::LENGTH.show(self.amplitude_full_sliding));
-        rows.row("regime", self.regime);
-        rows.row("contact radius a0, unworn", Scale::LENGTH.show(self.contact_radius_initial));
-        let stick = self.stick_radius.zip(self.stick_ratio);
-        rows.optional(
-            "stick radius c",
-            stick.map(|(radius, ratio)| format!("{} = {} a0", Scale::LENGTH.show(radius), number(ratio))),
-        );
-        rows.gap();
-        rows.optional("contact radius a∞, limit", lengths(self.contact_radius_limit));
-        rows.optional("worn volume ΔV∞, limit", self.wear_volume_limit.map(|it| Scale::VOLUME.show(it)));
-        rows.optional("largest wear depth, limit", lengths(self.wear_depth_max));
-        rows.optional("normal force, limit", self.normal_force_limit.map(|it| Scale::FORCE.show(it)));
-        rows.gap();
-        rows.row("dimensionless time per cycle", number(self.tau_per_cycle));
+        put_closed_form(&mut rows, closed_form(CONTACT), &self.form);
         if let Some((cycles, tau)) = self.cycles.zip(self.tau) {
             rows.row("cycles planned", number(cycles));
             rows.row("dimensionless time planned", number(tau));

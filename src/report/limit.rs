@@ -9,7 +9,7 @@ use super::{bad_option, unsigned_zero};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::indenter::Indenter;
-use crate::data::quantity::Entries;
+use crate::data::quantity::{Entries, Reading};
 use crate::error::Result;
 use crate::run::readings::{ClosedForm, LIMIT};
 use crate::scene::Scene;
@@ -88,19 +88,7 @@ impl LimitReport {
     pub fn text(&self) -> String {
         let mut rows = TextTable::titled(self.title.as_deref());
         rows.row("indenter", &self.indenter);
-        for reading in &LIMIT {
-            match reading.quantity.name {
-                "normal_stiffness" => {
-                    let half_space = self.form.contact.half_space();
-                    let unit = format!("N/m^{}", number(2.0 + half_space.grading()));
-                    rows.row(reading.heading, format!("{} {unit}", number(half_space.normal_stiffness())));
-                    continue;
-                }
-                "contact_radius_initial" => rows.gap(),
-                _ => {}
-            }
-            rows.reading(reading, &self.form);
-        }
+        put_closed_form(&mut rows, &LIMIT, &self.form);
         rows.text()
     }
 
@@ -125,6 +113,27 @@ impl LimitReport {
             table.push('\n');
         }
         table
+    }
+}
+
+/// Adds readings of a closed form to a table for people, what belongs together without a gap.
+pub(super) fn put_closed_form(
+    rows: &mut TextTable,
+    readings: impl IntoIterator<Item = &'static Reading<ClosedForm>>,
+    form: &ClosedForm,
+) {
+    for reading in readings {
+        match reading.quantity.name {
+            "contact_radius_initial" | "contact_radius_limit" | "tau_per_cycle" => rows.gap(),
+            // Their unit goes with the grading.
+            "normal_stiffness" | "tangential_stiffness" => {
+                let unit = format!("N/m^{}", number(2.0 + form.contact.half_space().grading()));
+                rows.row(reading.heading, format!("{} {unit}", number((reading.of)(form).number())));
+                continue;
+            }
+            _ => {}
+        }
+        rows.reading(reading, form);
     }
 }
 

@@ -5,7 +5,7 @@ use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::data::quantity::{Reading, number, word};
 use crate::data::{LimitDistance, Value, largest};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::scene::Scene;
 
 /// The results of a run, in the order of the keys of the JSON.
@@ -73,6 +73,8 @@ pub struct ClosedForm {
     pub contact: InitialContact,
     /// What it tends to; none under full sliding.
     pub limit: Option<LimitingShape>,
+    /// Whether the normal force is held, and not the indentation.
+    holds_normal_force: bool,
 }
 
 impl ClosedForm {
@@ -81,14 +83,33 @@ impl ClosedForm {
     /// # Errors
     /// As [`InitialContact::new`] and [`LimitingShape::from_contact`].
     pub fn new(scene: &Scene) -> Result<Self> {
-        let contact = scene.contact()?;
-        Ok(Self { limit: LimitingShape::under(&contact, scene.conditions())?, contact })
+        let (form, unlimited) = Self::with_or_without_limit(scene)?;
+        unlimited.map_or(Ok(form), Err)
+    }
+
+    /// The closed form, without its limit where that cannot be formed, and why it cannot.
+    ///
+    /// # Errors
+    /// As [`InitialContact::new`].
+    pub(crate) fn with_or_without_limit(scene: &Scene) -> Result<(Self, Option<Error>)> {
+        let (contact, conditions) = (scene.contact()?, scene.conditions());
+        let (limit, why) = match LimitingShape::under(&contact, conditions) {
+            Ok(limit) => (limit, None),
+            Err(error) => (None, Some(error)),
+        };
+        Ok((Self { contact, limit, holds_normal_force: conditions.holds_normal_force }, why))
     }
 
     /// `a∞ - a0`, m: under both forces held the shape's own first contact is a deeper one.
     fn growth(&self) -> Option<f64> {
         let deeper = |shape: &LimitingShape| shape.contact_radius_initial() - self.contact.contact_radius();
         self.limit.as_ref().map(|shape| shape.contact_growth_limit() + deeper(shape) + 0.0)
+    }
+
+    /// `F∞`, N.
+    fn normal_force_limit(&self) -> Option<f64> {
+        let part = |shape: &LimitingShape| if self.holds_normal_force { 1.0 } else { shape.load_fraction() };
+        self.limit.as_ref().map(|shape| self.contact.normal_force() * part(shape))
     }
 
     fn of_limit(&self, of: fn(&LimitingShape) -> f64) -> Value {
@@ -194,9 +215,13 @@ pub const LIMIT: [Reading<ClosedForm>; 21] = [
         "indentation depth in the limit of many cycles",
         |it| it.of_limit(LimitingShape::indentation),
     ),
-    line("worn volume ΔV∞", "wear_volume_limit", "m3", "worn volume in the limit of many cycles", |it| {
-        it.of_limit(LimitingShape::wear_volume)
-    }),
+    line(
+        "worn volume ΔV∞, limit",
+        "wear_volume_limit",
+        "m3",
+        "worn volume in the limit of many cycles",
+        |it| it.of_limit(LimitingShape::wear_volume),
+    ),
     line(
         "worn volume, small amplitudes",
         "wear_volume_asymptotic",
@@ -204,7 +229,54 @@ pub const LIMIT: [Reading<ClosedForm>; 21] = [
         "the same for small amplitudes",
         |it| it.of_limit(LimitingShape::wear_volume_asymptotic),
     ),
-    line("largest wear depth", "wear_depth_max", "m", "largest wear depth of the limit", |it| {
+    line("largest wear depth, limit", "wear_depth_max", "m", "largest wear depth of the limit", |it| {
         it.of_limit(LimitingShape::wear_depth_max)
     }),
 ];
+
+/// More of the first contact and of the limit, which a check of a scene shows.
+const CHECK: [Reading<ClosedForm>; 6] = [
+    line(
+        "tangential stiffness c_T",
+        "tangential_stiffness",
+        "1",
+        "tangential stiffness c_T, N/m^(2+k)",
+        |it| {
+            let half_space = it.contact.half_space();
+            (half_space.stiffness_ratio() * half_space.normal_stiffness()).into()
+        },
+    ),
+    line(
+        "wear coefficient",
+        "wear_coefficient",
+        "1/Pa",
+        "coefficient of Archard's law that stands for the law of wear",
+        |it| it.contact.wear().coefficient.into(),
+    ),
+    line("mean pressure, unworn", "mean_pressure", "Pa", "mean pressure before any wear", |it| {
+        it.contact.mean_pressure().into()
+    }),
+    line("stick ratio c/a0", "stick_ratio", "1", "radius of the stick zone over that of the contact", |it| {
+        it.contact.stick_logarithm().map(|logarithm| (-logarithm).exp()).into()
+    }),
+    line(
+        "normal force, limit",
+        "normal_force_limit",
+        "N",
+        "normal force in the limit of many cycles",
+        |it| it.normal_force_limit().into(),
+    ),
+    line("dimensionless time per cycle", "tau_per_cycle", "1", "dimensionless time of one cycle", |it| {
+        it.contact.tau_per_cycle().into()
+    }),
+];
+
+/// What is declared of a closed form under some names, which blanks separate.
+///
+/// # Panics
+/// If nothing is under one of them.
+pub(crate) fn closed_form(names: &str) -> impl Iterator<Item = &'static Reading<ClosedForm>> {
+    let all = || LIMIT.iter().chain(&CHECK);
+    let named = move |name: &str| all().find(|it| it.quantity.name == name);
+    names.split_whitespace().map(move |name| named(name).unwrap_or_else(|| panic!("{name} is not declared")))
+}

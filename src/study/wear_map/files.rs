@@ -1,11 +1,10 @@
 //! The files of `fretwear map`: one HDF5 file with everything, and a CSV table of each part.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use super::{Control, Isoline, MapStudy, OptimumCurve};
 use crate::data::quantity::{Quantity, quantity};
-use crate::data::{self, AtomicFile, Dataset, Format, Mark, Variable, cell};
+use crate::data::{self, AtomicFile, Dataset, Format, Mark, Variable, cell, table};
 use crate::error::Result;
 use crate::scene::MapScene;
 
@@ -23,16 +22,42 @@ const PROFILE_GRADING: Quantity = quantity("profile_grading", "1", "grading of t
 const PROFILE_RADIUS: Quantity =
     quantity("profile_radius", "1", "radius over (d/(n A))^(1/n), which is sqrt(R d) for a paraboloid");
 
-/// Name of a file, what its first line begins with, and how its text is made.
-type Table = (&'static str, &'static str, fn(&MapStudy) -> String);
+/// A table of text.
+struct Table {
+    file: &'static str,
+    /// Names of the columns, by which the file is known too.
+    header: &'static str,
+    /// The cells of its rows.
+    rows: fn(&MapStudy) -> Vec<Vec<String>>,
+}
 
 /// Tables written beside `map.h5`.
 const TABLES: [Table; 5] = [
-    ("map.csv", "grading,amplitude_ratio,wear_volume,", map_table),
-    ("full_sliding.csv", "grading,full_sliding_amplitude_ratio\n", full_sliding_table),
-    ("isolines.csv", "form,line,wear_volume_ratio,", isoline_table),
-    ("optimum.csv", "control,reference_depth,amplitude_ratio,", optimum_table),
-    ("profiles.csv", "grading,radius,initial_profile,", profile_table),
+    Table {
+        file: "map.csv",
+        header: "grading,amplitude_ratio,wear_volume,wear_volume_ratio,wear_volume_ratio_small_amplitude,wear_volume_ratio_leading_order",
+        rows: map_rows,
+    },
+    Table {
+        file: "full_sliding.csv",
+        header: "grading,full_sliding_amplitude_ratio",
+        rows: full_sliding_rows,
+    },
+    Table {
+        file: "isolines.csv",
+        header: "form,line,wear_volume_ratio,grading,amplitude_ratio",
+        rows: isoline_rows,
+    },
+    Table {
+        file: "optimum.csv",
+        header: "control,reference_depth,amplitude_ratio,least_at,grading,wear_volume_ratio,indentation_ratio",
+        rows: optimum_rows,
+    },
+    Table {
+        file: "profiles.csv",
+        header: "grading,radius,initial_profile,wear_depth,limit_profile",
+        rows: profile_rows,
+    },
 ];
 
 const ARRAYS: &str = "map.h5";
@@ -45,7 +70,7 @@ const ISOLINES: [&str; 2] = ["isoline", "small_amplitude_isoline"];
 /// # Errors
 /// [`Error::File`](crate::Error::File) names the file or the directory and the cure.
 pub fn check_folder(folder: &Path, overwrite: bool) -> Result<()> {
-    let tables = TABLES.iter().map(|(name, start, _)| (*name, Mark::Words(start)));
+    let tables = TABLES.iter().map(|it| (it.file, Mark::Words(it.header)));
     let files: Vec<_> = tables.chain([(ARRAYS, Mark::Results)]).collect();
     data::check_folder(folder, &files, overwrite)
 }
@@ -59,9 +84,10 @@ pub fn write(scene: &MapScene, study: &MapStudy, folder: &Path, overwrite: bool)
     let arrays = folder.join(ARRAYS);
     dataset(scene, study).write(&arrays, overwrite)?;
     let mut written = vec![arrays];
-    for (name, _, table) in TABLES {
-        let path = folder.join(name);
-        AtomicFile::new(&path, overwrite)?.write(table(study).as_bytes())?;
+    for Table { file, header, rows } in TABLES {
+        let path = folder.join(file);
+        let text = table(header.split(','), rows(study).into_iter());
+        AtomicFile::new(&path, overwrite)?.write(text.as_bytes())?;
         written.push(path);
     }
     Ok(written)
@@ -203,81 +229,67 @@ fn add_isolines(dataset: &mut Dataset, prefix: &str, lines: &[Isoline]) {
     }
 }
 
-fn line(table: &mut String, cells: &[f64]) {
-    let cells: Vec<String> = cells.iter().copied().map(cell).collect();
-    // Writing to a string cannot fail.
-    let _ = writeln!(table, "{}", cells.join(","));
+fn cells(values: &[f64]) -> Vec<String> {
+    values.iter().copied().map(cell).collect()
 }
 
-fn map_table(study: &MapStudy) -> String {
+fn map_rows(study: &MapStudy) -> Vec<Vec<String>> {
     let map = &study.map;
-    let mut table = String::from(
-        "grading,amplitude_ratio,wear_volume,wear_volume_ratio,wear_volume_ratio_small_amplitude,wear_volume_ratio_leading_order\n",
-    );
-    let points = map.gradings.iter().flat_map(|k| map.amplitude_ratios.iter().map(move |u| (*k, *u)));
-    for (index, (grading, amplitude)) in points.enumerate() {
-        let values = [&map.volume, &map.ratio, &map.small_amplitude_ratio, &map.leading_order_ratio];
-        let [volume, ratio, small, leading] = values.map(|values| values[index]);
-        line(&mut table, &[grading, amplitude, volume, ratio, small, leading]);
-    }
-    table
+    let values = [&map.volume, &map.ratio, &map.small_amplitude_ratio, &map.leading_order_ratio];
+    let points = map.gradings.iter().flat_map(|k| map.amplitude_ratios.iter().map(move |u| [*k, *u]));
+    let row = |(index, point): (usize, [f64; 2])| {
+        cells(&[point.as_slice(), &values.map(|values| values[index])].concat())
+    };
+    points.enumerate().map(row).collect()
 }
 
-fn full_sliding_table(study: &MapStudy) -> String {
-    let mut table = String::from("grading,full_sliding_amplitude_ratio\n");
-    for (grading, amplitude) in study.map.gradings.iter().zip(&study.map.full_sliding) {
-        line(&mut table, &[*grading, *amplitude]);
-    }
-    table
+fn full_sliding_rows(study: &MapStudy) -> Vec<Vec<String>> {
+    let map = &study.map;
+    map.gradings
+        .iter()
+        .zip(&map.full_sliding)
+        .map(|(grading, amplitude)| cells(&[*grading, *amplitude]))
+        .collect()
 }
 
-fn isoline_table(study: &MapStudy) -> String {
-    let mut table = String::from("form,line,wear_volume_ratio,grading,amplitude_ratio\n");
-    for (form, lines) in [("exact", &study.isolines), ("small_amplitude", &study.small_amplitude_isolines)] {
-        for (number, isoline) in lines.iter().enumerate() {
-            for [grading, amplitude] in &isoline.points {
-                let _ = write!(table, "{form},{number},");
-                line(&mut table, &[isoline.level, *grading, *amplitude]);
-            }
-        }
-    }
-    table
+fn isoline_rows(study: &MapStudy) -> Vec<Vec<String>> {
+    let forms = [("exact", &study.isolines), ("small_amplitude", &study.small_amplitude_isolines)];
+    let lines = forms.into_iter().flat_map(|(form, lines)| {
+        lines.iter().enumerate().map(move |(number, line)| (vec![form.to_owned(), number.to_string()], line))
+    });
+    let rows = lines.flat_map(|(line, Isoline { level, points, .. })| {
+        points.iter().map(move |[grading, amplitude]| {
+            [line.as_slice(), &cells(&[*level, *grading, *amplitude])].concat()
+        })
+    });
+    rows.collect()
 }
 
-fn optimum_table(study: &MapStudy) -> String {
-    let mut table = String::from(
-        "control,reference_depth,amplitude_ratio,least_at,grading,wear_volume_ratio,indentation_ratio\n",
-    );
-    for curve in &study.optimum {
+fn optimum_rows(study: &MapStudy) -> Vec<Vec<String>> {
+    let rows = study.optimum.iter().flat_map(|curve| {
         let depth = match curve.control {
             Control::Indentation => f64::NAN,
             Control::Force { reference_depth } | Control::ForceDepthOnly { reference_depth } => {
                 reference_depth
             }
         };
-        for point in &curve.points {
-            let _ = write!(
-                table,
-                "{},{},{},{},",
-                control_name(curve.control),
-                cell(depth),
-                cell(point.amplitude_ratio),
-                point.end.name()
-            );
-            line(&mut table, &[point.grading, point.volume_ratio, point.indentation_ratio]);
-        }
-    }
-    table
+        curve.points.iter().map(move |it| {
+            let mut row = vec![control_name(curve.control).to_owned()];
+            row.extend(cells(&[depth, it.amplitude_ratio]));
+            row.push(it.end.name().to_owned());
+            row.extend(cells(&[it.grading, it.volume_ratio, it.indentation_ratio]));
+            row
+        })
+    });
+    rows.collect()
 }
 
-fn profile_table(study: &MapStudy) -> String {
+fn profile_rows(study: &MapStudy) -> Vec<Vec<String>> {
     let profiles = &study.profiles;
-    let mut table = String::from("grading,radius,initial_profile,wear_depth,limit_profile\n");
-    for (row, grading) in profiles.gradings.iter().enumerate() {
-        let depths = &profiles.wear_depth[row * profiles.radii.len()..];
-        for ((radius, initial), depth) in profiles.radii.iter().zip(&profiles.initial).zip(depths) {
-            line(&mut table, &[*grading, *radius, *initial, *depth, initial + depth]);
-        }
-    }
-    table
+    let unworn = || profiles.radii.iter().zip(&profiles.initial);
+    let points = profiles.gradings.iter().flat_map(|grading| unworn().map(move |point| (grading, point)));
+    let row = |((grading, (radius, initial)), depth): ((&f64, (&f64, &f64)), &f64)| {
+        cells(&[*grading, *radius, *initial, *depth, initial + depth])
+    };
+    points.zip(&profiles.wear_depth).map(row).collect()
 }
