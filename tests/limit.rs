@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use fretwear::contact::closed_form::LimitingShape;
 use fretwear::data::{Checkpoint, LimitCurves, RunHeader, RunWriter, Snapshot, StopReason};
-use fretwear::report::{CheckReport, LimitReport, json};
+use fretwear::report::{self, CheckReport, LimitReport};
 use fretwear::scene::Scene;
 use fretwear::solver::model::State;
 use fretwear::solver::simulation::Progress;
@@ -151,7 +151,7 @@ fn the_scenes_give_the_closed_form_and_what_their_comments_say() {
         assert_eq!(limit, [0.0, 60e-6, 0.15e-3, 0.3e-3].map(|r| shape.profile(r)), "{name}");
 
         let check = CheckReport::new(&scene).unwrap();
-        let checked: serde_json::Value = serde_json::from_str(&json(&check)).unwrap();
+        let checked: serde_json::Value = serde_json::from_str(&report::json(&check)).unwrap();
         let (d, a0, p, m, c, tau) = comment;
         let of = |name: &str| checked[name].as_f64().unwrap();
         let found = ["indentation", "contact_radius_initial", "mean_pressure"].map(of);

@@ -124,6 +124,7 @@ fn checkpoint() -> Checkpoint {
                 order: 3,
                 points: (0..4).map(past_point).collect(),
                 linearised: Some(Arc::new(Linearised {
+                    cycles: 1e4 / 3.0,
                     slip_area: 3e-10,
                     gathered_slip_area: 2e-10,
                     step: 7e4,

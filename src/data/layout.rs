@@ -321,7 +321,8 @@ pub(super) const PAST_REALS: [Field<PastPoint, f64>; 4] = [
 ];
 
 /// Scalars.
-pub(super) const LINEARISED_REALS: [Field<Linearised, f64>; 3] = [
+pub(super) const LINEARISED_REALS: [Field<Linearised, f64>; 4] = [
+    field(quantity("cycles", "1", "number of fretting cycles done"), |it| &it.cycles, |it| &mut it.cycles),
     field(
         quantity("edge", "m2", "square of the contact radius less that of the stick radius"),
         |it| &it.slip_area,

@@ -264,7 +264,6 @@ fn put_past(past: &Past) -> Dataset {
     let earlier = (EARLIER.name, points.len());
     stored.index(EARLIER, points.len());
     stored.index(SPRING, springs);
-    stored.index(SPRING_OR_EDGE, with_edge);
     stored.scalar(ORDER, past.order as u64);
     for field in &PAST_REALS {
         let values: Vec<f64> = points.iter().map(|it| *(field.of)(it)).collect();
@@ -272,8 +271,11 @@ fn put_past(past: &Past) -> Dataset {
     }
     let compressions: Vec<f64> = points.iter().flat_map(|it| &it.compression).copied().collect();
     stored.add(Variable::new(COMPRESSION, &[earlier, (SPRING.name, springs)], compressions));
-    let log_slips: Vec<f64> = points.iter().flat_map(|it| &it.log_slip).copied().collect();
-    stored.add(Variable::new(LOG_SLIP, &[earlier, (SPRING_OR_EDGE.name, with_edge)], log_slips));
+    if with_edge > 0 {
+        stored.index(SPRING_OR_EDGE, with_edge);
+        let log_slips: Vec<f64> = points.iter().flat_map(|it| &it.log_slip).copied().collect();
+        stored.add(Variable::new(LOG_SLIP, &[earlier, (SPRING_OR_EDGE.name, with_edge)], log_slips));
+    }
     if let Some(linearised) = &past.linearised {
         let mut inner = Dataset::default();
         let spring = (SPRING.name, linearised.compression.len());
@@ -423,10 +425,12 @@ fn past(mut stored: Dataset, springs: usize) -> Result<Past> {
         points.iter_mut().zip(values).for_each(|(point, value)| *(field.of_mut)(point) = value);
     }
     let compressions: Vec<f64> = stored.take(COMPRESSION, &[Some(count), Some(springs)])?;
-    let log_slips: Vec<f64> = stored.take(LOG_SLIP, &[Some(count), Some(springs + 1)])?;
-    let rows = compressions.chunks(springs.max(1)).zip(log_slips.chunks(springs + 1));
-    for (point, (compression, log_slip)) in points.iter_mut().zip(rows) {
-        (point.compression, point.log_slip) = (compression.to_vec(), log_slip.to_vec());
+    let rows = compressions.chunks(springs.max(1));
+    points.iter_mut().zip(rows).for_each(|(point, row)| point.compression = row.to_vec());
+    if stored.has(LOG_SLIP.name) {
+        let log_slips: Vec<f64> = stored.take(LOG_SLIP, &[Some(count), Some(springs + 1)])?;
+        let rows = log_slips.chunks(springs + 1);
+        points.iter_mut().zip(rows).for_each(|(point, row)| point.log_slip = row.to_vec());
     }
     let order = usize::try_from(stored.take_scalar::<u64>(ORDER)?).unwrap_or(usize::MAX);
     let linearised = stored.take_group(LINEARISED)?.map(|mut inner| {

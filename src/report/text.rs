@@ -56,7 +56,11 @@ impl TextTable {
 /// A value with its unit; none where there is none.
 pub(crate) fn shown(value: &Value, units: &str) -> Option<String> {
     Some(match value {
-        Value::Number(value) => Scale::of(units).map_or_else(|| number(*value), |scale| scale.show(*value)),
+        Value::Number(value) => match (Scale::of(units), units) {
+            (Some(scale), _) => scale.show(*value),
+            (None, "1") => number(*value),
+            (None, units) => format!("{} {units}", number(*value)),
+        },
         Value::Count(count) => count.to_string(),
         Value::Truth(holds) => if *holds { "yes" } else { "no" }.to_owned(),
         Value::Word(word) => word.clone(),

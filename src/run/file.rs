@@ -169,7 +169,11 @@ impl Run {
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
             || checkpoint.state.stick.is_some() != parts.model.moving().is_some()
-            || !checkpoint.state.past.fits(&checkpoint.state, Bdf::HIGHEST_ORDER)
+            || !checkpoint.state.past.fits(
+                &checkpoint.state,
+                Bdf::HIGHEST_ORDER,
+                parts.model.gross().is_some(),
+            )
             || !checkpoint
                 .state
                 .compression

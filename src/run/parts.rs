@@ -11,7 +11,7 @@ use crate::numerics::grid::Clustering;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
 use crate::solver::model::{Model, MovingStick, OperatorStore, Resolution, Schedule};
 use crate::solver::simulation::{Plan, Simulation};
-use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossSdirk, Sdirk, Stepper};
+use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossBdf, GrossSdirk, Sdirk, Stepper};
 
 /// Springs and tolerance of the run that tells how far a contact in gross slip comes to reach, and what is added to that.
 const COARSE: (usize, f64) = (12, 1e-3);
@@ -69,7 +69,12 @@ impl Parts {
         let tolerance =
             numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy, &model));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
-            StepperChoice::Implicit if model.gross().is_some() => Box::new(GrossSdirk::new(tolerance)),
+            StepperChoice::Implicit if model.gross().is_some() => {
+                match model.schedule().is_smooth_in_gross_slip() {
+                    true => Box::new(GrossBdf::new(tolerance)),
+                    false => Box::new(GrossSdirk::new(tolerance)),
+                }
+            }
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
             StepperChoice::Implicit if model.wears_steadily() => Box::new(Bdf::new(tolerance)),

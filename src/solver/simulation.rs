@@ -333,7 +333,7 @@ impl Simulation {
         let states = within.map(|output| {
             let between = self.stepper.between(&self.model, state, *output)?;
             let fields = self.model.fields(&between);
-            fields.are_physical().then_some((between, fields))
+            (self.model.gross().is_some() || fields.are_physical()).then_some((between, fields))
         });
         states.collect()
     }

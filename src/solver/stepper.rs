@@ -15,7 +15,7 @@ mod tableau;
 pub use bdf::Bdf;
 pub use cycle_jump::CycleJump;
 pub use every_cycle::EveryCycle;
-pub use gross::GrossSdirk;
+pub use gross::{GrossBdf, GrossSdirk};
 pub use sdirk::Sdirk;
 
 use crate::error::{Error, Result};
@@ -91,7 +91,7 @@ pub trait Stepper {
 pub(crate) fn check_model(stepper: &dyn Stepper, model: &Model) -> Result<()> {
     if stepper.steps_gross_slip() != model.gross().is_some() {
         let why =
-            "does not step the mesh of this contact; GrossSdirk steps those in gross slip, and no others"
+            "does not step the mesh of this contact; GrossBdf and GrossSdirk step those in gross slip, and no others"
                 .into();
         return Err(Error::Inconsistent { what: "numerics.stepper", why });
     }

@@ -18,6 +18,8 @@ pub struct Past {
 /// Where Newton's matrix was factorised.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Linearised {
+    /// Cycles done.
+    pub cycles: f64,
     /// `Z = a² - c²`, m².
     pub slip_area: f64,
     /// What the past made of it, m².
@@ -29,14 +31,15 @@ pub struct Linearised {
 }
 
 impl Past {
-    /// Whether a method of orders up to `highest` can go on from a state with this past.
-    pub fn fits(&self, state: &State, highest: usize) -> bool {
+    /// Whether a method of orders up to `highest` can go on from a state with this past, in gross slip or not.
+    pub fn fits(&self, state: &State, highest: usize, gross: bool) -> bool {
         let Some(newest) = self.points.first() else { return true };
         let springs = state.compression.len();
+        let with_edge = if gross { 0 } else { springs + 1 };
         let finite = |point: &PastPoint| {
             let scalars = [point.cycles, point.slip_area, point.dissipated_energy, point.volume_by_rate];
             scalars.iter().chain(&point.compression).chain(&point.log_slip).all(|value| value.is_finite())
-                && (point.compression.len(), point.log_slip.len()) == (springs, springs + 1)
+                && (point.compression.len(), point.log_slip.len()) == (springs, with_edge)
         };
         (1..=highest.min(self.points.len())).contains(&self.order)
             // A step that lands on an output ends there, its own time a rounding aside.
@@ -44,7 +47,7 @@ impl Past {
             && self.points.iter().all(|point| point.cycles >= 0.0 && finite(point))
             && self.points.windows(2).all(|pair| pair[0].cycles > pair[1].cycles)
             && self.linearised.as_ref().is_none_or(|it| {
-                let scalars = [it.slip_area, it.gathered_slip_area, it.step];
+                let scalars = [it.cycles, it.slip_area, it.gathered_slip_area, it.step];
                 it.compression.len() == springs
                     && it.slip_area > 0.0
                     && scalars.iter().chain(&it.compression).all(|value| value.is_finite())
@@ -65,7 +68,7 @@ pub struct PastPoint {
     pub volume_by_rate: f64,
     /// Compression `q`, m, of the inner springs, shape `(springs - 1,)`.
     pub compression: Vec<f64>,
-    /// `λ`, shape `(springs,)`.
+    /// `λ`, shape `(springs,)`; empty in gross slip, where the compressions are all that is stepped.
     pub log_slip: Vec<f64>,
 }
 

@@ -406,6 +406,13 @@ impl Schedule {
         self.makes_weak_kinks() && !self.conditions.wear.has_kink()
     }
 
+    /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.
+    pub fn is_smooth_in_gross_slip(&self) -> bool {
+        self.conditions.blocks.is_empty()
+            && *self.friction_change() == History::Constant
+            && !self.conditions.wear.has_kink()
+    }
+
     /// Whether cycles are the same, at a constant indentation, and wear is local: at most resolved cycles or a threshold make kinks along the annulus.
     pub fn makes_weak_kinks(&self) -> bool {
         self.is_steady() && !self.lifts() && self.conditions.wear.spreading().is_none()

@@ -66,6 +66,8 @@ pub struct Target {
     pub slip_area: f64,
     /// `h`, cycles: the step times the diagonal coefficient of the method.
     pub step: f64,
+    /// Cycles done at the stage.
+    pub cycles: f64,
     /// What acts.
     pub loading: CycleLoading,
 }

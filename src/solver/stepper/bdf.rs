@@ -33,7 +33,7 @@ pub struct Bdf {
 }
 
 /// Times remembered, the present one included: the error at the next order takes two more than that order.
-const REMEMBERED: usize = Bdf::HIGHEST_ORDER + 2;
+pub(super) const REMEMBERED: usize = Bdf::HIGHEST_ORDER + 2;
 
 /// Error at the end of a run over that of its steps, measured (docs/numerics.md), so that a tolerance is about the error that comes of it.
 const ACCUMULATED: f64 = 8.0;
@@ -48,8 +48,7 @@ const SAFETY: f64 = 0.8;
 const SAFETY_OF_CHANGE: f64 = 0.7;
 
 /// Bounds of the change of a step.
-const SMALLEST_FACTOR: f64 = 0.2;
-const LARGEST_FACTOR: f64 = 2.0;
+const CHANGES: [f64; 2] = [0.2, 2.0];
 
 impl Stepper for Bdf {
     fn name(&self) -> &'static str {
@@ -65,7 +64,8 @@ impl Stepper for Bdf {
         let target = Target {
             log_slip: gathered.log_slip,
             slip_area: gathered.slip_area,
-            step: times.per_slope / times.leading(past.order),
+            step: times.step(past.order),
+            cycles: now,
             loading: model.schedule().loading(state.cycles, now),
         };
         self.take_up_factors(model, state, &target);
@@ -109,7 +109,8 @@ impl Stepper for Bdf {
             Some(guess) => 0.5 * self.depth_error(model, &[1.0, -1.0], &[&past.points[0].log_slip, &guess]),
             None => self.error_at(model, past.order, &times, &past),
         };
-        let (order, factor) = self.choose(model, error, &times, &past);
+        let error_at = |order| self.error_at(model, order, &times, &past);
+        let (order, factor) = choose(past.order, error, self.tolerance, error_at);
         past.order = order;
         past.points.truncate(REMEMBERED);
         let serves_more = model.operators().backend() == Backend::Hierarchical;
@@ -120,7 +121,7 @@ impl Stepper for Bdf {
             fields: Some(std::mem::take(&mut self.tried.fields)),
             error: ACCUMULATED * error,
             rate_evaluations: evaluations,
-            next_step: Some(cycles * factor.clamp(SMALLEST_FACTOR, LARGEST_FACTOR)),
+            next_step: Some(cycles * factor),
         })
     }
 
@@ -139,10 +140,7 @@ impl Stepper for Bdf {
 
     fn between(&self, model: &Model, state: &State, cycles: f64) -> Option<State> {
         let past = &state.past;
-        let times = TimesBefore::new(model, cycles, past);
-        let count = (past.order + 1).min(past.points.len());
-        let weights = lagrange(&times.before[..count]);
-        Some(state_of(state, PastPoint::sum(&weights, &past.points), cycles))
+        Some(state_of(state, TimesBefore::new(model, cycles, past).guess(past), cycles))
     }
 }
 
@@ -175,7 +173,8 @@ impl Bdf {
                         log_slip: vec![],
                         slip_area: left.gathered_slip_area,
                         step: left.step,
-                        loading: target.loading.clone(),
+                        cycles: left.cycles,
+                        loading: model.schedule().loading(left.cycles, left.cycles),
                     };
                     let (tolerance, tried) = (self.newton_tolerance, &mut self.tried);
                     self.newton.recall(&mut RestingStage { model, target, tolerance, tried }, left);
@@ -211,16 +210,11 @@ impl Bdf {
             .collect()
     }
 
-    /// Largest error in depth of a step at some order, over the limit's largest depth, from the divided difference of the next order: the distance
-    /// of the step from the polynomial through the times before it, less that polynomial's own error. Infinite where the past is too short.
+    /// Largest error in depth of a step at some order, over the limit's largest depth; infinite where the past is too short.
     fn error_at(&self, model: &Model, order: usize, times: &TimesBefore, past: &Past) -> f64 {
-        let Some(before) = times.before.get(..order + 1) else { return f64::INFINITY };
-        let farthest = before[order];
-        let part = 1.0 / (1.0 + times.leading(order) * farthest);
-        let mut weights: Vec<f64> = lagrange(before).iter().map(|weight| -part * weight).collect();
-        weights.insert(0, part);
         let log_slips: Vec<&[f64]> = past.points.iter().map(|point| &point.log_slip[..]).collect();
-        self.depth_error(model, &weights, &log_slips)
+        let weights = times.error_weights(order);
+        weights.map_or(f64::INFINITY, |weights| self.depth_error(model, &weights, &log_slips))
     }
 
     /// Depth, over the limit's largest, of a weighted sum of logarithms of slip on the inner springs, the largest of all.
@@ -231,26 +225,37 @@ impl Bdf {
         };
         relative_depth_error(model, (0..model.springs() - 1).map(|i| slip[i] * sum(i)))
     }
+}
 
-    /// Order and factor of the next step: those of the largest step among the present order and its neighbours.
-    fn choose(&self, model: &Model, error: f64, times: &TimesBefore, past: &Past) -> (usize, f64) {
-        let factor = |error: f64, order: usize, safety: f64| {
-            safety * (error / self.tolerance).max(1e-12).powf(-1.0 / (order as f64 + 1.0))
-        };
-        let order = past.order;
-        let mut best = (order, factor(error, order, SAFETY));
-        for other in [order - 1, order + 1].into_iter().filter(|it| (1..=Self::HIGHEST_ORDER).contains(it)) {
-            let found = factor(self.error_at(model, other, times, past), other, SAFETY_OF_CHANGE);
-            if found > best.1 {
-                best = (other, found);
-            }
+/// Order of the next step and its length over that of this one: those of the largest step among the present order and its neighbours.
+///
+/// # Arguments
+/// * `order` -- of this step
+/// * `error` -- of this step
+/// * `error_at` -- what it would have been at another order; infinite where that is not known
+pub(super) fn choose(
+    order: usize,
+    error: f64,
+    tolerance: f64,
+    error_at: impl Fn(usize) -> f64,
+) -> (usize, f64) {
+    let factor = |error: f64, order: usize, safety: f64| {
+        safety * (error / tolerance).max(1e-12).powf(-1.0 / (order as f64 + 1.0))
+    };
+    let mut best = (order, factor(error, order, SAFETY));
+    for other in [order - 1, order + 1].into_iter().filter(|it| (1..=Bdf::HIGHEST_ORDER).contains(it)) {
+        let found = factor(error_at(other), other, SAFETY_OF_CHANGE);
+        if found > best.1 {
+            best = (other, found);
         }
-        best
     }
+    let [least, most] = CHANGES;
+    (best.0, best.1.clamp(least, most))
 }
 
 /// Times before another, in `s`.
-struct TimesBefore {
+#[derive(Debug)]
+pub(super) struct TimesBefore {
     /// `s_n - s_j`, the latest first.
     before: Vec<f64>,
     /// `dt/ds`, cycles.
@@ -259,7 +264,7 @@ struct TimesBefore {
 
 impl TimesBefore {
     /// Those of a past before some number of cycles; negative where they are later.
-    fn new(model: &Model, cycles: f64, past: &Past) -> Self {
+    pub fn new(model: &Model, cycles: f64, past: &Past) -> Self {
         let zero = model.cycles_of_wear();
         let elapsed = |before: f64| ((cycles - before) / (before + zero)).ln_1p();
         Self {
@@ -268,22 +273,45 @@ impl TimesBefore {
         }
     }
 
+    /// `dt/ds`, cycles.
+    pub fn per_slope(&self) -> f64 {
+        self.per_slope
+    }
+
+    /// Cycles by which the rates at the end of a step of some order are multiplied.
+    pub fn step(&self, order: usize) -> f64 {
+        self.per_slope / self.leading(order)
+    }
+
     /// `ℓ'_0(s_n)` at some order.
     fn leading(&self, order: usize) -> f64 {
         self.before[..order].iter().map(|elapsed| elapsed.recip()).sum()
     }
 
     /// `-ℓ'_j/ℓ'_0` at some order: what the past makes of the present.
-    fn gathering(&self, order: usize) -> Vec<f64> {
+    pub fn gathering(&self, order: usize) -> Vec<f64> {
         let leading = self.leading(order);
         let before = &self.before[..order];
         lagrange(before).iter().zip(before).map(|(weight, elapsed)| weight / (elapsed * leading)).collect()
     }
 
     /// What the polynomial of one order more than the step gives.
-    fn guess(&self, past: &Past) -> PastPoint {
+    pub fn guess(&self, past: &Past) -> PastPoint {
         let count = (past.order + 1).min(self.before.len());
         PastPoint::sum(&lagrange(&self.before[..count]), &past.points)
+    }
+
+    /// Weights of the end of a step and of the times before it, the latest first, with which they sum to the error at some order; none where the past is
+    /// too short.
+    ///
+    /// The error is from the divided difference of the next order: the distance of the step from the polynomial through the times before it, less that
+    /// polynomial's own error.
+    pub fn error_weights(&self, order: usize) -> Option<Vec<f64>> {
+        let before = self.before.get(..order + 1)?;
+        let part = 1.0 / (1.0 + self.leading(order) * before[order]);
+        let mut weights: Vec<f64> = lagrange(before).iter().map(|weight| -part * weight).collect();
+        weights.insert(0, part);
+        Some(weights)
     }
 }
 
@@ -297,7 +325,7 @@ fn lagrange(times: &[f64]) -> Vec<f64> {
 }
 
 /// A state at some cycles as a polynomial tells it.
-fn state_of(state: &State, point: PastPoint, cycles: f64) -> State {
+pub(super) fn state_of(state: &State, point: PastPoint, cycles: f64) -> State {
     State {
         cycles,
         slip_area: point.slip_area,

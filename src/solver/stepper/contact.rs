@@ -51,12 +51,13 @@ fn slopes<'a>(
 }
 
 fn target(model: &Model, state: &State, gathered: &[f64], index: usize, cycles: f64) -> Target {
-    let springs = model.springs();
+    let (springs, now) = (model.springs(), state.cycles + ALEXANDER.times[index] * cycles);
     Target {
         log_slip: gathered[..springs].to_vec(),
         slip_area: gathered[springs],
         step: ALEXANDER.diagonal * cycles,
-        loading: model.schedule().loading(state.cycles, state.cycles + ALEXANDER.times[index] * cycles),
+        cycles: now,
+        loading: model.schedule().loading(state.cycles, now),
     }
 }
 

@@ -1,12 +1,15 @@
 //! Implicit steps of a contact in gross slip: an ordinary differential equation for the compressions.
 
+use std::sync::Arc;
+
 use faer::Mat;
 
+use super::bdf::{REMEMBERED, TimesBefore, choose, state_of};
 use super::tableau::ALEXANDER;
 use super::{Stepper, Trial};
 use crate::error::{Error, Result};
 use crate::numerics::linear::Factors;
-use crate::solver::model::{Gross, GrossRates, Model, State};
+use crate::solver::model::{CycleLoading, Gross, GrossRates, Linearised, Model, Past, PastPoint, State};
 
 /// Change of a compression, over the largest, by which Newton's matrix is found.
 const DIFFERENCE: f64 = 1e-7;
@@ -17,6 +20,262 @@ const ITERATIONS: usize = 10;
 /// What Newton's method may leave, over the tolerance of a step, and at least.
 const LEFT: f64 = 1e-3;
 const ROUND_OFF: f64 = 1e-12;
+
+/// Slowest contraction of Newton's corrections with which the slopes of the rates serve another step.
+const SAME_SLOPES: f64 = 0.3;
+
+/// Backward differentiation formulas of order 1 to 5, as [`Bdf`], where every cycle is the same, so that wear is smooth in time:
+///
+/// ```text
+/// q - q̂ - h q'(q) = 0
+/// ```
+///
+/// Slopes of the rates are differences, and serve the steps after them while Newton's method converges.
+#[derive(Debug)]
+pub struct GrossBdf {
+    tolerance: f64,
+    slopes: Option<Slopes>,
+    /// Cycles of the state that the last step was tried from.
+    tried_from: Option<f64>,
+}
+
+/// Slopes of the rates of the compressions by the compressions.
+#[derive(Debug)]
+struct Slopes {
+    at: Arc<Linearised>,
+    matrix: Mat<f64>,
+}
+
+impl GrossBdf {
+    /// A stepper with a largest error of the compressions in one step, relative to the largest of them.
+    pub fn new(tolerance: f64) -> Self {
+        Self { tolerance, slopes: None, tried_from: None }
+    }
+
+    /// Takes up the slopes of the step before, made again in a run that is resumed.
+    ///
+    /// A rejected step leaves its slopes to the next one from the same state. Evaluations are not counted: without the interruption there were none.
+    fn take_up_slopes(&mut self, model: &Model, gross: &Gross, state: &State) {
+        if self.tried_from.replace(state.cycles) == Some(state.cycles) {
+            return;
+        }
+        let left = state.past.linearised.as_ref();
+        if self.slopes.as_ref().map(|it| Arc::as_ptr(&it.at)) != left.map(Arc::as_ptr) {
+            let loading = |at: &Linearised| model.schedule().loading(at.cycles, at.cycles);
+            self.slopes = left.and_then(|at| Slopes::new(model, gross, &loading(at), at, &mut 0));
+        }
+    }
+}
+
+impl Slopes {
+    /// By differences; none where no contact has these compressions.
+    fn new(
+        model: &Model,
+        gross: &Gross,
+        loading: &CycleLoading,
+        at: &Arc<Linearised>,
+        evaluations: &mut u64,
+    ) -> Option<Self> {
+        let matrix = slopes(&at.compression, evaluations, |compression| {
+            model.gross_rates(gross, loading, compression)
+        })?;
+        Some(Self { at: Arc::clone(at), matrix })
+    }
+
+    /// Factors of `1 - h ∂q'/∂q`.
+    fn factors(&self, step: f64) -> Factors<f64> {
+        let n = self.matrix.nrows();
+        Factors::new(Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - step * self.matrix[(i, j)]))
+    }
+}
+
+/// `∂q'/∂q` by differences, shape `(springs - 1, springs - 1)`.
+fn slopes(
+    compression: &[f64],
+    evaluations: &mut u64,
+    rates: impl Fn(&[f64]) -> Option<GrossRates>,
+) -> Option<Mat<f64>> {
+    let n = compression.len();
+    let difference = DIFFERENCE * largest(compression);
+    *evaluations += n as u64 + 1;
+    let here = rates(compression)?.compression;
+    let mut moved = compression.to_vec();
+    let mut matrix = Mat::zeros(n, n);
+    for j in 0..n {
+        moved[j] += difference;
+        let there = rates(&moved)?.compression;
+        moved[j] = compression[j];
+        for i in 0..n {
+            matrix[(i, j)] = (there[i] - here[i]) / difference;
+        }
+    }
+    Some(matrix)
+}
+
+impl Stepper for GrossBdf {
+    fn name(&self) -> &'static str {
+        "BDF of order 1 to 5"
+    }
+
+    fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
+        let gross = mesh(model)?;
+        // What no smaller step can cure.
+        model.gross_area(gross, &state.compression)?;
+        let mut evaluations = 0;
+        let trial = self.try_step(model, gross, state, cycles, &mut evaluations);
+        Ok(trial.unwrap_or_else(|| Trial::failed(evaluations)))
+    }
+
+    fn forget(&mut self) {
+        self.slopes = None;
+        self.tried_from = None;
+    }
+
+    fn estimate_order(&self) -> f64 {
+        2.0
+    }
+
+    fn steps_gross_slip(&self) -> bool {
+        true
+    }
+
+    fn interpolates(&self) -> bool {
+        true
+    }
+
+    fn between(&self, model: &Model, state: &State, cycles: f64) -> Option<State> {
+        let between =
+            state_of(state, TimesBefore::new(model, cycles, &state.past).guess(&state.past), cycles);
+        let slip_area = model.gross_area(model.gross()?, &between.compression).ok()?;
+        Some(State { slip_area, ..between })
+    }
+}
+
+impl GrossBdf {
+    fn try_step(
+        &mut self,
+        model: &Model,
+        gross: &Gross,
+        state: &State,
+        cycles: f64,
+        evaluations: &mut u64,
+    ) -> Option<Trial> {
+        let mut past = match state.past.points.is_empty() {
+            true => Past { order: 1, points: vec![PastPoint::new(state, &[])], linearised: None },
+            false => state.past.clone(),
+        };
+        let (now, scale) = (state.cycles + cycles, largest(&state.compression));
+        let loading = model.schedule().loading(state.cycles, now);
+        let times = TimesBefore::new(model, now, &past);
+        let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
+        let step = times.step(past.order);
+        let is_first = past.points.len() == 1;
+        let guess = match is_first {
+            true => {
+                *evaluations += 1;
+                let rates = model.gross_rates(gross, &loading, &state.compression)?.compression;
+                state.compression.iter().zip(rates).map(|(q, rate)| q + cycles * rate).collect()
+            }
+            false => times.guess(&past).compression,
+        };
+        self.take_up_slopes(model, gross, state);
+        let left = (LEFT * self.tolerance).max(ROUND_OFF) * scale;
+        let solve = |slopes: &Slopes, evaluations: &mut u64| -> Option<(Vec<f64>, GrossRates, f64)> {
+            let factors = slopes.factors(step);
+            let (mut at, mut before, mut contraction) = (guess.clone(), f64::INFINITY, 0.0_f64);
+            for _ in 0..ITERATIONS {
+                *evaluations += 1;
+                let there = model.gross_rates(gross, &loading, &at)?;
+                let mut change: Vec<f64> = (0..at.len())
+                    .map(|i| at[i] - gathered.compression[i] - step * there.compression[i])
+                    .collect();
+                factors.solve(&mut change);
+                let size = largest(&change);
+                at.iter_mut().zip(&change).for_each(|(q, change)| *q -= change);
+                if before.is_finite() {
+                    contraction = contraction.max(size / before);
+                }
+                if size <= left {
+                    return Some((at, there, contraction));
+                }
+                if size.is_nan() || size >= 2.0 * before {
+                    return None;
+                }
+                before = size;
+            }
+            None
+        };
+        let found = self.slopes.as_ref().and_then(|slopes| solve(slopes, evaluations));
+        let (compression, rates, contraction) = match found {
+            Some(found) => found,
+            None => {
+                let at = Arc::new(Linearised {
+                    cycles: now,
+                    slip_area: state.slip_area,
+                    gathered_slip_area: gathered.slip_area,
+                    step,
+                    compression: guess.clone(),
+                });
+                self.slopes = Slopes::new(model, gross, &loading, &at, evaluations);
+                solve(self.slopes.as_ref()?, evaluations)?
+            }
+        };
+        let mut end = State {
+            cycles: now,
+            slip_area: model.gross_area(gross, &compression).ok()?,
+            compression,
+            dissipated_energy: gathered.dissipated_energy + step * rates.dissipation,
+            volume_by_rate: gathered.volume_by_rate + step * rates.volume,
+            least_stick_radius: state.least_stick_radius.min(rates.stick_radius),
+            past: Past::default(),
+            ..state.clone()
+        };
+        past.points.insert(0, PastPoint::new(&end, &[]));
+        // At the start what a step adds, later what was there.
+        let of_energy = end.dissipated_energy.max(rates.dissipation * times.per_slope());
+        let of_volume = end.volume_by_rate.max(rates.volume * times.per_slope());
+        let error_at = |order| {
+            let Some(weights) = times.error_weights(order) else { return f64::INFINITY };
+            let off = PastPoint::sum(&weights, &past.points);
+            let relative = |off: f64, scale: f64| if scale > 0.0 { off.abs() / scale } else { 0.0 };
+            (largest(&off.compression) / scale)
+                .max(relative(off.dissipated_energy, of_energy))
+                .max(relative(off.volume_by_rate, of_volume))
+        };
+        let error = match is_first {
+            // Explicit and implicit Euler steps err by the same amount in opposite directions.
+            true => {
+                let apart: Vec<f64> =
+                    end.compression.iter().zip(&guess).map(|(q, guess)| q - guess).collect();
+                0.5 * largest(&apart) / scale
+            }
+            false => error_at(past.order),
+        };
+        let (order, factor) = choose(past.order, error, self.tolerance, error_at);
+        past.order = order;
+        past.points.truncate(REMEMBERED);
+        if contraction > SAME_SLOPES {
+            self.slopes = None;
+        }
+        past.linearised = self.slopes.as_ref().map(|it| Arc::clone(&it.at));
+        end.past = past;
+        Some(Trial {
+            state: Some(end),
+            fields: None,
+            error,
+            rate_evaluations: *evaluations,
+            next_step: Some(cycles * factor),
+        })
+    }
+}
+
+/// The mesh of gross slip of a model.
+fn mesh(model: &Model) -> Result<&Gross> {
+    model.gross().ok_or_else(|| Error::Inconsistent {
+        what: "numerics.stepper",
+        why: "this method steps contacts in gross slip alone; take Sdirk".into(),
+    })
+}
 
 /// Alexander's method of order 3, with the error of the compressions, relative to the largest, by the embedded one of order 2.
 #[derive(Debug)]
@@ -37,10 +296,7 @@ impl Stepper for GrossSdirk {
     }
 
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
-        let gross = model.gross().ok_or_else(|| Error::Inconsistent {
-            what: "numerics.stepper",
-            why: "GrossSdirk steps contacts in gross slip alone; take Sdirk".into(),
-        })?;
+        let gross = mesh(model)?;
         // What no smaller step can cure.
         model.gross_area(gross, &state.compression)?;
         let mut evaluations = 1;
@@ -73,20 +329,14 @@ fn step(
     };
     let scale = largest(start);
     let first = rates(state.cycles, state.dissipated_energy, start, evaluations)?;
-    let factors = {
-        let step = cycles * ALEXANDER.diagonal;
-        let mut matrix = Mat::<f64>::identity(start.len(), start.len());
-        let mut moved = start.clone();
-        for j in 0..start.len() {
-            moved[j] += DIFFERENCE * scale;
-            let there = rates(state.cycles, state.dissipated_energy, &moved, evaluations)?;
-            moved[j] = start[j];
-            for i in 0..start.len() {
-                matrix[(i, j)] -= step * (there.compression[i] - first.compression[i]) / (DIFFERENCE * scale);
-            }
-        }
-        Factors::new(matrix)
-    };
+    let step = cycles * ALEXANDER.diagonal;
+    let slopes = slopes(start, evaluations, |compression| {
+        let loading = model.schedule().loading(state.cycles, state.cycles);
+        model.gross_rates(gross, &model.after_energy(loading, state.dissipated_energy), compression)
+    })?;
+    let factors = Factors::new(Mat::from_fn(start.len(), start.len(), |i, j| {
+        f64::from(u8::from(i == j)) - step * slopes[(i, j)]
+    }));
     let mut stages: Vec<GrossRates> = Vec::with_capacity(ALEXANDER.matrix.len());
     let mut at = start.clone();
     for (row, time) in ALEXANDER.matrix.iter().zip(ALEXANDER.times) {

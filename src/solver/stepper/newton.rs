@@ -197,6 +197,7 @@ impl Newton {
         self.factors = equations.factorise(at, memory);
         let target = equations.target();
         self.linearised = Some(Arc::new(Linearised {
+            cycles: target.cycles,
             slip_area: at.slip_area,
             gathered_slip_area: target.slip_area,
             step: target.step,
