@@ -1,11 +1,13 @@
 //! What a run records: snapshots, checkpoints, and the estimate of its error.
 
+use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use super::Shared;
-use super::accuracy::estimate::Companions;
+use super::accuracy::estimate::{Coarsening, Companions};
 use super::budget;
 use super::limit::worn_profile;
 use crate::data::{Checkpoint, RunWriter, Snapshot, StopReason};
@@ -118,19 +120,29 @@ impl Recorder {
         self.saves_result || (!complete && !failed && long)
     }
 
-    /// Runs the coarser companions of a run whose springs the program chose.
+    /// Runs a simulation, and its coarser companions beside it where the program chose the springs. Until they have come to their ends, checkpoints tell that
+    /// nothing is known of the error.
     ///
     /// # Arguments
     /// * `limited` -- whether the scene has a limit in closed form
-    pub(super) fn run_companions(
+    pub(super) fn run(
         &mut self,
         scene: &Scene,
         store: &OperatorStore,
-        simulation: &Simulation,
+        simulation: &mut Simulation,
         limited: bool,
-    ) {
+        onlookers: &mut dyn Observer,
+    ) -> Result<Outcome> {
         let chosen = scene.numerics().springs.is_none();
-        self.companions = chosen.then(|| Companions::run(scene, simulation, limited, store, &self.stop));
+        self.companions = chosen.then(|| Companions::new(scene, simulation, limited));
+        let coarsening = chosen.then(|| Coarsening::new(scene, simulation));
+        let stop = Arc::clone(&self.stop);
+        let run_companions = || coarsening.map(|it| it.run(scene, store, &stop));
+        let (outcome, found) = beside(|| simulation.run(&mut [&mut *self, onlookers]), run_companions);
+        if let (Some(companions), Some(found)) = (&mut self.companions, found) {
+            companions.take(found);
+        }
+        outcome
     }
 
     /// By coarser runs where the program chose the springs, else by the balance of the worn volume, as before the first snapshot that a companion
@@ -194,6 +206,20 @@ impl Observer for Recorder {
         }
         Ok(Flow::Continue)
     }
+}
+
+/// Does one thing here and another in a thread of its own; one after the other where there are no other cores, or other scenes keep them busy.
+fn beside<A, B: Send>(here: impl FnOnce() -> A, there: impl FnOnce() -> B + Send) -> (A, B) {
+    let one_core = thread::available_parallelism().is_ok_and(|cores| cores.get() == 1);
+    if one_core || rayon::current_thread_index().is_some() {
+        let found = there();
+        return (here(), found);
+    }
+    thread::scope(|scope| {
+        let there = scope.spawn(there);
+        let found = here();
+        (found, there.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    })
 }
 
 /// Estimate of the error in the worn volume, relative to the limit's: its distance from the volume by the rates of the cycles.

@@ -212,8 +212,7 @@ fn to_the_end(
     // Springs on which the run came to an end, if less accurately than was asked for.
     let mut ended = None;
     loop {
-        recorder.run_companions(scene, store, &stepping, limit.is_some());
-        let outcome = stepping.run(&mut [&mut *recorder, &mut *onlookers]);
+        let outcome = recorder.run(scene, store, &mut stepping, limit.is_some(), onlookers);
         let checkpoint = recorder.checkpoint(&stepping);
         let springs = match (&outcome, ended) {
             // Finer ones do not.

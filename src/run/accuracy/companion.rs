@@ -54,14 +54,14 @@ pub(super) struct Coarser<'a> {
 
 /// A coarser run that came to its end.
 #[derive(Debug)]
-pub(super) struct Companion {
-    pub springs: usize,
+pub(in crate::run) struct Companion {
+    pub(super) springs: usize,
     /// At its outputs.
-    pub seen: Vec<Worn>,
+    pub(super) seen: Vec<Worn>,
     /// Whether the last of them is at the end of wear, whenever that came.
-    pub spent: bool,
+    pub(super) spent: bool,
     /// What substeps leave out; none where periods are not sampled.
-    pub unsampled: Option<Unsampled>,
+    pub(super) unsampled: Option<Unsampled>,
 }
 
 impl Companion {

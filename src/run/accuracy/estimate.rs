@@ -14,7 +14,7 @@ use crate::data::{Snapshot, same_cycles};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Scene, Stepper};
-use crate::solver::model::{MovingStick, OperatorStore};
+use crate::solver::model::{Model, MovingStick, OperatorStore};
 use crate::solver::simulation::{End, Outcome, Simulation};
 
 /// Springs of a run over those of its companion, and of that over those of the next; fewest of a companion.
@@ -74,50 +74,82 @@ pub(in crate::run) struct Companions {
     second: Option<Companion>,
 }
 
-impl Companions {
-    /// Runs the companions of a run.
-    ///
-    /// # Arguments
-    /// * `limited` -- whether the scene has a limit in closed form
-    pub(in crate::run) fn run(
-        scene: &Scene,
-        simulation: &Simulation,
-        limited: bool,
-        store: &OperatorStore,
-        stop: &Arc<AtomicBool>,
-    ) -> Self {
+/// How the companions of a run are made.
+#[derive(Debug)]
+pub(in crate::run) struct Coarsening {
+    springs: usize,
+    tolerance: f64,
+    smooth: bool,
+    /// Whether one companion serves.
+    alone: bool,
+    /// `r² - c²`, m², of the radii compared.
+    offsets: Vec<f64>,
+    /// Substeps of a period where they are of a known order, so that coarser companions show what they leave out.
+    substeps: Option<usize>,
+}
+
+impl Coarsening {
+    /// That of a run.
+    pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation) -> Self {
         let (model, numerics) = (simulation.model(), scene.numerics());
         let smooth = numerics.stepper == Stepper::Implicit && model.wears_smoothly();
-        let offsets = model.offsets();
-        let every = (offsets.len() / model.springs()).max(1);
-        let offsets: Vec<f64> = offsets.into_iter().step_by(every).collect();
-        // Steps of a period are of a known order, so that coarser companions show what they leave out.
-        let steps_of = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
+        Self {
+            springs: model.springs(),
+            tolerance: simulation.tolerance(),
+            smooth,
+            alone: smooth || model.gross().is_some(),
+            offsets: model.offsets().into_iter().step_by(every(model)).collect(),
+            substeps: resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps()),
+        }
+    }
+
+    /// Runs the companions, the finer one first; none of those that come to no end or are not needed.
+    pub(in crate::run) fn run(
+        &self,
+        scene: &Scene,
+        store: &OperatorStore,
+        stop: &Arc<AtomicBool>,
+    ) -> [Option<Companion>; 2] {
+        let numerics = scene.numerics();
         let coarser = |steps: i32| {
             let coarser = |value: f64| (value * COARSER.powi(steps)).min(COARSEST);
-            let accuracy = if smooth { coarser(numerics.accuracy) } else { numerics.accuracy };
-            let tolerance = Some(coarser(simulation.tolerance()));
+            let fewer = |count: usize| (count as f64 / RATIO.powi(steps)).ceil() as usize;
             Companion::run(&Coarser {
                 scene,
                 numerics: Numerics {
-                    accuracy,
-                    tolerance,
-                    substeps: steps_of
-                        .map(|it| (it as f64 / RATIO.powi(steps)).ceil() as usize)
-                        .or(numerics.substeps),
+                    accuracy: if self.smooth { coarser(numerics.accuracy) } else { numerics.accuracy },
+                    tolerance: Some(coarser(self.tolerance)),
+                    substeps: self.substeps.map(fewer).or(numerics.substeps),
                     ..*numerics
                 },
-                springs: ((model.springs() as f64 / RATIO.powi(steps)).ceil() as usize).max(FEWEST),
-                offsets: &offsets,
-                samples: steps == 1 && steps_of.is_none(),
-                most_steps: MOST_STEPS[usize::from(!smooth)],
+                springs: fewer(self.springs).max(FEWEST),
+                offsets: &self.offsets,
+                samples: steps == 1 && self.substeps.is_none(),
+                most_steps: MOST_STEPS[usize::from(!self.smooth)],
                 store,
                 stop,
             })
         };
         let first = coarser(1);
-        let gross = model.gross().is_some();
-        let second = (first.is_some() && !smooth && !gross).then(|| coarser(2)).flatten();
+        let second = if first.is_some() && !self.alone { coarser(2) } else { None };
+        [first, second]
+    }
+}
+
+/// One in so many radii of a run is compared.
+fn every(model: &Model) -> usize {
+    (model.offsets().len() / model.springs()).max(1)
+}
+
+impl Companions {
+    /// Those of a run, before they are run.
+    ///
+    /// # Arguments
+    /// * `limited` -- whether the scene has a limit in closed form
+    pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, limited: bool) -> Self {
+        let (model, numerics) = (simulation.model(), scene.numerics());
+        let smooth = numerics.stepper == Stepper::Implicit && model.wears_smoothly();
+        let (gross, every) = (model.gross().is_some(), every(model));
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
         let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
@@ -140,9 +172,14 @@ impl Companions {
             radii,
             limit: (limited || smooth).then(|| [model.limit_volume(), model.depth_scale()]),
             left_out: if smooth { 0.0 } else { model.core_uncertainty().max(unseen()) },
-            first,
-            second,
+            first: None,
+            second: None,
         }
+    }
+
+    /// Takes what they came to.
+    pub(in crate::run) fn take(&mut self, [first, second]: [Option<Companion>; 2]) {
+        (self.first, self.second) = (first, second);
     }
 
     /// Whether the order of convergence is known.
