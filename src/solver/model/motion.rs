@@ -93,9 +93,16 @@ impl Model {
         let ratio = self.contact.half_space().stiffness_ratio();
         let lifted: Vec<f64> = compression.iter().map(|q| q - loading.lift).collect();
         let amplitude = self.amplitude(loading, &lifted, fields);
+        let (law, keeps) = (&*loading.friction, self.keeps_slipping(loading));
         let slip: Vec<(f64, f64)> = lifted
             .iter()
-            .map(|q| slip_amplitude_of_spring(&*loading.friction, ratio, amplitude, *q))
+            .map(|q| {
+                if keeps && 2.0 * ratio * amplitude > law.static_strength(*q) + law.kinetic_strength(*q) {
+                    let slope = -law.kinetic_strength_slope(*q) / ratio;
+                    return (amplitude - law.kinetic_strength(*q) / ratio, slope);
+                }
+                slip_amplitude_of_spring(law, ratio, amplitude, *q)
+            })
             .collect();
         let energies = |(q, slip): (&f64, &(f64, f64))| -> Energies {
             if slip.0 == 0.0 {

@@ -231,7 +231,10 @@ impl StickStage<'_> {
     fn loading(&self, at: &Unknowns) -> CycleLoading {
         let loading = self.target.springs.loading.clone();
         match self.moving.cause {
-            Cause::Tangential | Cause::BothForces(_) | Cause::ReleasedForces(_) | Cause::TwoBalances(_) => {
+            Cause::BothForces(_) => {
+                self.model.deepened(loading, &self.stick_zone(at, self.slip_compression(at)))
+            }
+            Cause::Tangential | Cause::ReleasedForces(_) | Cause::TwoBalances(_) => {
                 self.model.displaced(loading, self.slip_compression(at))
             }
             _ => loading,
