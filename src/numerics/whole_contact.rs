@@ -24,6 +24,10 @@ const AT_EDGE: f64 = -0.5;
 /// polynomial.
 const POWER: f64 = 2.0;
 
+/// Grading below which it is `2 + 0.9 k`: there something else is off by more, which the balance of energy shows on cells that fine alone.
+const SOFT: f64 = -0.6;
+const FALL: f64 = 0.9;
+
 /// Nodes up to which the largest exponent holds; of more it falls, so that the last cell, of width `N^(-2m)`, is no narrower.
 const NODES_OF_POWER: f64 = 24.0;
 
@@ -75,7 +79,8 @@ impl WholeContact {
     /// Those of the quadrature.
     pub fn new(grading: f64, inner: usize) -> Result<Self> {
         let most = POWER * NODES_OF_POWER.ln() / (inner as f64).ln();
-        let power = (POWER / (1.0 - grading.min(0.0))).min(most).max(1.0);
+        let at_edge = if grading < SOFT { POWER + FALL * grading } else { POWER / (1.0 - grading.min(0.0)) };
+        let power = at_edge.min(most).max(1.0);
         let zeros = Rule::jacobi(inner, AT_EDGE, 0.0)?;
         let mut nodes: Vec<Place> =
             zeros.nodes.iter().zip(&zeros.complements).map(|(y, h)| Place { y: *y, h: *h }).collect();
