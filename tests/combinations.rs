@@ -25,7 +25,7 @@ const fn level(name: &'static str, lines: &'static [(&'static str, &'static str)
     Level { name, lines }
 }
 
-const CONTROLS: [Level; 6] = [
+const CONTROLS: [Level; 7] = [
     level("held indentation", &[]),
     level("force that presses on", &[("load", "initial_force = 266.6666666666667")]),
     level("held normal force", &[("load", "normal_force = 266.6666666666667")]),
@@ -35,6 +35,10 @@ const CONTROLS: [Level; 6] = [
         &[("load", "normal_force = 266.6666666666667"), ("control", "tangential_control = \"force\"")],
     ),
     level("rig", &[("control", "rig_stiffness = 3e8")]),
+    level(
+        "rig, normal force held",
+        &[("load", "normal_force = 266.6666666666667"), ("control", "rig_stiffness = 3e8")],
+    ),
 ];
 
 const REGIMES: [Level; 2] =

@@ -218,7 +218,9 @@ fn gross_slip_runs_for_every_indenter_grading_and_amplitude() {
                     println!(
                         "k {grading} n {exponent} U {over} force {holds_normal_force}: fewer springs off by {off:.1e}, balance {balance:.1e}"
                     );
-                    assert!(off.abs() < 1e-3 && balance.abs() < 5e-4, "{few:?} {many:?} {balance:e}");
+                    // There uniform pressure is a polynomial of the mesh.
+                    let allowed = if (-0.6..0.0).contains(&grading) { 5e-5 } else { 5e-4 };
+                    assert!(off.abs() < 1e-3 && balance.abs() < allowed, "{few:?} {many:?} {balance:e}");
                     assert!(many.windows(2).all(|pair| pair[1] >= pair[0]), "{many:?}");
                 }
             }

@@ -487,8 +487,8 @@ fn bad_loading_and_what_does_not_go_together_are_refused_at_their_line() {
         ("repeat = true".into(), "repeat", &["has no meaning without loading.blocks"]),
         ("repeat = 1\n[[loading.blocks]]\ncycles = 1".into(), "repeat", &["expected true or false, found an integer"]),
         // Tangential control is for tangential oscillation.
-        (format!("tangential_control = \"force\"\n{orbit}"), "orbit", &["a held tangential force", "remove loading.tangential_control"]),
-        (format!("rig_stiffness = 1e6\n{oscillation}amplitude_ratio = 0.1"), "normal_osc", &["a rig", "remove loading.rig_stiffness"]),
+        (format!("tangential_control = \"force\"\n{orbit}"), "orbit", &["a held tangential force", "which component", "remove loading.tangential_control"]),
+        (format!("rig_stiffness = 1e6\n{oscillation}amplitude_ratio = 0.1"), "normal_osc", &["a rig", "changes with the indentation", "remove loading.rig_stiffness"]),
         // The closed form of a cycle.
         (numerics("cycle = \"closed-form\"", orbit), "closed-form", &["holds for tangential oscillation alone"]),
         (numerics("cycle = \"closed-form\"", &fast("2")), "closed-form", &["holds for tangential oscillation alone"]),
@@ -499,16 +499,6 @@ fn bad_loading_and_what_does_not_go_together_are_refused_at_their_line() {
     ];
     for (loading, shown, words) in &cases {
         refused(&scene(FRICTION, WEAR, &format!("{LOADING}{loading}")), shown, words);
-    }
-    let static_kinetic = "[friction.static-kinetic]\nstatic_coefficient = 0.6\nkinetic_coefficient = 0.5";
-    for (control, shown) in
-        [("tangential_control = \"force\"", "tangential_control"), ("rig_stiffness = 1e6", "rig")]
-    {
-        refused(
-            &scene(static_kinetic, WEAR, &format!("{LOADING}{control}")),
-            shown,
-            &["does not go together with friction.static-kinetic"],
-        );
     }
     // The amplitude of a path is its own.
     refused(

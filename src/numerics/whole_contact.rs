@@ -20,10 +20,15 @@ use crate::error::Result;
 /// Jacobi exponent of the nodes at the edge: with one of 1 and more the last node lies too far inside, pressure there turns negative and grows.
 const AT_EDGE: f64 = -0.5;
 
-/// Exponent `m` for `k >= 0`, and what it falls by per `-k` below: towards `k = -1` more grading makes pressure at the edge grow.
-const POWER: [f64; 2] = [2.0, 0.9];
+/// Exponent `m` for `k >= 0`: more grading makes pressure at the edge grow. Below it is `2/(1-k)`, with which uniform pressure, `q ~ (1-ξ)^((1-k)/2)`, is a
+/// polynomial.
+const POWER: f64 = 2.0;
 
-/// Nodes up to which that exponent holds; of more it falls, so that the last cell stays about as wide.
+/// Grading below which it is `2 + 0.9 k`: there something else is off by more, which the balance of energy shows on cells that fine alone.
+const SOFT: f64 = -0.6;
+const FALL: f64 = 0.9;
+
+/// Nodes up to which the largest exponent holds; of more it falls, so that the last cell, of width `N^(-2m)`, is no narrower.
 const NODES_OF_POWER: f64 = 24.0;
 
 /// Nodes of the rules on a panel beside half of those of the polynomial.
@@ -73,9 +78,9 @@ impl WholeContact {
     /// # Errors
     /// Those of the quadrature.
     pub fn new(grading: f64, inner: usize) -> Result<Self> {
-        let [most, fall] = POWER;
-        let fewer = (NODES_OF_POWER.ln() / (inner as f64).ln()).min(1.0);
-        let power = ((most + fall * grading.min(0.0)) * fewer).max(1.0);
+        let most = POWER * NODES_OF_POWER.ln() / (inner as f64).ln();
+        let at_edge = if grading < SOFT { POWER + FALL * grading } else { POWER / (1.0 - grading.min(0.0)) };
+        let power = at_edge.min(most).max(1.0);
         let zeros = Rule::jacobi(inner, AT_EDGE, 0.0)?;
         let mut nodes: Vec<Place> =
             zeros.nodes.iter().zip(&zeros.complements).map(|(y, h)| Place { y: *y, h: *h }).collect();

@@ -200,24 +200,20 @@ pub(super) fn check(
         )));
     }
     let control = control_given(section).or(force);
-    let Some(control) = control.filter(|_| motion.control != TangentialControl::Displacement) else {
-        return Ok(());
-    };
+    let held = control.filter(|_| motion.control != TangentialControl::Displacement);
+    let (Some(control), Some(entry)) = (held, of_mode) else { return Ok(()) };
     let name = match motion.control {
         TangentialControl::Force => "a held tangential force",
         _ => "a rig",
     };
-    if let Some(entry) = of_mode {
-        return Err(entry.misplaced(format_args!(
-            "does not go together with {name}, which is for tangential oscillation alone; remove {}",
-            control.path()
-        )));
-    }
-    if friction.remembers_slip() {
-        return Err(control.misplaced(format_args!(
-            "asks for {name}, which does not go together with friction.{}; remove one of the two",
-            friction.entry().name
-        )));
-    }
-    Ok(())
+    // An amplitude of force stands for the displacement of a whole period only where that goes to and fro between two reversals.
+    let why = if mode.changes_indentation() {
+        "what the contact bears changes with the indentation within a period, and with it, at every instant, the displacement that a force asks for"
+    } else {
+        "it gives the displacement at every instant, which a force would decide, and one amplitude does not say which component of the force that is"
+    };
+    Err(entry.misplaced(format_args!(
+        "does not go together with {name}: {why}; remove {}, or oscillate tangentially at one indentation",
+        control.path()
+    )))
 }

@@ -257,7 +257,13 @@ impl Model {
             let along = columns.map(|c| slip[(i, c)] * direction[(i, c)]).sum::<f64>();
             if steps > 2 { along } else { along.max(0.0) }
         };
-        let path = Mat::from_fn(n, steps, along);
+        let mut path = Mat::from_fn(n, steps, along);
+        // Ahead of a front of slip that cells do not resolve the stencils may leave a negative sum over the steps: there is no slip there.
+        for i in 0..n {
+            if path.row(i).iter().sum::<f64>() < 0.0 {
+                path.row_mut(i).fill(0.0);
+            }
+        }
         Surface { pressure, direction, path }
     }
 

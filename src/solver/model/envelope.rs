@@ -58,7 +58,11 @@ impl Schedule {
         let conditions = self.conditions();
         let both = conditions.holds_both_forces();
         let coulomb = conditions.friction.coefficient().is_some();
-        let compression = if conditions.holds_normal_force && !first && !(both && coulomb) {
+        let rests = conditions.holds_normal_force && conditions.friction.remembers_slip();
+        let compression = if rests && !first {
+            let slipping = |loading| first_slip_compression(contact, &loading, contact.indentation());
+            self.extremes().map(slipping).collect::<Result<Vec<f64>>>()?.into_iter().fold(0.0, f64::max)
+        } else if conditions.holds_normal_force && !first && !(both && coulomb) {
             let least = self.extremes().map(|loading| least_stick_radius(contact, &loading));
             let least = least.collect::<Result<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);
             depth - profile.value(least)

@@ -93,9 +93,16 @@ impl Model {
         let ratio = self.contact.half_space().stiffness_ratio();
         let lifted: Vec<f64> = compression.iter().map(|q| q - loading.lift).collect();
         let amplitude = self.amplitude(loading, &lifted, fields);
+        let (law, keeps) = (&*loading.friction, self.keeps_slipping(loading));
         let slip: Vec<(f64, f64)> = lifted
             .iter()
-            .map(|q| slip_amplitude_of_spring(&*loading.friction, ratio, amplitude, *q))
+            .map(|q| {
+                if keeps && 2.0 * ratio * amplitude > law.static_strength(*q) + law.kinetic_strength(*q) {
+                    let slope = -law.kinetic_strength_slope(*q) / ratio;
+                    return (amplitude - law.kinetic_strength(*q) / ratio, slope);
+                }
+                slip_amplitude_of_spring(law, ratio, amplitude, *q)
+            })
             .collect();
         let energies = |(q, slip): (&f64, &(f64, f64))| -> Energies {
             if slip.0 == 0.0 {
@@ -283,7 +290,7 @@ impl Model {
         let by_amplitude = self.stuck_force(fields, 1.0) + sticking;
         let [by_force, direct] = loading.control.factors();
         let by_compression = (0..lifted.len()).map(|j| {
-            let strength = slips[j] * self.slope(|q| loading.friction.kinetic_strength(q), lifted[j]);
+            let strength = slips[j] * self.slope(|q| resistance(loading, q), lifted[j]);
             -by_force * weights[j] * strength / (by_force * by_amplitude + direct)
         });
         AmplitudeSlope { by_compression: by_compression.collect(), slips: slips.clone() }
@@ -302,7 +309,7 @@ impl Model {
         let borne: Vec<f64> = lifted
             .iter()
             .zip(&fields.density_factor)
-            .map(|(q, factor)| factor * (ratio * amplitude).min(loading.friction.kinetic_strength(*q)))
+            .map(|(q, factor)| factor * (ratio * amplitude).min(resistance(loading, *q)))
             .collect();
         self.stuck_force(fields, amplitude)
             + half_space.normal_stiffness() * fields.slip_area * dot(self.operators.abel.spring_sum(), &borne)
@@ -406,6 +413,17 @@ impl PathSprings<'_> {
             }
         }
         Energies { dissipation: cycle.dissipation, jump_loss: cycle.jump_loss, work: cycle.work }
+    }
+}
+
+/// What resists the slip of a spring lifted to a compression, over its normal stiffness, m. Next to an edge of stick compressions swing about zero as they
+/// do in the balance of normal forces: a spring that is never lifted resists by the odd function of its compression, so that swings cancel and the balance
+/// of tangential forces has no kink there.
+pub(super) fn resistance(loading: &CycleLoading, lifted: f64) -> f64 {
+    if loading.lift == 0.0 {
+        loading.friction.kinetic_strength(lifted.abs()).copysign(lifted)
+    } else {
+        loading.friction.kinetic_strength(lifted)
     }
 }
 

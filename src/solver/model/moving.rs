@@ -18,6 +18,7 @@
 //! `K' = -(G' - G_0') Φ`, which the contact edge needs to know: there `S = S_0 + K`.
 
 mod at_rest;
+mod breakaway;
 mod causes;
 mod jump;
 mod stage;
@@ -41,6 +42,9 @@ const STATIONS: usize = 24;
 /// Indentation over the first one up to which a contact that slides under a held force is followed.
 const FARTHEST: f64 = 5.0;
 
+/// Steps in the search for the first balance of forces where the force may fall as the displacement grows.
+const FIRST_BALANCE: usize = 200;
+
 /// Area of stick, over that of the core of the mesh, below which it is taken for lost.
 const LOST: f64 = 4.0;
 
@@ -58,7 +62,8 @@ enum Cause {
     Tangential,
     /// This normal force, N, is held while the whole contact slides: the edge stays at the core of the mesh, `q_c = d - g_0(c)` grows.
     Sliding(f64),
-    /// This normal force, N, and the tangential amplitude of force are held: the edge stays, `q_c = d - g_0(c)` grows, the amplitude with it.
+    /// This normal force, N, and the tangential amplitude of force are held: the edge stays, `q_c = d - g_0(c)` grows, the amplitude with it. So it is
+    /// on a rig where springs remember their slip.
     BothForces(f64),
     /// The same while friction falls: the edge recedes to where unworn ground alone bears `F_N - F_x/μ`, see [`held_stick_radius`].
     ReleasedForces(f64),
@@ -344,11 +349,12 @@ impl Model {
         self.moving.as_ref()
     }
 
-    /// Whether a stick zone that shrinks has come to the core of the mesh.
+    /// Whether a stick zone that shrinks has come to the core of the mesh, or breaks away before.
     pub fn loses_stick(&self, state: &State) -> bool {
         let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
         let core = self.stick_zone.stick_area;
-        self.slides && tangential && state.stick.as_ref().is_some_and(|stick| stick.area < LOST * core)
+        let shrunk = state.stick.as_ref().is_some_and(|stick| stick.area < LOST * core);
+        self.slides && tangential && shrunk || self.breaks_away(state)
     }
 
     /// Where the mesh begins, with the edge of stick of a state.
@@ -400,9 +406,11 @@ impl Model {
             (Some(Cause::Tangential), Some(stick)) => {
                 self.displaced(loading, self.contact.indentation() - stick.depth)
             }
-            (Some(Cause::BothForces(_) | Cause::ReleasedForces(_)), Some(stick)) => {
-                self.displaced(loading, stick.depth)
+            (Some(Cause::BothForces(_)), Some(stick)) => {
+                let zone = self.stick_zone_in(Some(stick), &loading);
+                self.deepened(loading, &zone)
             }
+            (Some(Cause::ReleasedForces(_)), Some(stick)) => self.displaced(loading, stick.depth),
             (Some(Cause::TwoBalances(_)), Some(stick)) => self.displaced(loading, stick.slip_compression),
             _ => loading,
         }
@@ -496,5 +504,15 @@ pub(super) fn first_slip_compression(
             .unwrap_or(f64::NAN);
         loading.excess(force, amplitude)
     };
-    bracketed(excess, 1e-12 * largest, largest, 0.0)
+    let least = 1e-12 * largest;
+    if !loading.friction.remembers_slip() {
+        return bracketed(excess, least, largest, 0.0);
+    }
+    // The force falls again where more springs break away than stick: what is reached first is what holds it. Held, it is the one of an amplitude.
+    if let AmplitudeControl::Force(_) = loading.control {
+        return Ok(loading.slip_compression(ratio));
+    }
+    let part = |i: usize| least + (largest - least) * i as f64 / FIRST_BALANCE as f64;
+    let reached = (1..FIRST_BALANCE).find(|i| excess(part(*i)) >= 0.0).unwrap_or(FIRST_BALANCE);
+    bracketed(excess, part(reached - 1), part(reached), 0.0)
 }

@@ -35,9 +35,7 @@ impl Simulation {
     /// The moment at which no stick is left under a force that is held, which the contact then no longer bears.
     pub(super) fn slides_off(&self) -> Error {
         let (model, state) = (&self.model, &self.state);
-        let shrinking = state.stick.as_ref().filter(|stick| stick.rates[0] < 0.0);
-        let left = shrinking.map_or(0.0, |stick| stick.area / -stick.rates[0]);
-        let cycles = state.cycles + left;
+        let cycles = state.cycles + model.cycles_to_loss(state);
         let tau = cycles * model.contact().tau_per_cycle();
         let radius = self.cycle.stick_radius;
         Error::NotConverged {

@@ -1,5 +1,6 @@
 //! What moves the edge of stick, and where it is not followed.
 
+use super::breakaway::check_memory;
 use super::{Cause, MovingStick, follows_held_force};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -29,6 +30,7 @@ impl MovingStick {
             check_along_energy(schedule, slides && !follows)?;
         }
         let in_blocks = !conditions.blocks.is_empty();
+        check_memory(schedule, contact, follows)?;
         if slides && !follows {
             if conditions.holds_normal_force {
                 check_sliding_under_force(conditions, contact)?;
@@ -52,6 +54,7 @@ impl MovingStick {
             (true, TangentialControl::Force) if coulomb && !rises && !in_blocks => {
                 Self::by(if falls { Cause::ReleasedForces(force) } else { Cause::BothForces(force) })
             }
+            (true, _) if conditions.friction.remembers_slip() => Self::by(Cause::BothForces(force)),
             (true, _) => {
                 let cause = Cause::TwoBalances(force);
                 Self {

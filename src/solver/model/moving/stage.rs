@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::{Cause, MovingStick, StickEdge, held_stick_radius};
 use crate::numerics::grid::lagrange;
+use crate::solver::model::motion::resistance;
 use crate::solver::model::schedule::CycleLoading;
 use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
 
@@ -230,7 +231,10 @@ impl StickStage<'_> {
     fn loading(&self, at: &Unknowns) -> CycleLoading {
         let loading = self.target.springs.loading.clone();
         match self.moving.cause {
-            Cause::Tangential | Cause::BothForces(_) | Cause::ReleasedForces(_) | Cause::TwoBalances(_) => {
+            Cause::BothForces(_) => {
+                self.model.deepened(loading, &self.stick_zone(at, self.slip_compression(at)))
+            }
+            Cause::Tangential | Cause::ReleasedForces(_) | Cause::TwoBalances(_) => {
                 self.model.displaced(loading, self.slip_compression(at))
             }
             _ => loading,
@@ -468,7 +472,7 @@ impl StickStage<'_> {
         loading: &CycleLoading,
         trial: &StickTrial,
     ) -> f64 {
-        let strength = |q: f64| loading.friction.kinetic_strength(q);
+        let strength = |q: f64| resistance(loading, q);
         if strength(q) >= self.model.contact.half_space().stiffness_ratio() * loading.amplitude {
             return 0.0;
         }

@@ -1,0 +1,171 @@
+//! Springs that are held harder while they stick than while they slip, under held forces and on a rig; edges of stick that come to rest.
+
+use std::str::FromStr;
+
+use fretwear::contact::closed_form::LimitingShape;
+use fretwear::scene::Scene;
+use fretwear::{Error, Results, Simulation};
+
+const STATIC: &str = "[friction.static-kinetic]\nstatic_coefficient = 0.6\nkinetic_coefficient = 0.5";
+const ARCHARD: &str = "[wear.archard]\ncoefficient = 1e-3";
+const FORCE: &str = "tangential_control = \"force\"";
+/// That of an indentation of 1 at k = 0.
+const HELD: &str = "normal_force = 1.3333333333333333";
+
+struct Case<'a> {
+    grading: f64,
+    friction: &'a str,
+    wear: &'a str,
+    loading: &'a str,
+    springs: usize,
+}
+
+impl Case<'_> {
+    fn scene(&self) -> Scene {
+        let Self { grading, friction, wear, loading, springs } = self;
+        Scene::from_str(&format!(
+            "[indenter.paraboloid]\nradius = 1\n[half_space]\ngrading = {grading}\nnormal_stiffness = 1\nstiffness_ratio = 1\n{friction}\n{wear}\n\
+             [loading]\n{loading}\n[numerics]\nsprings = {springs}\ntolerance = 1e-5\n[output]\nsnapshots = 4\n",
+        ))
+        .unwrap()
+    }
+
+    fn run(&self) -> Results {
+        Simulation::new(&self.scene()).unwrap().run().unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    fn error(&self) -> Error {
+        let found = Simulation::new(&self.scene()).and_then(|simulation| simulation.run().map(drop));
+        found.expect_err("a run that does not come to its end")
+    }
+}
+
+fn at_rest<'a>(friction: &'a str, loading: &'a str, springs: usize) -> Case<'a> {
+    Case { grading: 0.0, friction, wear: ARCHARD, loading, springs }
+}
+
+/// Under both forces, and on a rig beside a held normal force, springs that slip go on to, so that the edge stays where it is in the first cycle, and the
+/// limit is that of Coulomb's friction with the same stick radius.
+#[test]
+fn beside_a_held_normal_force_the_edge_rests_and_the_limit_is_that_of_the_first_stick_radius() {
+    let wear = [
+        (ARCHARD, 1e3),
+        ("[wear.power-law]\ncoefficient = 1e-3\npressure_exponent = 1\nslip_exponent = 0.5", 1e3),
+    ];
+    for (wear, tau) in wear {
+        for control in [FORCE, "rig_stiffness = 2"] {
+            let loading = format!("{HELD}\nstick_ratio = 0.7\n{control}\ntau = {tau:e}");
+            let case = Case { wear, ..at_rest(STATIC, &loading, 60) };
+            let mut conditions = case.scene().conditions().clone();
+            conditions.tangential_control = fretwear::laws::loading::TangentialControl::Force;
+            let contact = case.scene().contact().unwrap();
+            let limit = LimitingShape::under(&contact, &conditions).unwrap().unwrap();
+            let results = case.run();
+            let last = results.last();
+            let off = last.wear_volume / limit.wear_volume() - 1.0;
+            let moved = last.stick_radius / contact.stick_radius().unwrap() - 1.0;
+            println!("{wear}, {control}: volume off by {off:.1e}, stick radius by {moved:.1e}");
+            assert!(off.abs() < 2e-5, "{wear}, {control}: {off:e}");
+            assert!(moved.abs() < 1e-12, "{wear}, {control}: {moved:e}");
+        }
+    }
+}
+
+/// Slip sets in with a jump at the edge of stick: the order is 1.5, with Coulomb's friction it is 2.9.
+#[test]
+fn under_a_balance_of_forces_volumes_converge() {
+    for control in [FORCE, "rig_stiffness = 4"] {
+        let loading = format!("indentation = 1\nstick_ratio = 0.7\n{control}\ntau = 6");
+        let volumes =
+            [60, 120, 240].map(|springs| at_rest(STATIC, &loading, springs).run().last().wear_volume);
+        let [first, second] = [volumes[1] - volumes[0], volumes[2] - volumes[1]].map(f64::abs);
+        let order = (first / second).log2();
+        println!("{control}: {volumes:.7?}, order {order:.1}");
+        assert!(order > 1.3 && second < 1e-4 * volumes[2], "{control}: {volumes:?}, order {order}");
+    }
+}
+
+/// `μ_s c g_0'(c)/(1+k) = (μ_s - μ_k) (d - g_0(c))`; with g_0 = x² at k = 0 and d = 1 that is c² = 1/13.
+#[test]
+fn a_held_force_breaks_the_contact_away_where_springs_lose_more_than_those_that_stick_gain() {
+    let breaks = 1.0 / 13.0_f64.sqrt();
+    let loading =
+        |ratio: f64, tau: f64| format!("indentation = 1\nstick_ratio = {ratio}\n{FORCE}\ntau = {tau}");
+    let moment = |springs: usize| {
+        let words = at_rest(STATIC, &loading(0.7, 30.0), springs).error().to_string();
+        let number = |after: &str, until: &str| -> f64 {
+            let rest = words.split_once(after).unwrap_or_else(|| panic!("{words}")).1;
+            rest.split_once(until).unwrap().0.parse().unwrap()
+        };
+        [number("(τ = ", ")"), number("within the radius ", " m")]
+    };
+    let [coarse, fine] = [60, 120].map(moment);
+    println!(
+        "stick is lost at τ = {} and {}, from the radii {} and {}",
+        coarse[0], fine[0], coarse[1], fine[1]
+    );
+    assert!((coarse[0] / fine[0] - 1.0).abs() < 1e-3, "{coarse:?}, {fine:?}");
+    assert!((fine[1] / breaks - 1.0).abs() < 0.02, "{fine:?} against {breaks}");
+    // It holds the force at first, or not at all.
+    assert!(at_rest(STATIC, &loading(1.05 * breaks, 1e-4), 60).run().last().wear_volume > 0.0);
+    let refused = at_rest(STATIC, &loading(0.97 * breaks, 1e-4), 60).error().to_string();
+    assert!(refused.contains("breaks away") && refused.contains("loading.stick_ratio"), "{refused}");
+}
+
+#[test]
+fn what_the_past_of_single_springs_would_decide_is_refused() {
+    let blocks = "[[loading.blocks]]\ntau = 0.3\n[[loading.blocks]]\ntau = 1\namplitude_factor = 0.7";
+    let rising = format!("{STATIC}\n[friction.history]\nfinal_factor = 1.2\ntau = 1");
+    let falling = format!("{STATIC}\n[friction.history]\nfinal_factor = 0.9\ntau = 1");
+    let held = "indentation = 1\nstick_ratio = 0.7";
+    for (friction, load, beside, key) in [
+        (STATIC, held, blocks, "loading.blocks"),
+        (&rising, held, "", "friction.history"),
+        (&falling, "normal_force = 1.3333333333333333\nstick_ratio = 0.7", "", "friction.history"),
+    ] {
+        for control in [FORCE, "rig_stiffness = 4"] {
+            let loading = format!("{load}\n{control}\ntau = 1\n{beside}");
+            let words = at_rest(friction, &loading, 60).error().to_string();
+            for part in [key, "past of each", "friction.coulomb"] {
+                assert!(words.contains(part), "{control}: {words}");
+            }
+        }
+    }
+    let loading = format!("{held}\n{FORCE}\ntau = 1");
+    assert!(at_rest(&falling, &loading, 60).run().last().wear_volume > 0.0);
+}
+
+/// Behind the front compressions swing about zero next to the edge of stick; the balance of forces must not have a kink there.
+#[test]
+fn a_held_tangential_force_over_a_stiffening_surface_comes_to_its_end_on_many_springs() {
+    let coulomb = "[friction.coulomb]\ncoefficient = 0.5";
+    let loading = format!("indentation = 1\nstick_ratio = 0.7\n{FORCE}\ntau = 60");
+    let volumes = [60, 120, 240].map(|springs| {
+        Case { grading: -0.3, ..at_rest(coulomb, &loading, springs) }.run().last().wear_volume
+    });
+    println!("{volumes:.7?}");
+    // What the steps are off by.
+    assert!(volumes.iter().all(|volume| (volume / volumes[2] - 1.0).abs() < 5e-5), "{volumes:?}");
+}
+
+/// Ahead of a front of slip that cells do not resolve slip over the period must not be negative: steps became ever smaller.
+#[test]
+fn along_an_orbit_falling_friction_comes_to_the_limit_of_the_last_stick_radius() {
+    let friction = "[friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 0.8\ntau = 3";
+    let loading = "indentation = 1\namplitude_ratio = 0.45\ntau = 300\norbit = { transverse_ratio = 0.6 }";
+    let off = [24, 48].map(|springs| {
+        let scene = Case { grading: -0.3, ..at_rest(friction, loading, springs) }.scene();
+        let results = Simulation::new(&scene).unwrap().run().unwrap();
+        let last = results.last();
+        let contact = scene.contact().unwrap();
+        let limit = LimitingShape::from_stick_ratio(
+            scene.indenter(),
+            -0.3,
+            1.0,
+            last.stick_radius / contact.contact_radius(),
+        );
+        last.wear_volume / limit.unwrap().wear_volume() - 1.0
+    });
+    println!("{off:?}");
+    assert!(off.iter().all(|off| off.abs() < 1e-3), "{off:?}");
+}
