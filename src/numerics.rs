@@ -5,6 +5,9 @@ pub mod chebyshev;
 pub mod grid;
 pub mod least_squares;
 pub mod linear;
+mod power;
 pub mod quadrature;
 pub mod roots;
 pub mod whole_contact;
+
+pub use power::power;

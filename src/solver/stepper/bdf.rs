@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::newton::Newton;
 use super::resting::{RestingStage, Tried, newton_tolerance};
-use super::{Stepper, Trial, relative_depth_error};
+use super::{FIRST_GROWTH, Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::numerics::abel::Backend;
 use crate::solver::model::{Linearised, Model, Past, PastPoint, State, Target, Unknowns};
@@ -42,6 +42,13 @@ const ACCUMULATED: f64 = 8.0;
 /// takes as long as eight corrections. Dense factors are made anew in every step: on so few springs that is cheap.
 const SAME_STEP: f64 = 0.3;
 const SAME_MATRIX: f64 = 0.4;
+
+/// `t0` over the time in which wear at the first pressures comes to the compression at the edge of stick: before that, too, wear at the edges goes by
+/// powers of time.
+const EARLY: f64 = 0.1;
+
+/// Growth of the slip in the first step over the root of its largest error: a step of first order errs by its square.
+const FIRST: f64 = 0.12;
 
 /// Parts of the step that the error allows, at the present order and where the order changes.
 const SAFETY: f64 = 0.8;
@@ -123,6 +130,10 @@ impl Stepper for Bdf {
             rate_evaluations: evaluations,
             next_step: Some(cycles * factor),
         })
+    }
+
+    fn first_growth(&self) -> f64 {
+        (FIRST * self.tolerance.sqrt()).min(FIRST_GROWTH)
     }
 
     fn forget(&mut self) {
@@ -265,7 +276,7 @@ pub(super) struct TimesBefore {
 impl TimesBefore {
     /// Those of a past before some number of cycles; negative where they are later.
     pub fn new(model: &Model, cycles: f64, past: &Past) -> Self {
-        let zero = model.cycles_of_wear();
+        let zero = EARLY * model.cycles_of_wear();
         let elapsed = |before: f64| ((cycles - before) / (before + zero)).ln_1p();
         Self {
             before: past.points.iter().map(|point| elapsed(point.cycles)).collect(),
