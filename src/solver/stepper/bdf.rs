@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::newton::Newton;
-use super::resting::{RestingStage, Tried, newton_tolerance};
+use super::resting::{RestingStage, Tried};
 use super::{FIRST_GROWTH, Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::numerics::abel::Backend;
@@ -24,8 +24,8 @@ use crate::solver::model::{Linearised, Model, Past, PastPoint, State, Target, Un
 pub struct Bdf {
     /// Largest error of one step.
     tolerance: f64,
-    /// What Newton's method may leave.
-    newton_tolerance: f64,
+    /// About the error at the end of a run.
+    at_the_end: f64,
     newton: Newton,
     tried: Tried,
     /// Cycles of the state that the last step was tried from.
@@ -84,7 +84,7 @@ impl Stepper for Bdf {
         let again = led.clone().filter(|_| self.newton.linearised().is_some());
         let still = State { cycles: now, past: Past::default(), ..state.clone() };
         let guesses = led.into_iter().chain(again).chain([still]).enumerate();
-        let (tolerance, newton) = (self.newton_tolerance, &mut self.newton);
+        let (tolerance, newton) = (self.at_the_end, &mut self.newton);
         let mut stage = RestingStage { model, target, tolerance, tried: &mut self.tried };
         let found = guesses.into_iter().find_map(|(attempt, guess)| {
             if attempt > 0 {
@@ -163,7 +163,7 @@ impl Bdf {
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance: tolerance / ACCUMULATED,
-            newton_tolerance: newton_tolerance(tolerance),
+            at_the_end: tolerance,
             newton: Newton::default(),
             tried: Tried::default(),
             tried_from: None,
@@ -187,7 +187,7 @@ impl Bdf {
                         cycles: left.cycles,
                         loading: model.schedule().loading(left.cycles, left.cycles),
                     };
-                    let (tolerance, tried) = (self.newton_tolerance, &mut self.tried);
+                    let (tolerance, tried) = (self.at_the_end, &mut self.tried);
                     self.newton.recall(&mut RestingStage { model, target, tolerance, tried }, left);
                 }
                 None => self.newton.outdate(),

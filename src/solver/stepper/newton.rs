@@ -11,9 +11,6 @@ const ITERATIONS: usize = 8;
 const RENEWALS: usize = 2;
 const FREE_RENEWALS: usize = 6;
 
-/// What may come of what is left in all steps over that in one.
-const ADD_UP: f64 = 10.0;
-
 /// Contraction from which on a matrix that takes no evaluations is renewed: next to the contact edge the equations bend within a correction of it,
 /// and with the matrix of the first guess corrections may fall by a half only.
 const RENEWED: f64 = 0.03;
@@ -60,6 +57,8 @@ pub(super) struct Correction {
     pub stick: f64,
     /// Estimate of what is left to correct.
     pub remaining: f64,
+    /// Whether that is the next correction, and not what quadratic convergence would leave.
+    pub measured: bool,
     /// Largest compression over that at the edge of stick.
     pub compression: f64,
 }
@@ -76,6 +75,7 @@ impl Correction {
             springs: largest(of_springs).max(others[0].abs() / at.slip_area),
             stick,
             remaining: f64::INFINITY,
+            measured: false,
             compression: largest(&at.compression),
         }
     }
@@ -170,7 +170,7 @@ impl Newton {
                     // What the next correction would take away is what this one left.
                     let next = factors.correction(equations);
                     let left = Correction::new(&next, at, equations.scale()).size();
-                    correction.remaining = correction.remaining.min(ADD_UP * left);
+                    (correction.remaining, correction.measured) = (left, true);
                     slow = free && left > RENEWED * size;
                     ahead = Some(next);
                 }
