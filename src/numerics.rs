@@ -2,6 +2,7 @@
 
 pub mod abel;
 pub mod chebyshev;
+pub mod curve;
 pub mod grid;
 pub mod least_squares;
 pub mod linear;

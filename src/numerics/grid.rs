@@ -114,8 +114,9 @@ impl Clustering {
 pub struct Mesh {
     clustering: Clustering,
     stretch: f64,
-    /// `expm1(Λ)`.
+    /// `expm1(Λ)` and `expm1(-Λ)`.
     grown: f64,
+    fallen: f64,
     /// What is cut off the range of `t` at either end.
     cut: [f64; 2],
     /// `g` from either end as polynomials in the distance of `t` from it.
@@ -173,6 +174,7 @@ impl Mesh {
             clustering,
             stretch,
             grown: stretch.exp_m1(),
+            fallen: (-stretch).exp_m1(),
             rising: rising.from(cut[0]).over(whole),
             falling: falling.from(cut[1]).over(whole),
             steepness: steepness / whole,
@@ -264,7 +266,7 @@ impl Mesh {
             (true, true) => fraction,
             (true, false) => 1.0 - fraction,
             (false, true) => (fraction * self.grown).ln_1p() / self.stretch,
-            (false, false) => -((1.0 - fraction) * (-self.stretch).exp_m1()).ln_1p() / self.stretch,
+            (false, false) => -((1.0 - fraction) * self.fallen).ln_1p() / self.stretch,
         };
         let (mut low, mut high) = (cell as f64, cell as f64 + 1.0);
         let part = (wanted - begin) / (end - begin);
