@@ -44,7 +44,7 @@ const SAME_STEP: f64 = 0.3;
 const SAME_MATRIX: f64 = 0.4;
 
 /// `t0` over the time in which wear at the first pressures comes to the compression at the edge of stick: before that, too, wear at the edges goes by
-/// powers of time.
+/// powers of time. In gross slip it is that time.
 const EARLY: f64 = 0.1;
 
 /// Growth of the slip in the first step over the root of its largest error: a step of first order errs by its square.
@@ -276,7 +276,8 @@ pub(super) struct TimesBefore {
 impl TimesBefore {
     /// Those of a past before some number of cycles; negative where they are later.
     pub fn new(model: &Model, cycles: f64, past: &Past) -> Self {
-        let zero = EARLY * model.cycles_of_wear();
+        let early = if model.gross().is_some() { 1.0 } else { EARLY };
+        let zero = early * model.cycles_of_wear();
         let elapsed = |before: f64| ((cycles - before) / (before + zero)).ln_1p();
         Self {
             before: past.points.iter().map(|point| elapsed(point.cycles)).collect(),
