@@ -1,6 +1,7 @@
-"""Times the published route to fretting wear against this program: python3 benches/published_route.py [--quick], with numpy, scipy, h5py.
+"""Times the published route to fretting wear against this program: python3 benches/published_route.py [--quick | --processes], with numpy, scipy, h5py.
 
-Needs the binary: cargo build --release. Prints the tables of docs/published_route.md in a quarter of an hour, with --quick the coarser half in a minute.
+Needs the binary: cargo build --release. Prints the tables of docs/published_route.md in a quarter of an hour, with --quick the coarser half in a minute. With
+--processes SciPy's BDF with the analytic Jacobian and this program are set side by side on as many springs, each as a whole process.
 
 The published route (Dimaki, Dmitriev, Chai, Popov 2014; Benad 2018; Li, Forsbach, Benad 2019; Willert 2021) keeps the worn profile f on
 radial nodes. Every cycle goes from f to the equivalent profile g by Eq. (19), to the contact radius by g(a) = d, to the pressure by
@@ -18,6 +19,7 @@ the wear's part of g to the exact g of the unworn profile, which is cheaper and 
 
 import argparse
 import os
+import resource
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as fretwear, which computes a run on one thread
 
@@ -261,11 +263,53 @@ class Comparison:
         print(f"| {method} | {grid} | {cells} | {error:.1e} | {seconds:.3g}{mark} | {1e3 * cheapest:.1f} | {ratio} |", flush=True)
 
 
+def processes():
+    """Whole processes on as many springs at one tolerance: SciPy's BDF on the annulus, to which the analytic Jacobian is given, and this program."""
+    reference, _ = fretwear("springs = 120\ntolerance = 1e-8\n", 1)
+    error = lambda volumes: float(np.max(np.abs(np.array(volumes) - reference)) / reference[-1])
+
+    def processor(command, runs):
+        """Seconds of the processor, the least of several runs: other programs do not show in it, nor does waiting for the disk."""
+        seconds = []
+        for _ in range(runs):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            subprocess.run(command, check=True, capture_output=True)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            seconds.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        return min(seconds)
+
+    start = processor([sys.executable, "-c", "import numpy, scipy.integrate, h5py"], 5)
+    print("| springs | tolerance | SciPy's BDF: error | processor s | without its start | fretwear: error | processor s | ratio | without SciPy's start |\n|---|---|---|---|---|---|---|---|---|")
+    for cells in [25, 50, 100, 200, 400]:
+        for tolerance in ["1e-3", "1e-4"]:
+            command = [sys.executable, __file__, "--one", str(cells), tolerance]
+            volumes = [float(word) for word in subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()]
+            route = processor(command, 3)
+            numerics = f"springs = {cells}\ntolerance = {tolerance}\n"
+            own, _ = fretwear(numerics, 1)
+            with tempfile.TemporaryDirectory() as folder:
+                scene = Path(folder, "scene.toml")
+                scene.write_text(SCENE + numerics)
+                seconds = processor([BINARY, "run", scene, "-o", Path(folder, "scene.h5"), "--force", "--quiet"], 9)
+            print(f"| {cells} | {tolerance} | {error(volumes):.1e} | {route:.2f} | {route - start:.2f} | {error(own):.1e} | {seconds:.4f} | {route / seconds:.0f} | "
+                  f"{(route - start) / seconds:.1f} |", flush=True)
+
+
 def main():
     np.seterr(all="ignore")  # an unstable run is one of the things shown
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true")
-    quick = parser.parse_args().quick
+    parser.add_argument("--processes", action="store_true")
+    parser.add_argument("--one", nargs=2, metavar=("SPRINGS", "TOLERANCE"), help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.one:
+        cells, tolerance = arguments.one
+        print(*Route(int(cells), True).bdf(float(tolerance), True))
+        return
+    if arguments.processes:
+        processes()
+        return
+    quick = arguments.quick
     sizes = [100, 200] if quick else [100, 200, 400, 800]
     patience = 5.0 if quick else 30.0
     comparison = Comparison(3 if quick else 9)

@@ -1,10 +1,11 @@
-"""Draws docs/tradeoff.svg and writes its tables: python3 docs/tradeoff.py NEGATIVE HOMOGENEOUS POSITIVE FIGURE, with numpy, h5py and matplotlib.
+"""Draws docs/tradeoff.svg or docs/tradeoff_kinds.svg and writes its tables: python3 docs/tradeoff.py FILE ... FIGURE, with numpy, h5py and matplotlib.
 
-The first three are the files tradeoff.h5 of `fretwear tradeoff data/tradeoff/NAME.toml -o DIR`. Tables of the fronts against wall time go to stdout in
+Each file is the tradeoff.h5 of `fretwear tradeoff data/tradeoff/NAME.toml -o DIR`, a row of the figure. Tables of the fronts against wall time go to stdout in
 Markdown, as they stand in docs/tradeoff.md.
 """
 
 import sys
+import textwrap
 
 import h5py
 import matplotlib
@@ -40,7 +41,7 @@ def draw(axes, data, error, cost):
     for stepper, colour in COLOURS.items():
         for cycle, marker in [("closed-form", "o"), ("resolved", "x")]:
             chosen = by_hand & (data["stepper"] == stepper) & (data["cycle"] == cycle) & np.isfinite(y)
-            axes.loglog(x[chosen], y[chosen], marker, color=colour, markersize=3, alpha=0.5, rasterized=True)
+            axes.loglog(x[chosen], y[chosen], marker, color=colour, markersize=3, alpha=0.5, rasterized=np.count_nonzero(chosen) > 30)
     front = np.flatnonzero(data[f"front_{error}_{kind}"] == 1)
     front = front[np.argsort(x[front])]
     axes.step(x[front], y[front], where="post", color="k", linewidth=1)
@@ -80,17 +81,18 @@ def table(data):
 
 scenes = [read(path) for path in paths]
 COLUMNS = [(error, cost) for cost in ["wall_seconds", "rate_evaluations"] for error, _ in ERRORS]
-plot, grid = plt.subplots(len(scenes), len(COLUMNS), figsize=(12.5, 3.1 * len(scenes)), layout="constrained", squeeze=False,
+plot, grid = plt.subplots(len(scenes), len(COLUMNS), figsize=(12.5, (3.1 if len(scenes) < 5 else 2.3) * len(scenes)), layout="constrained", squeeze=False,
                           sharex="col", sharey=True)
 for row, data in zip(grid, scenes):
     for axes, (error, cost) in zip(row, COLUMNS):
         draw(axes, data, error, cost)
-    row[0].set_ylabel(data["title"] + "\nlargest error over the snapshots", fontsize=8)
+    row[0].set_ylabel("\n".join(textwrap.wrap(data["title"], 34)) + "\nlargest error over the snapshots", fontsize=7)
     table(data)
 for axes, (error, cost) in zip(grid[0], COLUMNS):
     axes.set_title(dict(ERRORS)[error], fontsize=9)
 for axes, (error, cost) in zip(grid[-1], COLUMNS):
     axes.set_xlabel("wall time, s" if cost == "wall_seconds" else "rate evaluations")
+grid[0, 0].set_ylim(top=min(grid[0, 0].get_ylim()[1], 3))  # beyond, a run by hand came to nothing
 handles = [plt.Line2D([], [], marker="o", linestyle="", color=colour, label=stepper) for stepper, colour in COLOURS.items()]
 handles += [plt.Line2D([], [], marker="x", linestyle="", color="0.4", label="resolved cycle"),
             plt.Line2D([], [], color="k", label="front"),

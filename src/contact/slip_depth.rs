@@ -15,6 +15,7 @@ use crate::contact::indenter::{EquivalentProfile, RiseTransform};
 use crate::error::{Error, Result};
 use crate::numerics::abel::profile_factor;
 use crate::numerics::chebyshev::{Chebyshev, PiecewiseChebyshev};
+use crate::numerics::power;
 use crate::numerics::quadrature::Rule;
 use crate::numerics::roots::bracketed;
 
@@ -199,12 +200,12 @@ impl UnwornSlip {
 
     /// With `(F(g_0 - g_0(c)))/ℓ^(1+μ)` as `rise`.
     fn values(&self, logarithm: f64, slip_compression: f64, rise: f64) -> UnwornValues {
-        let power = logarithm.powf(self.mu);
-        let uniform = power * self.uniform.value(logarithm);
+        let powered = power(logarithm, self.mu);
+        let uniform = powered * self.uniform.value(logarithm);
         UnwornValues {
             logarithm,
             limit_slip: slip_compression * uniform,
-            slip: logarithm * power * rise + self.surplus * uniform,
+            slip: logarithm * powered * rise + self.surplus * uniform,
         }
     }
 
@@ -296,6 +297,6 @@ impl<'a> Transform<'a> {
 
     /// `(expm1(y)/y)^(-ν)`.
     fn kernel(&self, y: f64) -> f64 {
-        if y > 1e-300 { (y.exp_m1() / y).powf(-self.nu) } else { 1.0 }
+        if y > 1e-300 { power(y.exp_m1() / y, -self.nu) } else { 1.0 }
     }
 }

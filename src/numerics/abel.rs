@@ -53,7 +53,7 @@ impl Matrix {
         let n = assembly.mesh.cells();
         let mut matrix = Mat::zeros(n, n);
         for index in direction.first_cell()..n {
-            Cell::new(assembly, index).add(direction, 1..n + 1, 1, &mut matrix);
+            Cell::new(assembly, index, direction).add(1..n + 1, 1, &mut matrix);
         }
         Self { direction, weights: matrix }
     }
@@ -116,7 +116,7 @@ impl AbelOperators {
         let assembly = Assembly::new(grading, &mesh)?;
         let (mut spring_sum, mut depth_sum) = (vec![0.0; n], vec![0.0; n]);
         for index in 0..n {
-            let cell = Cell::new(&assembly, index);
+            let cell = Cell::new(&assembly, index, Direction::Outwards);
             cell.add_spring_sum(&mut spring_sum);
             cell.add_depth_sum(&mut depth_sum);
         }

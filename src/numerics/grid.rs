@@ -22,8 +22,8 @@ const FINEST_ENDS: usize = 1000;
 const CUT_AT_STICK: f64 = 5e-9;
 const CUT_AT_CONTACT: f64 = 6e-5;
 
-/// Correction of a place, over its distance from the end of the mesh, that is the last one: Newton's method leaves its square.
-const LAST: f64 = 1e-8;
+/// Correction of a place, over its distance from the end of the mesh, that is the last one: Halley's method leaves its cube.
+const LAST: f64 = 1e-6;
 
 /// How nodes cluster at the two ends of the slip annulus, and the degree of the polynomials between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,6 +114,9 @@ impl Clustering {
 pub struct Mesh {
     clustering: Clustering,
     stretch: f64,
+    /// `expm1(Λ)` and `expm1(-Λ)`.
+    grown: f64,
+    fallen: f64,
     /// What is cut off the range of `t` at either end.
     cut: [f64; 2],
     /// `g` from either end as polynomials in the distance of `t` from it.
@@ -123,8 +126,8 @@ pub struct Mesh {
     steepness: f64,
     ends: Vec<MeshPoint>,
     nodes: Vec<f64>,
-    /// `g` and `1 - g` at the nodes.
-    unstretched: Vec<[f64; 2]>,
+    /// `g`, `1 - g` and `dg/dy` at the nodes.
+    unstretched: Vec<[f64; 3]>,
 }
 
 /// A place on a [`Mesh`].
@@ -170,6 +173,8 @@ impl Mesh {
         let mut mesh = Self {
             clustering,
             stretch,
+            grown: stretch.exp_m1(),
+            fallen: (-stretch).exp_m1(),
             rising: rising.from(cut[0]).over(whole),
             falling: falling.from(cut[1]).over(whole),
             steepness: steepness / whole,
@@ -181,8 +186,8 @@ impl Mesh {
         mesh.ends = (0..=cells).map(|i| mesh.at(i as f64)).collect();
         mesh.nodes = mesh.ends.iter().map(|end| end.value).collect();
         let unstretched = |i: usize| {
-            let (part, rest, _) = mesh.without_stretch(i as f64);
-            [part, rest]
+            let (part, rest, slope) = mesh.without_stretch(i as f64);
+            [part, rest, slope]
         };
         mesh.unstretched = (0..=cells).map(unstretched).collect();
         mesh
@@ -219,11 +224,12 @@ impl Mesh {
         if self.stretch < NO_STRETCH {
             return MeshPoint { value: part, complement: rest, slope };
         }
-        let (whole, grown) = (self.stretch.exp_m1(), (self.stretch * part).exp());
+        let (whole, risen) = (self.grown, (self.stretch * part).exp_m1());
+        let steepness = (risen + 1.0) / whole;
         MeshPoint {
-            value: (self.stretch * part).exp_m1() / whole,
-            complement: grown * (self.stretch * rest).exp_m1() / whole,
-            slope: self.stretch * grown * slope / whole,
+            value: risen / whole,
+            complement: steepness * (self.stretch * rest).exp_m1(),
+            slope: self.stretch * steepness * slope,
         }
     }
 
@@ -241,7 +247,8 @@ impl Mesh {
             let rest = self.falling.value(left);
             (1.0 - rest, rest)
         };
-        let steepness = self.steepness * (at_stick + x).powi(low) * (at_contact + left).powi(high);
+        let steepness =
+            self.steepness * small_power(at_stick + x, low) * small_power(at_contact + left, high);
         (part, rest, steepness * span / cells)
     }
 
@@ -250,23 +257,23 @@ impl Mesh {
         self.nodes.partition_point(|node| *node <= fraction).clamp(1, self.cells()) - 1
     }
 
-    /// `y` of `ξ` in [0, 1), by Newton's method for `g` from the nearer end.
+    /// `y` of `ξ` in [0, 1), by Halley's method for `g` from the nearer end.
     pub fn place(&self, fraction: f64) -> f64 {
         let (cells, cell) = (self.cells() as f64, self.cell(fraction));
         let near_stick = cell < self.cells() / 2;
-        let [begin, end] = [self.end_part(near_stick, cell), self.end_part(near_stick, cell + 1)];
+        let [begin, end] = [cell, cell + 1].map(|node| self.unstretched[node][usize::from(!near_stick)]);
         let wanted = match (self.stretch < NO_STRETCH, near_stick) {
             (true, true) => fraction,
             (true, false) => 1.0 - fraction,
-            (false, true) => (fraction * self.stretch.exp_m1()).ln_1p() / self.stretch,
-            (false, false) => -((1.0 - fraction) * (-self.stretch).exp_m1()).ln_1p() / self.stretch,
+            (false, true) => (fraction * self.grown).ln_1p() / self.stretch,
+            (false, false) => -((1.0 - fraction) * self.fallen).ln_1p() / self.stretch,
         };
         let (mut low, mut high) = (cell as f64, cell as f64 + 1.0);
         let part = (wanted - begin) / (end - begin);
         if part <= 0.0 {
             return low;
         }
-        let mut y = low + part.clamp(0.01, 0.99);
+        let mut y = low + self.within_cell(cell, part, (end - begin).abs()).clamp(0.01, 0.99);
         for _ in 0..60 {
             let (part, rest, slope) = self.without_stretch(y);
             let off = if near_stick { part - wanted } else { wanted - rest };
@@ -275,12 +282,13 @@ impl Mesh {
             } else {
                 low = y;
             }
-            let newton = y - off / slope;
+            let newton = off / slope;
+            let halley = y - newton / (1.0 - 0.5 * newton * self.log_slope(y)).max(0.5);
             let from_end = if near_stick { y } else { cells - y };
-            if (newton - y).abs() <= LAST * from_end {
-                return newton.clamp(low, high);
+            if (halley - y).abs() <= LAST * from_end {
+                return halley.clamp(low, high);
             }
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            let next = if halley > low && halley < high { halley } else { 0.5 * (low + high) };
             if next == y {
                 return y;
             }
@@ -289,10 +297,24 @@ impl Mesh {
         y
     }
 
-    /// `g` at a node, or at the contact end `1 - g`.
-    fn end_part(&self, near_stick: bool, node: usize) -> f64 {
-        let [part, rest] = self.unstretched[node];
-        if near_stick { part } else { rest }
+    /// About where in a cell `g` has grown by a part of what it grows by over it: by the cubic with the slopes at its ends, and a straight line in
+    /// the cells at the ends of the mesh, where a slope is zero.
+    fn within_cell(&self, cell: usize, part: f64, growth: f64) -> f64 {
+        let [first, last] = [cell, cell + 1].map(|node| growth / self.unstretched[node][2]);
+        if !(first.is_finite() && last.is_finite()) {
+            return part;
+        }
+        let left = 1.0 - part;
+        part * (part * (3.0 - 2.0 * part) + left * (first * left - last * part))
+    }
+
+    /// Derivative of `ln(dg/dy)` by `y`.
+    fn log_slope(&self, y: f64) -> f64 {
+        let cells = self.cells() as f64;
+        let (low, high) = self.clustering.exponents();
+        let [at_stick, at_contact] = self.cut;
+        let span = (1.0 - at_stick - at_contact) / cells;
+        span * (f64::from(low) / (at_stick + span * y) - f64::from(high) / (at_contact + span * (cells - y)))
     }
 
     /// The `points` nodes of the local polynomial of cell `cell`, from 1 to `last` on: centred, shifted inwards at the ends.
@@ -389,6 +411,11 @@ impl Local {
     }
 }
 
+/// `x^n` for a small positive `n`, without a call.
+fn small_power(x: f64, exponent: i32) -> f64 {
+    (1..exponent).fold(x, |product, _| product * x)
+}
+
 /// A polynomial without its lowest powers.
 #[derive(Debug, Clone, PartialEq)]
 struct Polynomial {
@@ -412,7 +439,7 @@ impl Polynomial {
     }
 
     fn value(&self, x: f64) -> f64 {
-        x.powi(self.lowest) * self.coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+        small_power(x, self.lowest) * self.coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
     }
 
     /// What it grows by from `start` on, as a polynomial in the distance.

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::limit::distance;
 use super::parts::Parts;
 use super::{Results, Shared, Simulation, Stop};
-use crate::data::{Checkpoint, ResultPath, RunFile, RunWriter, scene_hash};
+use crate::data::{Checkpoint, LimitDistance, ResultPath, RunFile, RunWriter, scene_hash};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::solver::simulation::{self as stepping, Observer};
@@ -192,7 +191,7 @@ impl Run {
                 .cloned()
                 .ok_or_else(|| unusable("holds no snapshot; run its scene again"))?;
             return Ok(Resumed::Complete(Box::new(Results {
-                distance: distance(&parts.model, parts.limit.as_ref(), &last),
+                distance: file.header.limit.as_ref().map(|limit| LimitDistance::new(limit, &last)),
                 indenter: parts.model.contact().indenter().clone(),
                 header: file.header,
                 snapshots: file.snapshots,

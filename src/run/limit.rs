@@ -1,7 +1,7 @@
-//! The limiting shape on the nodes of a run, and how far a snapshot is from it.
+//! The limiting shape on the nodes of a run.
 
 use crate::contact::closed_form::LimitingShape;
-use crate::data::{LimitCurves, LimitDistance, RunHeader, Snapshot};
+use crate::data::{LimitCurves, RunHeader};
 use crate::scene::Scene;
 use crate::solver::model::Model;
 
@@ -15,15 +15,6 @@ pub(super) fn header(scene: &Scene, model: &Model, limit: Option<&LimitingShape>
         table: scene.table(),
         path: scene.path(),
     }
-}
-
-/// Distance of a snapshot from the limit.
-pub(super) fn distance(
-    model: &Model,
-    limit: Option<&LimitingShape>,
-    last: &Snapshot,
-) -> Option<LimitDistance> {
-    limit.map(|limit| LimitDistance::new(&limit_curves(model, limit), last))
 }
 
 fn limit_curves(model: &Model, limit: &LimitingShape) -> LimitCurves {

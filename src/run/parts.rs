@@ -39,6 +39,7 @@ impl Parts {
     ) -> Result<Self> {
         let mut parts = Self::on_any(scene, numerics, wanted, store)?;
         check_sliding(&parts.model)?;
+        parts.limit = limit(&parts.model)?;
         if parts.model.gross().is_some() {
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
@@ -48,7 +49,7 @@ impl Parts {
         Ok(parts)
     }
 
-    /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that slides as a whole.
+    /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that slides as a whole, and without its limit.
     pub(super) fn on_any(
         scene: &Scene,
         numerics: &Numerics,
@@ -59,12 +60,6 @@ impl Parts {
         check_regime(scene, &contact)?;
         let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
         let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
-        let by_energy = *model.schedule().friction_along_energy() != History::Constant;
-        let conditions = scene.conditions();
-        let held = conditions.holds_normal_force && !conditions.holds_both_forces();
-        let path_dependent = held || model.moving().is_some_and(MovingStick::passes_worn_ground);
-        let unlimited = model.slides() || path_dependent || by_energy;
-        let limit = if unlimited { None } else { LimitingShape::under(model.contact(), conditions)? };
         check_stepper(numerics.stepper, &model)?;
         let tolerance =
             numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy, &model));
@@ -83,8 +78,18 @@ impl Parts {
         let whole = numerics.stepper == StepperChoice::EveryCycle;
         let plan =
             super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
-        Ok(Self { model, stepper, tolerance, plan, limit })
+        Ok(Self { model, stepper, tolerance, plan, limit: None })
     }
+}
+
+/// The limit in closed form, where there is one.
+fn limit(model: &Model) -> Result<Option<LimitingShape>> {
+    let conditions = model.schedule().conditions();
+    let by_energy = *model.schedule().friction_along_energy() != History::Constant;
+    let held = conditions.holds_normal_force && !conditions.holds_both_forces();
+    let path_dependent = held || model.moving().is_some_and(MovingStick::passes_worn_ground);
+    let unlimited = model.slides() || path_dependent || by_energy;
+    if unlimited { Ok(None) } else { LimitingShape::under(model.contact(), conditions) }
 }
 
 /// Contact radius, m, to which gross slip leads, by a coarse run.

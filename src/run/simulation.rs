@@ -2,13 +2,13 @@
 
 use super::budget;
 use super::cost::{self, Expected};
-use super::limit::{distance, header};
+use super::limit::header;
 use super::parts::Parts;
 use super::ready::Ready;
 use super::recorder::{Recorder, snapshot};
 use super::{Results, Shared, Stop};
 use crate::contact::closed_form::LimitingShape;
-use crate::data::{Checkpoint, RunHeader, RunWriter, Snapshot, StopReason};
+use crate::data::{Checkpoint, LimitDistance, RunHeader, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Stepper};
 use crate::solver::simulation::{self as stepping, Flow, Observer, Outcome};
@@ -184,9 +184,9 @@ fn results(
     stop_reason: StopReason,
 ) -> Results {
     let last = snapshot(stepping);
-    let distance = distance(stepping.model(), limit.as_ref(), &last);
     let indenter = stepping.model().contact().indenter().clone();
     let (header, snapshots) = writer.into_parts();
+    let distance = header.limit.as_ref().map(|limit| LimitDistance::new(limit, &last));
     Results { header, snapshots, checkpoint, stop_reason, last, limit, distance, indenter }
 }
 

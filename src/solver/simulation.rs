@@ -20,9 +20,6 @@ const LARGEST_FACTOR: f64 = 2.5;
 /// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
 const SMALLEST_GROWTH: f64 = 1e-13;
 
-/// Growth of the slip in the first step tried.
-const FIRST_GROWTH: f64 = 1e-3;
-
 /// Compression, relative to `q_c`, below which no pressure is left but round-off.
 const WORN_OUT: f64 = 1e-13;
 
@@ -188,7 +185,7 @@ impl Simulation {
         if !(finite && growth > 0.0 && first_rate > 0.0) {
             return Err(nothing_wears(&model, finite));
         }
-        let next_step = FIRST_GROWTH / growth;
+        let next_step = stepper.first_growth() / growth;
         let progress = Progress { next_step, first_rate, rate_evaluations: 1, ..Progress::default() };
         Ok(Self::resume(model, stepper, tolerance, plan, state, progress))
     }

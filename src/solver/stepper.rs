@@ -43,6 +43,9 @@ impl Trial {
     }
 }
 
+/// Growth of the slip in the first step that is tried, where a method has no reason for another.
+const FIRST_GROWTH: f64 = 1e-3;
+
 /// A method of time stepping.
 pub trait Stepper {
     /// What the method is called.
@@ -53,6 +56,11 @@ pub trait Stepper {
     /// # Errors
     /// Only what no smaller step can cure.
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial>;
+
+    /// Growth of the slip in the first step of a run.
+    fn first_growth(&self) -> f64 {
+        FIRST_GROWTH
+    }
 
     /// Forgets the steps made so far, as far as the next one depends on more of them than its state.
     fn forget(&mut self) {}

@@ -356,7 +356,7 @@ impl Near {
         let rows = nodes.len();
         let mut block = Mat::<f64>::zeros(rows, end - first);
         for index in cells {
-            Cell::new(assembly, index).add(direction, nodes.clone(), first, &mut block);
+            Cell::new(assembly, index, direction).add(nodes.clone(), first, &mut block);
         }
         let mut near = Self { columns: Vec::with_capacity(end - first), weights: Vec::new() };
         for (j, column) in block.col_iter().enumerate() {

@@ -7,6 +7,7 @@ use faer::Mat;
 
 use crate::error::{Error, Result};
 use crate::numerics::grid::{MOST_POINTS, Mesh, MeshPoint, lagrange, lagrange_derivative};
+use crate::numerics::power;
 use crate::numerics::quadrature::Rule;
 
 /// Nodes of the rule in the cell that holds the end-point singularity.
@@ -139,10 +140,8 @@ pub(super) type Weights = [f64; MOST_POINTS];
 /// A rule mapped into a cell with the local polynomials on its points.
 struct Mapped {
     points: Vec<MeshPoint>,
-    /// Weight times polynomial times `dξ/dy`.
-    values: Vec<Weights>,
-    /// Weight times derivative by `y` of the polynomial.
-    slopes: Vec<Weights>,
+    /// Weight times polynomial times `dξ/dy` outwards, weight times derivative by `y` of the polynomial inwards.
+    parts: Vec<Weights>,
 }
 
 impl<'a> Assembly<'a> {
@@ -191,29 +190,28 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    fn map(&self, cell: usize, local: &LocalRule, stencil: &Range<usize>) -> Mapped {
+    fn map(&self, cell: usize, local: &LocalRule, stencil: &Range<usize>, direction: Direction) -> Mapped {
         let (rule, shared) = (&local.rule, local.shared(cell, stencil));
-        let count = rule.len();
-        let mut mapped = Mapped {
-            points: Vec::with_capacity(count),
-            values: Vec::with_capacity(count),
-            slopes: Vec::with_capacity(count),
+        let points: Vec<MeshPoint> = rule.nodes.iter().map(|node| self.mesh.at(cell as f64 + node)).collect();
+        let part = |at: usize| {
+            let (y, weight, point) = (cell as f64 + rule.nodes[at], rule.weights[at], &points[at]);
+            match direction {
+                Direction::Outwards => {
+                    let values =
+                        shared.map_or_else(|| self.mesh.lagrange(stencil, y, point), |shared| shared[at][0]);
+                    values.map(|value| value * weight * point.slope)
+                }
+                Direction::Inwards => {
+                    let slopes = shared.map_or_else(
+                        || self.mesh.lagrange_derivative(stencil, y, point),
+                        |shared| shared[at][1],
+                    );
+                    slopes.map(|slope| slope * weight)
+                }
+            }
         };
-        for (at, (node, weight)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
-            let y = cell as f64 + node;
-            let point = self.mesh.at(y);
-            let [value, slope] = match shared {
-                Some(shared) => shared[at],
-                None => [
-                    self.mesh.lagrange(stencil, y, &point),
-                    self.mesh.lagrange_derivative(stencil, y, &point),
-                ],
-            };
-            mapped.values.push(value.map(|v| v * weight * point.slope));
-            mapped.slopes.push(slope.map(|v| v * weight));
-            mapped.points.push(point);
-        }
-        mapped
+        let parts = (0..rule.len()).map(part).collect();
+        Mapped { points, parts }
     }
 }
 
@@ -221,19 +219,20 @@ impl<'a> Assembly<'a> {
 pub(super) struct Cell<'a> {
     assembly: &'a Assembly<'a>,
     index: usize,
+    direction: Direction,
     stencil: Range<usize>,
     regular: [Option<Mapped>; REGULAR_NODES.len()],
 }
 
 impl<'a> Cell<'a> {
-    pub fn new(assembly: &'a Assembly<'a>, index: usize) -> Self {
-        Self { assembly, index, stencil: assembly.stencil(index), regular: Default::default() }
+    pub fn new(assembly: &'a Assembly<'a>, index: usize, direction: Direction) -> Self {
+        Self { assembly, index, direction, stencil: assembly.stencil(index), regular: Default::default() }
     }
 
     /// Adds the weights of the cell at some nodes to a matrix that begins with the first of them and with the column of the node `first_column`.
-    pub fn add(&mut self, direction: Direction, rows: Range<usize>, first_column: usize, to: &mut Mat<f64>) {
+    pub fn add(&mut self, rows: Range<usize>, first_column: usize, to: &mut Mat<f64>) {
         for row in rows.clone() {
-            let Some(weights) = self.weights(direction, row) else { continue };
+            let Some(weights) = self.weights(row) else { continue };
             for (node, weight) in self.stencil.clone().zip(weights) {
                 to[(row - rows.start, node - first_column)] += weight;
             }
@@ -241,13 +240,13 @@ impl<'a> Cell<'a> {
     }
 
     /// Weights of the cell at a node, if it contributes there.
-    fn weights(&mut self, direction: Direction, row: usize) -> Option<Weights> {
-        let weights = match direction {
+    fn weights(&mut self, row: usize) -> Option<Weights> {
+        let weights = match self.direction {
             Direction::Outwards if row > self.index => self.profile_weights(row),
             Direction::Inwards if row <= self.index => self.pressure_weights(row),
             _ => return None,
         };
-        Some(direction.weights(weights, self.stencil.len()))
+        Some(self.direction.weights(weights, self.stencil.len()))
     }
 
     /// Weights of the densities of the cell in the depth at a node from its outer end on.
@@ -259,8 +258,8 @@ impl<'a> Cell<'a> {
         }
         let node = assembly.mesh.node(row);
         let mapped = self.regular(row - cell - 1);
-        let kernel = |at: usize| node.minus(&mapped.points[at]).powf(-assembly.kernel.nu);
-        weighted_sum(&mapped.values, kernel).map(|weight| factor * assembly.kernel.mu * weight)
+        let kernel = |at: usize| power(node.minus(&mapped.points[at]), -assembly.kernel.nu);
+        weighted_sum(&mapped.parts, kernel).map(|weight| factor * assembly.kernel.mu * weight)
     }
 
     /// Weights of the densities of the cell in the integral over it with the kernel that is singular at its outer end, times `μ`.
@@ -279,34 +278,36 @@ impl<'a> Cell<'a> {
             let scale = width.powf(assembly.kernel.mu);
             return weighted_sum(&values, |at| scale * rule.weights[at]);
         }
-        let mapped = assembly.map(cell, &assembly.upper_end, stencil);
+        let mapped = assembly.map(cell, &assembly.upper_end, stencil, self.direction);
         let steepness = |at: usize| {
             let left = rule.complements[at];
-            assembly.mean_slope((cell + 1) as f64 - left, left).powf(-assembly.kernel.nu)
+            power(assembly.mean_slope((cell + 1) as f64 - left, left), -assembly.kernel.nu)
         };
-        weighted_sum(&mapped.values, steepness)
+        weighted_sum(&mapped.parts, steepness)
     }
 
     /// Weights of the compressions of the cell, beyond the first, in the pressure at a node up to its inner end.
     fn pressure_weights(&mut self, row: usize) -> Weights {
         let (assembly, cell) = (self.assembly, self.index);
         if row == cell {
-            let mapped = assembly.map(cell, &assembly.lower_end, &self.stencil);
+            let mapped = assembly.map(cell, &assembly.lower_end, &self.stencil, self.direction);
             let nodes = &assembly.lower_end.rule.nodes;
-            let steepness = |at: usize| assembly.mean_slope(cell as f64, nodes[at]).powf(-assembly.kernel.mu);
-            return weighted_sum(&mapped.slopes, steepness).map(|weight| -1.0 / assembly.kernel.nu * weight);
+            let steepness =
+                |at: usize| power(assembly.mean_slope(cell as f64, nodes[at]), -assembly.kernel.mu);
+            return weighted_sum(&mapped.parts, steepness).map(|weight| -1.0 / assembly.kernel.nu * weight);
         }
         let node = assembly.mesh.node(row);
         let mapped = self.regular(cell - row);
-        let kernel = |at: usize| mapped.points[at].minus(&node).powf(-assembly.kernel.mu);
-        weighted_sum(&mapped.slopes, kernel).map(|weight| -weight)
+        let kernel = |at: usize| power(mapped.points[at].minus(&node), -assembly.kernel.mu);
+        weighted_sum(&mapped.parts, kernel).map(|weight| -weight)
     }
 
     /// Adds the cell's part of `∫ u dξ`.
     pub fn add_spring_sum(&self, sum: &mut [f64]) {
         let stencil = &self.stencil;
-        let mapped = self.assembly.map(self.index, &self.assembly.legendre[PLAIN], stencil);
-        let part = weighted_sum(&mapped.values, |_| 1.0);
+        let mapped =
+            self.assembly.map(self.index, &self.assembly.legendre[PLAIN], stencil, Direction::Outwards);
+        let part = weighted_sum(&mapped.parts, |_| 1.0);
         for (weight, part) in sum[stencil.start - 1..stencil.end - 1].iter_mut().zip(part) {
             *weight += part;
         }
@@ -316,8 +317,9 @@ impl<'a> Cell<'a> {
     pub fn add_depth_sum(&self, sum: &mut [f64]) {
         let (mesh, mu) = (self.assembly.mesh, self.assembly.kernel.mu);
         let stencil = Mesh::stencil(self.index, SUM_POINTS.min(mesh.cells()), mesh.cells());
-        let mapped = self.assembly.map(self.index, &self.assembly.legendre[PLAIN], &stencil);
-        let part = weighted_sum(&mapped.values, |at| mapped.points[at].value.powf(mu));
+        let mapped =
+            self.assembly.map(self.index, &self.assembly.legendre[PLAIN], &stencil, Direction::Outwards);
+        let part = weighted_sum(&mapped.parts, |at| mapped.points[at].value.powf(mu));
         for ((weight, part), node) in
             sum[stencil.start - 1..stencil.end - 1].iter_mut().zip(part).zip(stencil)
         {
@@ -327,9 +329,10 @@ impl<'a> Cell<'a> {
 
     /// The Gauss-Legendre rule for a kernel that is singular `gap` cells from the cell.
     fn regular(&mut self, gap: usize) -> &Mapped {
-        let (assembly, cell) = (self.assembly, self.index);
+        let (assembly, cell, direction) = (self.assembly, self.index, self.direction);
         let rule = Assembly::regular_rule(gap);
-        self.regular[rule].get_or_insert_with(|| assembly.map(cell, &assembly.legendre[rule], &self.stencil))
+        self.regular[rule]
+            .get_or_insert_with(|| assembly.map(cell, &assembly.legendre[rule], &self.stencil, direction))
     }
 }
 

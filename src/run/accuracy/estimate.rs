@@ -12,6 +12,7 @@ use super::companion::{Coarser, Companion, Worn};
 use super::substeps::larger;
 use crate::data::{Snapshot, same_cycles};
 use crate::laws::loading::TangentialControl;
+use crate::numerics::curve::distance_from_curve;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Scene, Stepper};
 use crate::solver::model::{Model, MovingStick, OperatorStore};
@@ -244,20 +245,16 @@ impl Companions {
     /// the curves, of depth over the largest or of radius over that of the contact, whichever is larger.
     fn apart(&self, one: &Worn, other: &Worn, [volume, depth]: [f64; 2]) -> f64 {
         let of_volume = (one.volume - other.volume).abs() / volume;
-        let by_depth = |i: usize| (one.depth[i] - other.depth[i]).abs() / depth;
-        let of_profile = (0..one.depth.len().min(other.depth.len())).map(|i| match &self.radii {
-            None => by_depth(i),
+        let count = one.depth.len().min(other.depth.len());
+        let of_profile: Vec<f64> = match &self.radii {
+            None => (0..count).map(|i| (one.depth[i] - other.depth[i]).abs() / depth).collect(),
             Some(radii) => {
-                let to = |j: usize| [radii[j] - radii[i], (other.depth[j] - one.depth[i]) / depth];
-                let mut least = by_depth(i);
-                // Segments farther away than what was found are not the nearest.
-                let left = (0..i).rev().take_while(|j| radii[i] - radii[j + 1] < least);
-                least = left.map(|j| nearest(to(j), to(j + 1))).fold(least, f64::min);
-                let right = (i + 1..radii.len()).take_while(|j| radii[j - 1] - radii[i] < least);
-                right.map(|j| nearest(to(j - 1), to(j))).fold(least, f64::min)
+                let [one, other] =
+                    [one, other].map(|it| it.depth.iter().map(|it| it / depth).collect::<Vec<_>>());
+                (0..count).map(|i| distance_from_curve(radii, &other, [radii[i], one[i]], i)).collect()
             }
-        });
-        of_profile.fold(of_volume, larger)
+        };
+        of_profile.into_iter().fold(of_volume, larger)
     }
 }
 
@@ -301,25 +298,6 @@ fn in_gross_slip(
         return Shares { left_out: (difference.max(balance) + lost).min(UNKNOWN), ..shares };
     }
     Shares { springs: error, ..shares }
-}
-
-/// Distance of the origin from a straight line between two points, by the larger of the coordinates.
-fn nearest(from: [f64; 2], to: [f64; 2]) -> f64 {
-    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
-    let size = |part: f64| {
-        let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
-        (from[0] + part * dx).abs().max((from[1] + part * dy).abs())
-    };
-    // Where a coordinate is zero, or both are as large: there the larger one has its least.
-    let places = [
-        0.0,
-        1.0,
-        -from[0] / dx,
-        -from[1] / dy,
-        (from[1] - from[0]) / (dx - dy),
-        -(from[0] + from[1]) / (dx + dy),
-    ];
-    places.into_iter().map(size).fold(f64::INFINITY, f64::min)
 }
 
 /// The largest difference of two runs at the times that both saw, the ends of wear included where both came to them.

@@ -7,6 +7,7 @@ use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::{Local, Mesh};
 use crate::numerics::linear::dot;
+use crate::numerics::power;
 
 /// Distance from the contact edge, over the annulus, that is round-off.
 const AT_EDGE: f64 = 1e-13;
@@ -191,7 +192,7 @@ impl Model {
             return self.gross_depth_at(gross, fields, offset);
         }
         let annulus = Annulus::new(self, state, fields);
-        annulus.point(offset, &self.unworn.at(offset)).map_or(0.0, |point| point.grown())
+        annulus.point(offset, &self.unworn.at(offset)).map_or(0.0, |point| point.grown)
     }
 
     /// Wear depth, m, by which a step is accepted: at the output where the edge of stick leaves worn ground behind, else at the springs of the limit
@@ -247,10 +248,10 @@ impl Model {
             if annulus.sticks_at(offset) {
                 radial.pressure[i] = f64::NAN;
             }
-            let Some(AnnulusPoint { x, y, unworn, log_slip, local }) = point else { continue };
-            radial.slip[i] = local.sum(&per_depth) * unworn * log_slip.exp();
+            let Some(AnnulusPoint { x, y, unworn, grown, local }) = point else { continue };
+            radial.slip[i] = local.sum(&per_depth) * (unworn + grown);
             let inner = mesh.local_among(&local, y, eased.len());
-            radial.pressure[i] = inner.sum(&eased) * (1.0 - x).powf(nu);
+            radial.pressure[i] = inner.sum(&eased) * power(1.0 - x, nu);
             if mesh.clustering().is_even() {
                 radial.pressure[i] = radial.pressure[i].max(0.0);
             }
@@ -291,7 +292,7 @@ impl<'a> Annulus<'a> {
         let y = model.operators.abel.mesh().place(x);
         let local = model.operators.abel.mesh().local(y, model.springs());
         let log_slip = self.log_slip(&local, &unworn);
-        Some(AnnulusPoint { x, y, unworn: unworn.slip, log_slip, local })
+        Some(AnnulusPoint { x, y, unworn: unworn.slip, grown: unworn.slip * log_slip.exp_m1(), local })
     }
 
     /// `λ` at a place of the mesh where the unworn slip is known.
@@ -328,7 +329,7 @@ impl<'a> Annulus<'a> {
         let squared = self.model.stick_zone.stick_area + offset;
         let behind = self.model.moving.as_ref().and_then(|it| it.left_behind_outside(stick, squared));
         match behind {
-            Some(behind) => point.map_or(0.0, |point| (point.grown() - behind).max(0.0)),
+            Some(behind) => point.map_or(0.0, |point| (point.grown - behind).max(0.0)),
             None => worn,
         }
     }
@@ -348,8 +349,8 @@ struct AnnulusPoint {
     y: f64,
     /// Slip depth of the unworn contact, m.
     unworn: f64,
-    /// `λ`.
-    log_slip: f64,
+    /// `S - S_0`, m.
+    grown: f64,
     /// The local polynomial there.
     local: Local,
 }
@@ -357,12 +358,7 @@ struct AnnulusPoint {
 impl AnnulusPoint {
     /// At least zero: next to the contact edge the polynomial may be negative, by less than the error of the run.
     fn wear_depth(&self) -> f64 {
-        self.grown().max(0.0)
-    }
-
-    /// `S - S_0`, m.
-    fn grown(&self) -> f64 {
-        self.unworn * self.log_slip.exp_m1()
+        self.grown.max(0.0)
     }
 }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::newton::Newton;
-use super::resting::{RestingStage, Tried, newton_tolerance};
-use super::{Stepper, Trial, relative_depth_error};
+use super::resting::{RestingStage, Tried};
+use super::{FIRST_GROWTH, Stepper, Trial, relative_depth_error};
 use crate::error::Result;
 use crate::numerics::abel::Backend;
 use crate::solver::model::{Linearised, Model, Past, PastPoint, State, Target, Unknowns};
@@ -24,8 +24,8 @@ use crate::solver::model::{Linearised, Model, Past, PastPoint, State, Target, Un
 pub struct Bdf {
     /// Largest error of one step.
     tolerance: f64,
-    /// What Newton's method may leave.
-    newton_tolerance: f64,
+    /// About the error at the end of a run.
+    at_the_end: f64,
     newton: Newton,
     tried: Tried,
     /// Cycles of the state that the last step was tried from.
@@ -42,6 +42,13 @@ const ACCUMULATED: f64 = 8.0;
 /// takes as long as eight corrections. Dense factors are made anew in every step: on so few springs that is cheap.
 const SAME_STEP: f64 = 0.3;
 const SAME_MATRIX: f64 = 0.4;
+
+/// `t0` over the time in which wear at the first pressures comes to the compression at the edge of stick: before that, too, wear at the edges goes by
+/// powers of time. In gross slip it is that time.
+const EARLY: f64 = 0.1;
+
+/// Growth of the slip in the first step over the root of its largest error: a step of first order errs by its square.
+const FIRST: f64 = 0.12;
 
 /// Parts of the step that the error allows, at the present order and where the order changes.
 const SAFETY: f64 = 0.8;
@@ -77,7 +84,7 @@ impl Stepper for Bdf {
         let again = led.clone().filter(|_| self.newton.linearised().is_some());
         let still = State { cycles: now, past: Past::default(), ..state.clone() };
         let guesses = led.into_iter().chain(again).chain([still]).enumerate();
-        let (tolerance, newton) = (self.newton_tolerance, &mut self.newton);
+        let (tolerance, newton) = (self.at_the_end, &mut self.newton);
         let mut stage = RestingStage { model, target, tolerance, tried: &mut self.tried };
         let found = guesses.into_iter().find_map(|(attempt, guess)| {
             if attempt > 0 {
@@ -125,6 +132,10 @@ impl Stepper for Bdf {
         })
     }
 
+    fn first_growth(&self) -> f64 {
+        (FIRST * self.tolerance.sqrt()).min(FIRST_GROWTH)
+    }
+
     fn forget(&mut self) {
         self.newton.outdate();
         self.tried_from = None;
@@ -152,7 +163,7 @@ impl Bdf {
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance: tolerance / ACCUMULATED,
-            newton_tolerance: newton_tolerance(tolerance),
+            at_the_end: tolerance,
             newton: Newton::default(),
             tried: Tried::default(),
             tried_from: None,
@@ -176,7 +187,7 @@ impl Bdf {
                         cycles: left.cycles,
                         loading: model.schedule().loading(left.cycles, left.cycles),
                     };
-                    let (tolerance, tried) = (self.newton_tolerance, &mut self.tried);
+                    let (tolerance, tried) = (self.at_the_end, &mut self.tried);
                     self.newton.recall(&mut RestingStage { model, target, tolerance, tried }, left);
                 }
                 None => self.newton.outdate(),
@@ -265,7 +276,8 @@ pub(super) struct TimesBefore {
 impl TimesBefore {
     /// Those of a past before some number of cycles; negative where they are later.
     pub fn new(model: &Model, cycles: f64, past: &Past) -> Self {
-        let zero = model.cycles_of_wear();
+        let early = if model.gross().is_some() { 1.0 } else { EARLY };
+        let zero = early * model.cycles_of_wear();
         let elapsed = |before: f64| ((cycles - before) / (before + zero)).ln_1p();
         Self {
             before: past.points.iter().map(|point| elapsed(point.cycles)).collect(),

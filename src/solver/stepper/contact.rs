@@ -5,7 +5,7 @@
 
 use super::moving::MovingStage;
 use super::newton::Newton;
-use super::resting::{RestingStage, Tried, newton_tolerance};
+use super::resting::{RestingStage, Tried};
 use super::tableau::ALEXANDER;
 use crate::laws::history::History;
 use crate::numerics::grid::lagrange;
@@ -98,7 +98,6 @@ impl<'a> RestingContact<'a> {
         newton: &'a mut Newton,
         tried: &'a mut Tried,
     ) -> Self {
-        let tolerance = newton_tolerance(tolerance);
         Self { model, state, tolerance, newton, tried, at: Unknowns::of(state) }
     }
 

@@ -6,9 +6,14 @@ use super::mixing::Mixing;
 use crate::numerics::linear::Factors;
 use crate::solver::model::{Linearised, StageFactors, Target, Unknowns};
 
-/// Newton iterations before the matrix is renewed, and renewals before the step is given up.
+/// Newton iterations before the matrix is renewed, and renewals before the step is given up; the same where the matrix takes no evaluations.
 const ITERATIONS: usize = 8;
 const RENEWALS: usize = 2;
+const FREE_RENEWALS: usize = 6;
+
+/// Contraction from which on a matrix that takes no evaluations is renewed: next to the contact edge the equations bend within a correction of it,
+/// and with the matrix of the first guess corrections may fall by a half only.
+const RENEWED: f64 = 0.03;
 
 /// What a correction by factors of compressed matrices may leave of itself: measured 1e-4 to 0.04, the most at the contact edge.
 const NEARLY: f64 = 0.05;
@@ -52,6 +57,8 @@ pub(super) struct Correction {
     pub stick: f64,
     /// Estimate of what is left to correct.
     pub remaining: f64,
+    /// Whether that is the next correction, and not what quadratic convergence would leave.
+    pub measured: bool,
     /// Largest compression over that at the edge of stick.
     pub compression: f64,
 }
@@ -68,6 +75,7 @@ impl Correction {
             springs: largest(of_springs).max(others[0].abs() / at.slip_area),
             stick,
             remaining: f64::INFINITY,
+            measured: false,
             compression: largest(&at.compression),
         }
     }
@@ -95,6 +103,13 @@ impl Factorised {
         if self.is_near() { NEARLY } else { 0.0 }
     }
 
+    /// The correction that they ask for where the equations were evaluated.
+    fn correction(&self, equations: &dyn Equations) -> Vec<f64> {
+        let mut change = equations.residual();
+        self.solve(&mut change);
+        change
+    }
+
     fn solve(&self, rhs: &mut [f64]) {
         match self {
             Self::Dense(factors) => factors.solve(rhs),
@@ -119,7 +134,8 @@ impl Newton {
         if !equations.evaluate(at) {
             return false;
         }
-        for _ in 0..=RENEWALS {
+        let free = equations.evaluations_of_matrix() == 0;
+        for _ in 0..=if free { FREE_RENEWALS } else { RENEWALS } {
             let fresh = self.linearised.is_none();
             if fresh {
                 *evaluations += equations.evaluations_of_matrix();
@@ -127,11 +143,10 @@ impl Newton {
             }
             let Some(factors) = &self.factors else { return false };
             let mut mixing = factors.is_near().then(Mixing::default);
-            let mut before = f64::INFINITY;
+            let (mut before, mut ahead) = (f64::INFINITY, None);
             self.contraction = 0.0;
             for _ in 0..ITERATIONS {
-                let mut change = equations.residual();
-                factors.solve(&mut change);
+                let mut change = ahead.take().unwrap_or_else(|| factors.correction(equations));
                 match &mut mixing {
                     Some(mixing) => at.correct(&mixed(mixing, &mut change, at, equations.scale())),
                     None => at.correct(&change),
@@ -150,6 +165,15 @@ impl Newton {
                     if fresh { (size / correction.compression).max(factors.slack()) } else { SLOWEST };
                 let part = if before.is_finite() { size / before } else { first }.min(SLOWEST);
                 correction.remaining = size * part / (1.0 - part);
+                let mut slow = false;
+                if mixing.is_none() {
+                    // What the next correction would take away is what this one left.
+                    let next = factors.correction(equations);
+                    let left = Correction::new(&next, at, equations.scale()).size();
+                    (correction.remaining, correction.measured) = (left, true);
+                    slow = free && left > RENEWED * size;
+                    ahead = Some(next);
+                }
                 if equations.is_last(&correction) {
                     return true;
                 }
@@ -157,6 +181,9 @@ impl Newton {
                     if equations.is_round_off() {
                         return true;
                     }
+                    break;
+                }
+                if slow {
                     break;
                 }
                 before = size;

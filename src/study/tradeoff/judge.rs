@@ -4,6 +4,7 @@ use super::profile::Shape;
 use crate::contact::closed_form::{GibsonTransient, LimitingShape};
 use crate::data::{RunFile, SAME_CYCLES, Snapshot, largest, same_cycles};
 use crate::error::Result;
+use crate::numerics::curve::distance_from_curve;
 use crate::scene::Scene;
 
 /// An error is a number of its own from so many times the uncertainty of the judge on; below it is bounded.
@@ -132,6 +133,9 @@ fn best<T>(all: impl IntoIterator<Item = Truth<T>>) -> Option<Truth<T>> {
 /// All that runs are judged by.
 pub(super) struct Judge {
     shape: Shape,
+    /// First contact radius, m, where the edge of stick moves over the ground: there the profile is steep at places that are known to the error of that
+    /// edge, and what is measured is the distance of the curves, of depth over the largest or of radius over this one.
+    moves_at: Option<f64>,
     limit: Option<LimitingShape>,
     gibson: Option<(GibsonTransient, f64)>,
     reference: RunFile,
@@ -156,6 +160,7 @@ impl Judge {
         let moves = reference.checkpoint.as_ref().is_some_and(|it| it.state.stick.is_some());
         let stays = !moves && limit.is_some();
         let shape = Shape::new(&contact, stays, &reference);
+        let moves_at = moves.then(|| contact.contact_radius());
         let last = reference.snapshots.last();
         let scales = match &limit {
             Some(limit) => [limit.wear_volume(), limit.wear_depth_max()],
@@ -167,7 +172,7 @@ impl Judge {
             false => None,
         };
         let mut judge =
-            Self { shape, limit, gibson, reference, uncertainty: vec![], to_limit: vec![], scales };
+            Self { shape, moves_at, limit, gibson, reference, uncertainty: vec![], to_limit: vec![], scales };
         judge.uncertainty = judge.difference(&other);
         judge.to_limit = judge.distances_to_limit();
         Ok(judge)
@@ -189,7 +194,7 @@ impl Judge {
             let one = self.shape.depth_at(&self.reference.header.radius, it, radii);
             let two = self.shape.depth_at(&other.header.radius, theirs, radii);
             let volume = (it.wear_volume - theirs.wear_volume).abs();
-            [volume / self.scales[0], distance(&one, &two) / self.scales[1]]
+            [volume / self.scales[0], self.apart(radii, &one, &two)]
         };
         let here: Vec<[f64; 2]> = own.iter().map(at).collect();
         let around = |place: usize| {
@@ -200,6 +205,16 @@ impl Judge {
             (0..own.len()).filter(near).map(|it| here[it]).fold([0.0; 2], larger)
         };
         (0..own.len()).map(around).collect()
+    }
+
+    /// Difference of two profiles at some radii, relative.
+    fn apart(&self, radii: &[f64], one: &[f64], two: &[f64]) -> f64 {
+        let Some(radius) = self.moves_at else { return distance(one, two) / self.scales[1] };
+        let places: Vec<f64> = radii.iter().map(|r| r / radius).collect();
+        let [one, two] =
+            [one, two].map(|depths| depths.iter().map(|depth| depth / self.scales[1]).collect::<Vec<_>>());
+        let from = |(i, depth): (usize, &f64)| distance_from_curve(&places, &two, [places[i], *depth], i);
+        one.iter().enumerate().map(from).fold(0.0, f64::max)
     }
 
     fn distances_to_limit(&self) -> Vec<f64> {
@@ -295,7 +310,7 @@ impl Judge {
             let (own, common) = (&run.header.radius, &self.shape.radii);
             let there = self.shape.depth_at(own, snapshot, common);
             let measured = |depths: &[f64], radii: &[f64]| {
-                Measured::new(distance(depths, &(truth.value)(radii)) / self.scales[1], truth.uncertainty)
+                Measured::new(self.apart(radii, depths, &(truth.value)(radii)), truth.uncertainty)
             };
             errors.profile = measured(&there, common);
             errors.nodes = measured(&snapshot.wear_depth, own);
