@@ -24,6 +24,10 @@ const ROUND_OFF: f64 = 1e-12;
 /// Slowest contraction of Newton's corrections with which the slopes of the rates serve another step.
 const SAME_SLOPES: f64 = 0.3;
 
+/// Largest tolerance of backward differentiation: with larger ones compressions swing, as the formulas of higher order let modes grow that ground carried
+/// along makes.
+const LARGEST_TOLERANCE: f64 = 1e-4;
+
 /// Backward differentiation formulas of order 1 to 5, as [`Bdf`], where every cycle is the same, so that wear is smooth in time:
 ///
 /// ```text
@@ -34,6 +38,8 @@ const SAME_SLOPES: f64 = 0.3;
 #[derive(Debug)]
 pub struct GrossBdf {
     tolerance: f64,
+    /// The tolerance asked for over this one.
+    stricter: f64,
     slopes: Option<Slopes>,
     /// Cycles of the state that the last step was tried from.
     tried_from: Option<f64>,
@@ -49,7 +55,12 @@ struct Slopes {
 impl GrossBdf {
     /// A stepper with a largest error of the compressions in one step, relative to the largest of them.
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, slopes: None, tried_from: None }
+        Self {
+            tolerance: tolerance.min(LARGEST_TOLERANCE),
+            stricter: (tolerance / LARGEST_TOLERANCE).max(1.0),
+            slopes: None,
+            tried_from: None,
+        }
     }
 
     /// Takes up the slopes of the step before, made again in a run that is resumed.
@@ -262,7 +273,7 @@ impl GrossBdf {
         Some(Trial {
             state: Some(end),
             fields: None,
-            error,
+            error: self.stricter * error,
             rate_evaluations: *evaluations,
             next_step: Some(cycles * factor),
         })
