@@ -13,7 +13,7 @@ use std::time::Duration;
 use fretwear::contact::stick_slip::Regime;
 use fretwear::data::quantity::quantity;
 use fretwear::data::{
-    Checkpoint, Dataset, Format, LimitCurves, ResultPath, ResultTables, RunFile, RunHeader, RunWriter,
+    Attempt, Checkpoint, Dataset, Format, LimitCurves, ResultPath, ResultTables, RunFile, RunHeader, RunWriter,
     Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
 };
 use fretwear::laws::motion::RecordedPath;
@@ -144,6 +144,7 @@ fn checkpoint() -> Checkpoint {
         wall_seconds: 0.1,
         error_estimate: Some(f64::NAN),
         accuracy: Some(1e-4),
+        attempt: Attempt { refinements: 2, ended_on: 57 },
     }
 }
 

@@ -31,13 +31,15 @@ impl Parts {
     /// # Arguments
     /// * `numerics` -- those of the scene, or coarser ones
     /// * `wanted` -- springs where none are given by hand, instead of those for the accuracy
+    /// * `known` -- the schedule, where a run of the scene with the same substeps has made it
     pub(super) fn new(
         scene: &Scene,
         numerics: &Numerics,
         wanted: Option<usize>,
+        known: Option<&Schedule>,
         store: &OperatorStore,
     ) -> Result<Self> {
-        let mut parts = Self::on_any(scene, numerics, wanted, store)?;
+        let mut parts = Self::on_any(scene, numerics, wanted, known, store)?;
         check_sliding(&parts.model)?;
         if parts.model.gross().is_some() {
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
@@ -53,11 +55,15 @@ impl Parts {
         scene: &Scene,
         numerics: &Numerics,
         wanted: Option<usize>,
+        known: Option<&Schedule>,
         store: &OperatorStore,
     ) -> Result<Self> {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
-        let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
+        let schedule = match known {
+            Some(schedule) => schedule.clone(),
+            None => Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?,
+        };
         let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
         let by_energy = *model.schedule().friction_along_energy() != History::Constant;
         let conditions = scene.conditions();

@@ -7,11 +7,12 @@ use std::time::{Duration, Instant};
 use super::Shared;
 use super::accuracy::estimate::Companions;
 use super::budget;
+use super::cost::{self, MOST_WORK, tries, work_of_step};
 use super::limit::worn_profile;
-use crate::data::{Checkpoint, RunWriter, Snapshot, StopReason};
+use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
-use crate::scene::Scene;
+use crate::scene::{Scene, Stepper};
 use crate::solver::model::{FrettingLoop, OperatorStore};
 use crate::solver::simulation::{Flow, Observer, Outcome, Simulation};
 
@@ -89,6 +90,10 @@ pub(super) struct Recorder {
     companions: Option<Companions>,
     /// The accuracy asked for, where the program chooses the springs.
     accuracy: Option<f64>,
+    /// Steps that may be tried, where the program chooses springs and steps, and whether there were more.
+    most_tries: f64,
+    takes_too_long: bool,
+    pub(super) attempt: Attempt,
 }
 
 impl Recorder {
@@ -109,7 +114,20 @@ impl Recorder {
             saves_result: true,
             companions: None,
             accuracy: scene.numerics().accuracy_asked(),
+            most_tries: f64::INFINITY,
+            takes_too_long: false,
+            attempt: Attempt::default(),
         }
+    }
+
+    /// Whether the last run was stopped since it takes too long.
+    pub(super) fn takes_too_long(&self) -> bool {
+        self.takes_too_long
+    }
+
+    /// Whether the companions of a run tell that it would take too long.
+    pub(super) fn would_take_too_long(&self) -> bool {
+        self.companions.as_ref().is_some_and(Companions::are_dear)
     }
 
     /// Whether the file is written where the run ends.
@@ -131,6 +149,9 @@ impl Recorder {
     ) {
         let chosen = scene.numerics().springs.is_none();
         self.companions = chosen.then(|| Companions::run(scene, simulation, limited, store, &self.stop));
+        let bounded = chosen && scene.numerics().stepper == Stepper::Implicit;
+        self.most_tries = if bounded { MOST_WORK / work_of_step(simulation.model()) } else { f64::INFINITY };
+        self.takes_too_long = false;
     }
 
     /// By coarser runs where the program chose the springs, else by the balance of the worn volume, as before the first snapshot that a companion
@@ -152,7 +173,7 @@ impl Recorder {
     ) -> Option<usize> {
         let (accuracy, springs) = (scene.numerics().accuracy, simulation.model().springs());
         let companions = self.companions.as_ref()?;
-        match outcome {
+        let wanted = match outcome {
             Ok(Outcome::Interrupted) => None,
             // The companion of a finer run may come to an end.
             _ if companions.is_smooth() && companions.is_lost() => budget::refined(springs, None, accuracy),
@@ -164,7 +185,8 @@ impl Recorder {
             // More springs may find an end where few do not.
             Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
             Err(_) => None,
-        }
+        };
+        wanted.filter(|springs| cost::allows(simulation, *springs))
     }
 
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
@@ -174,6 +196,7 @@ impl Recorder {
             wall_seconds: self.wall_seconds_before + self.started.elapsed().as_secs_f64(),
             error_estimate: self.error_estimate(simulation),
             accuracy: self.accuracy,
+            attempt: self.attempt,
         }
     }
 }
@@ -186,6 +209,10 @@ impl Observer for Recorder {
 
     fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
         if self.stop.load(Ordering::Relaxed) {
+            return Ok(Flow::Stop);
+        }
+        if tries(simulation.progress()) > self.most_tries {
+            self.takes_too_long = true;
             return Ok(Flow::Stop);
         }
         if self.saved.elapsed() >= self.interval {

@@ -7,8 +7,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
+use super::super::cost::MOST_WORK;
 use super::super::parts::resolution;
-use super::companion::{Coarser, Companion, Worn};
+use super::companion::{Coarser, Companion, Lost, Worn};
 use super::substeps::larger;
 use crate::data::{Snapshot, same_cycles};
 use crate::laws::loading::TangentialControl;
@@ -52,6 +53,9 @@ const SHARE_OF_STICK: f64 = 2.0;
 /// reached.
 const MOST_STEPS: [u64; 2] = [2000, 4000];
 
+/// Work of a companion over that of the run, about, beyond which the run would take too long.
+const OF_COMPANION: f64 = 0.2;
+
 /// Coarser runs of a scene.
 #[derive(Debug)]
 pub(in crate::run) struct Companions {
@@ -70,6 +74,8 @@ pub(in crate::run) struct Companions {
     limit: Option<[f64; 2]>,
     /// What the discretisation leaves out in any case.
     left_out: f64,
+    /// Whether the first companion took so long that the run would take too long.
+    dear: bool,
     first: Option<Companion>,
     second: Option<Companion>,
 }
@@ -109,7 +115,9 @@ impl Companions {
                 },
                 springs: ((model.springs() as f64 / RATIO.powi(steps)).ceil() as usize).max(FEWEST),
                 offsets: &offsets,
+                schedule: steps_of.is_none().then(|| model.schedule()),
                 samples: steps == 1 && steps_of.is_none(),
+                most_work: MOST_WORK * OF_COMPANION.powi(steps),
                 most_steps: MOST_STEPS[usize::from(!smooth)],
                 store,
                 stop,
@@ -117,7 +125,9 @@ impl Companions {
         };
         let first = coarser(1);
         let gross = model.gross().is_some();
-        let second = (first.is_some() && !smooth && !gross).then(|| coarser(2)).flatten();
+        let dear = matches!(first, Err(Lost::Dear));
+        let first = first.ok();
+        let second = (first.is_some() && !smooth && !gross).then(|| coarser(2).ok()).flatten();
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
         let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
@@ -138,8 +148,11 @@ impl Companions {
             gross,
             every,
             radii,
-            limit: (limited || smooth).then(|| [model.limit_volume(), model.depth_scale()]),
+            limit: (limited || smooth)
+                .then(|| [model.limit_volume(), model.depth_scale()])
+                .filter(|limit| limit.iter().all(|it| *it > 0.0)),
             left_out: if smooth { 0.0 } else { model.core_uncertainty().max(unseen()) },
+            dear,
             first,
             second,
         }
@@ -148,6 +161,11 @@ impl Companions {
     /// Whether the order of convergence is known.
     pub(in crate::run) fn is_smooth(&self) -> bool {
         self.smooth
+    }
+
+    /// Whether the run would take too long.
+    pub(in crate::run) fn are_dear(&self) -> bool {
+        self.dear
     }
 
     /// Whether the first companion came to no end.
