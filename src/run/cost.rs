@@ -36,18 +36,18 @@ const FEWEST: usize = 12;
 
 /// Evaluations of a step that is tried: where the edge of stick rests, where it moves, and in gross slip beside one for every spring, for Newton's matrix is
 /// found by differences.
-const EVALUATIONS: [f64; 3] = [12.0, 60.0, 15.0];
+const EVALUATIONS: [f64; 3] = [30.0, 60.0, 15.0];
 
 /// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves; by pair of springs and step of a period; by pair of springs
 /// over which wear spreads; of the factors, by triple of springs; and of a step in any case.
-const BY_SPRING: [f64; 2] = [40.0, 500.0];
-const BY_PAIR: f64 = 0.1;
+const BY_SPRING: [f64; 2] = [150.0, 500.0];
+const BY_PAIR: f64 = 0.05;
 const BY_SPREADING: f64 = 30.0;
-const BY_TRIPLE: f64 = 0.1;
+const BY_TRIPLE: f64 = 0.05;
 const OVERHEAD: f64 = 2e4;
 
 /// The same by spring and step of a period: from a table, along a line, and where springs pass period after period.
-const BY_STEP: [f64; 3] = [10.0, 40.0, 600.0];
+const BY_STEP: [f64; 3] = [5.0, 40.0, 400.0];
 
 /// Work of a step that is tried, nanoseconds of one core, about. The same on every machine, so that a run and one that was interrupted take the same way.
 pub(super) fn work_of_step(model: &Model) -> f64 {

@@ -534,9 +534,6 @@ impl Draw {
         let mut text = String::from("[numerics]\n");
         if self.extreme {
             text += &format!("accuracy = {:?}\n", self.one_of(&[1e-2, 1e-3, 1e-4]));
-            if self.chance(0.02) {
-                text += &format!("stepper = \"{}\"\n", self.one_of(&["every-cycle", "cycle-jump"]));
-            }
             return text;
         }
         let short = length == Length::Short;

@@ -198,8 +198,10 @@ impl Companions {
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
         let substeps = first.unsampled.as_ref().map_or(0.0, |it| it.error(scale));
+        // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
+        let tells = ratio >= LEAST_RATIO;
         Some(Shares {
-            springs: finite(difference / (ratio.powf(order) - 1.0)),
+            springs: if tells { finite(difference / (ratio.powf(order) - 1.0)) } else { UNKNOWN },
             order,
             substeps: finite(substeps),
             left_out: finite(self.left_out),
