@@ -30,6 +30,9 @@ const ITERATIONS: usize = 30;
 /// Most work of a run whose springs the program chooses, as [`work_of_step`]: some eight seconds. What would be more is made on fewer springs, and told.
 pub(super) const MOST_WORK: f64 = 8e9;
 
+/// The same for a run on so few springs that none are left out.
+const MOST_WORK_OF_LAST: f64 = 1.2e10;
+
 /// Springs of a run that takes too long when it is made anew over those before, and fewest with which it is.
 const FEWER: f64 = 0.6;
 const FEWEST: usize = 12;
@@ -47,7 +50,7 @@ const BY_TRIPLE: f64 = 0.05;
 const OVERHEAD: f64 = 2e4;
 
 /// The same by spring and step of a period: from a table, along a line, and where springs pass period after period.
-const BY_STEP: [f64; 3] = [5.0, 40.0, 400.0];
+const BY_STEP: [f64; 3] = [5.0, 40.0, 100.0];
 
 /// Work of a step that is tried, nanoseconds of one core, about. The same on every machine, so that a run and one that was interrupted take the same way.
 pub(super) fn work_of_step(model: &Model) -> f64 {
@@ -80,6 +83,12 @@ pub(super) fn tries(progress: &Progress) -> f64 {
 pub(super) fn fewer(springs: usize) -> Option<usize> {
     let fewer = (FEWER * springs as f64).ceil() as usize;
     (fewer >= FEWEST && fewer < springs).then_some(fewer)
+}
+
+/// Most steps that a run may try, whose springs the program chooses.
+pub(super) fn most_tries(model: &Model) -> f64 {
+    let most = if fewer(model.springs()).is_some() { MOST_WORK } else { MOST_WORK_OF_LAST };
+    most / work_of_step(model)
 }
 
 /// Whether a run that came to its end can be made anew on so many springs.

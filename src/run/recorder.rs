@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::Shared;
 use super::accuracy::estimate::Companions;
 use super::budget;
-use super::cost::{self, MOST_WORK, tries, work_of_step};
+use super::cost::{self, tries};
 use super::limit::worn_profile;
 use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
@@ -150,7 +150,7 @@ impl Recorder {
         let chosen = scene.numerics().springs.is_none();
         self.companions = chosen.then(|| Companions::run(scene, simulation, limited, store, &self.stop));
         let bounded = chosen && scene.numerics().stepper == Stepper::Implicit;
-        self.most_tries = if bounded { MOST_WORK / work_of_step(simulation.model()) } else { f64::INFINITY };
+        self.most_tries = if bounded { cost::most_tries(simulation.model()) } else { f64::INFINITY };
         self.takes_too_long = false;
     }
 

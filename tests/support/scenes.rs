@@ -15,6 +15,7 @@ pub enum Length {
     /// Up to a hundredth of the dimensionless time, on few springs.
     Short,
     /// As users ask for them.
+    #[allow(dead_code, reason = "the bench of the extremes has no use for it")]
     Usual,
     /// At the ends of every range, with the numerics left to the program.
     Extreme,
