@@ -13,6 +13,7 @@ mod judge;
 #[path = "extremes/page.rs"]
 mod page;
 #[path = "../tests/support/scenes.rs"]
+#[allow(dead_code, reason = "shared with the tests of generated scenes")]
 mod scenes;
 
 use std::fs::OpenOptions;

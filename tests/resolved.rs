@@ -320,7 +320,7 @@ fn the_table_of_an_orbit_is_that_of_its_springs() {
 fn springs_that_begin_near_the_ones_before_repeat_what_springs_from_rest_do() {
     let case = Case::new(2.0, 0.0, 0.7, 20);
     let contact = case.contact();
-    let law = Coulomb { coefficient: 1.0 };
+    let law = fretwear::laws::friction::Coulomb { coefficient: 1.0 };
     for (name, mode) in laws::modes(&contact).into_iter().skip(3) {
         let path = SampledPath::new(&*mode, contact.amplitude(), contact.indentation(), 96).path;
         let mut springs = Neighbours::new(&path).unwrap();

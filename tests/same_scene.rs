@@ -80,16 +80,19 @@ fn forces_that_are_held_are_left_out_where_next_to_nothing_slips() {
              stick_ratio = {ratio}\ntau = 1000\n{control}[numerics]\naccuracy = 1e-3\n[output]\nsnapshots = 3\n"
         )
     };
-    let read = |text: &str| Scene::from_toml(text, "scene.toml").unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let read =
+        |text: &str| Scene::from_toml(text, "scene.toml").unwrap_or_else(|error| panic!("{error}\n{text}"));
     let mut most = 0.0_f64;
     for (exponent, grading) in [(2.0, 0.0), (2.0, -0.6), (2.0, 0.6), (0.5, 0.6)] {
         let (held, slips) = ("indentation = 1e-6", 1e-2);
         let plain = read(&text(held, "", 1.0 - slips, exponent, grading));
         let force = format!("normal_force = {:e}", plain.contact().unwrap().normal_force());
         let expected = plain.simulate().unwrap().last().wear_volume;
-        for (load, control) in
-            [(&*force, ""), (held, "tangential_control = \"force\"\n"), (&*force, "tangential_control = \"force\"\n")]
-        {
+        for (load, control) in [
+            (&*force, ""),
+            (held, "tangential_control = \"force\"\n"),
+            (&*force, "tangential_control = \"force\"\n"),
+        ] {
             let scene = read(&text(load, control, 1.0 - slips, exponent, grading));
             assert!(!scene.conditions().is_plain(), "{load} {control}");
             let results = scene.simulate().unwrap();

@@ -13,8 +13,8 @@ use std::time::Duration;
 use fretwear::contact::stick_slip::Regime;
 use fretwear::data::quantity::quantity;
 use fretwear::data::{
-    Attempt, Checkpoint, Dataset, Format, LimitCurves, ResultPath, ResultTables, RunFile, RunHeader, RunWriter,
-    Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
+    Attempt, Checkpoint, Dataset, Format, LimitCurves, ResultPath, ResultTables, RunFile, RunHeader,
+    RunWriter, Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
 };
 use fretwear::laws::motion::RecordedPath;
 use fretwear::solver::model::{Linearised, Past, PastPoint, State, StickEdge};

@@ -57,7 +57,9 @@ type Kind = (&'static str, fn(&Sizes) -> Vec<(&'static str, String)>);
 
 const KINDS: [Kind; 27] = [
     ("plain", |_| vec![]),
-    ("dissipated energy", |it| vec![("wear", format!("[wear.dissipated-energy]\ncoefficient = {:e}", it.wear() / FRICTION))]),
+    ("dissipated energy", |it| {
+        vec![("wear", format!("[wear.dissipated-energy]\ncoefficient = {:e}", it.wear() / FRICTION))]
+    }),
     ("p^1.5 s", |it| power(it, 1.5, 1.0)),
     ("p^0.7 s^0.8", |it| power(it, 0.7, 0.8)),
     ("p s^2", |it| power(it, 1.0, 2.0)),
@@ -77,7 +79,9 @@ const KINDS: [Kind; 27] = [
         );
         vec![("wear", law), ("frequency", frequency)]
     }),
-    ("wear that falls", |it| vec![("wear history", format!("[wear.history]\nfinal_factor = 0.3\ntau = {:e}", 0.3 * it.tau))]),
+    ("wear that falls", |it| {
+        vec![("wear history", format!("[wear.history]\nfinal_factor = 0.3\ntau = {:e}", 0.3 * it.tau))]
+    }),
     ("static and kinetic", |_| {
         let law = "[friction.static-kinetic]\nstatic_coefficient = 0.5\nkinetic_coefficient = 0.4";
         vec![("friction", law.into())]
@@ -129,7 +133,9 @@ fn factor(place: &'static str, law: &str, last: f64, it: &Sizes) -> Vec<(&'stati
 fn blocks(it: &Sizes, of: &[(f64, f64, f64)], repeat: bool) -> Vec<(&'static str, String)> {
     let block = |(part, amplitude, depth): &(f64, f64, f64)| {
         let tau = part * it.tau;
-        format!("[[loading.blocks]]\ntau = {tau:e}\namplitude_factor = {amplitude}\nindentation_factor = {depth}\n")
+        format!(
+            "[[loading.blocks]]\ntau = {tau:e}\namplitude_factor = {amplitude}\nindentation_factor = {depth}\n"
+        )
     };
     let tables: String = of.iter().map(block).collect();
     vec![("mode", tables), ("repeat", if repeat { "repeat = true".into() } else { String::new() })]

@@ -118,15 +118,19 @@ pub fn watched(patience: f64, lost: impl Fn() + Sync, judged: impl FnOnce() -> R
 }
 
 /// What is not a number, or less than nothing.
-fn unsound(snapshot: &Snapshot, swing: f64) -> Option<&'static str> {
+///
+/// # Arguments
+/// * `most` -- depth and slip of the run, m: in a block that sticks slip is the round-off of others
+fn unsound(snapshot: &Snapshot, most: [f64; 2], swing: f64) -> Option<&'static str> {
     let Snapshot { wear_volume, contact_radius, stick_radius, indentation, normal_force, .. } = snapshot;
     let numbers =
         [wear_volume, contact_radius, stick_radius, indentation, normal_force, &snapshot.dissipated_energy];
     if numbers.into_iter().any(|value| !value.is_finite()) {
         return Some("a number that is none");
     }
-    for (what, values) in [("depth", &snapshot.wear_depth), ("slip", &snapshot.slip)] {
-        let most = values.iter().copied().fold(0.0, f64::max);
+    for ((what, values), most) in
+        [("depth", &snapshot.wear_depth), ("slip", &snapshot.slip)].into_iter().zip(most)
+    {
         if !values.iter().all(|value| value.is_finite() && *value >= -swing * most) {
             return Some(what);
         }
@@ -138,10 +142,14 @@ fn ended(name: &str, results: &Results, accuracy: f64) -> Row {
     let estimate =
         results.error_estimate().map_or_else(|| "no estimate".to_owned(), |it| format!("estimate {it:.1e}"));
     let how = format!("{estimate}, {} springs, {} steps", results.springs(), results.steps());
-    let first = results.snapshots().iter().find_map(|it| Some((it.tau, unsound(it, SWING * accuracy)?)));
+    let largest =
+        |of: fn(&Snapshot) -> &Vec<f64>| results.snapshots().iter().flat_map(of).copied().fold(0.0, f64::max);
+    let most = [largest(|it| &it.wear_depth), largest(|it| &it.slip)];
+    let first =
+        results.snapshots().iter().find_map(|it| Some((it.tau, unsound(it, most, SWING * accuracy)?)));
     // What has been told may be off by as much as was told.
     let swing = SWING * results.error_estimate().unwrap_or(1.0).max(accuracy);
-    let beyond = results.snapshots().iter().find_map(|it| Some((it.tau, unsound(it, swing)?)));
+    let beyond = results.snapshots().iter().find_map(|it| Some((it.tau, unsound(it, most, swing)?)));
     if let Some((tau, what)) = if results.accuracy_met() == Some(true) { first } else { beyond } {
         return Row::new(name, "wrong", format!("{what} at τ = {tau:.3e}, {how}"));
     }
@@ -230,9 +238,15 @@ pub fn judge_in_parts(name: &str, text: &str) -> Row {
     }
     let seen = |it: &Results| {
         let last = it.last();
-        (last.wear_volume.to_bits(), last.contact_radius.to_bits(), last.wear_depth.clone(), it.snapshots().len())
+        (
+            last.wear_volume.to_bits(),
+            last.contact_radius.to_bits(),
+            last.wear_depth.clone(),
+            it.snapshots().len(),
+        )
     };
-    if last.is_complete() && (seen(&last) != seen(&whole) || last.error_estimate() != whole.error_estimate()) {
+    if last.is_complete() && (seen(&last) != seen(&whole) || last.error_estimate() != whole.error_estimate())
+    {
         return wrong(&format!(
             "volume {:e} for {:e}, estimate {:?} for {:?}",
             last.last().wear_volume,

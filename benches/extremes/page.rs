@@ -108,7 +108,9 @@ pub fn write(folder: &Path) {
             );
             counts(&mut page, rows);
         }
-        for (end, words) in [("refused", "refused"), ("failed", "failed"), ("late", "out of time"), ("wrong", "wrong")] {
+        for (end, words) in
+            [("refused", "refused"), ("failed", "failed"), ("late", "out of time"), ("wrong", "wrong")]
+        {
             if rows.iter().any(|row| row.end == end) {
                 let _ = writeln!(page, "\n### Why of {title} are {words}\n");
                 reasons(&mut page, rows, end);

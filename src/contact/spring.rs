@@ -224,7 +224,8 @@ fn periodic(
     loop {
         let before = spring;
         out.clear();
-        let (slip_path, loaded) = general_period(path, &limits, count, compression, &mut spring, static_factor, out);
+        let (slip_path, loaded) =
+            general_period(path, &limits, count, compression, &mut spring, static_factor, out);
         let step = difference(spring.deflection, before.deflection);
         let change = length(step);
         let repeats =

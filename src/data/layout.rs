@@ -113,8 +113,11 @@ pub const ACCURACY_MET: Quantity =
 /// How a run came to be made anew, scalars, in the group of the checkpoint; absent where it was not.
 pub const REFINEMENTS: Quantity =
     quantity("refinements", "1", "how often the run was made anew on more springs, or need not be any more");
-pub const ENDED_ON: Quantity =
-    quantity("ended_on", "1", "springs on which an attempt came to an end less accurately than was asked for, or 0");
+pub const ENDED_ON: Quantity = quantity(
+    "ended_on",
+    "1",
+    "springs on which an attempt came to an end less accurately than was asked for, or 0",
+);
 
 /// A dataset, and the place of its values in the record it stores.
 pub(super) struct Field<Record, Value> {

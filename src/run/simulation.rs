@@ -224,7 +224,8 @@ fn to_the_end(
         let known = stepping.model().schedule().clone();
         let anew = |springs: usize| {
             let parts = Parts::new(scene, scene.numerics(), Some(springs), Some(&known), store)?;
-            let stepping = stepping::Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
+            let stepping =
+                stepping::Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
             Ok::<_, Error>((stepping, parts.limit))
         };
         // On fewer springs where these take too long; a mesh may need as many.
@@ -236,7 +237,8 @@ fn to_the_end(
         recorder.run_companions(scene, store, &stepping, limit.is_some());
         let ended_on = recorder.attempt.ended_on as usize;
         let begins = stepping.progress().steps == 0 && ended_on == 0;
-        if let Some(found) = (begins && recorder.would_take_too_long()).then(|| coarser(&stepping)).flatten() {
+        if let Some(found) = (begins && recorder.would_take_too_long()).then(|| coarser(&stepping)).flatten()
+        {
             (stepping, limit) = found;
             recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
             continue;

@@ -15,7 +15,6 @@ pub enum Length {
     /// Up to a hundredth of the dimensionless time, on few springs.
     Short,
     /// As users ask for them.
-    #[allow(dead_code, reason = "the bench of the extremes has no use for it")]
     Usual,
     /// At the ends of every range, with the numerics left to the program.
     Extreme,
@@ -150,7 +149,9 @@ impl Draw {
         let keeps_displacement = self.extreme && text.contains("static-kinetic");
         text += &self.loading(&sizes, clock, end, keeps_displacement);
         text += &self.numerics(length);
-        if self.chance(0.05) && !(self.extreme && ["orbit]", "oscillation]", "path]"].iter().any(|it| text.contains(it))) {
+        if self.chance(0.05)
+            && !(self.extreme && ["orbit]", "oscillation]", "path]"].iter().any(|it| text.contains(it)))
+        {
             let from = format!("[loading]\nwear_from = \"{}\"\n", self.one_of(&["settled", "first-cycle"]));
             text = text.replacen("[loading]\n", &from, 1);
         }
@@ -338,7 +339,9 @@ impl Draw {
         let form = if self.chance(0.5) {
             let decay = self.scale(1e-2, 1e2) / power;
             let adhesive = coefficient * self.between(0.1, 0.9);
-            format!("abrasive_coefficient = {coefficient:?}\nadhesive_coefficient = {adhesive:?}\ndecay = {decay:?}")
+            format!(
+                "abrasive_coefficient = {coefficient:?}\nadhesive_coefficient = {adhesive:?}\ndecay = {decay:?}"
+            )
         } else {
             let exponent = self.between(-0.6, 1.0);
             format!("coefficient = {coefficient:?}\nexponent = {exponent:?}\nreference_power = {power:?}")

@@ -117,7 +117,7 @@ impl Companions {
                 offsets: &offsets,
                 schedule: steps_of.is_none().then(|| model.schedule()),
                 samples: steps == 1 && steps_of.is_none(),
-                most_work: MOST_WORK * OF_COMPANION.powi(steps),
+                most_work: MOST_WORK * OF_COMPANION,
                 most_steps: MOST_STEPS[usize::from(!smooth)],
                 store,
                 stop,
