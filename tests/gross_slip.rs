@@ -368,7 +368,7 @@ fn a_sphere_in_gross_slip_stops_at_its_equator_with_a_reason() {
 #[test]
 fn what_is_left_of_the_pressure_at_held_indentation_takes_no_more_steps() {
     // Pressure falls by e^-400 on the way.
-    let results = scene(0.0, 2.0, 100.0, 4.0, "indentation = 1e-6").simulate().unwrap();
+    let results = scene(0.0, 2.0, 100.0, 4.0, "initial_force").simulate().unwrap();
     let steps = results.steps();
     // Every step resolved what was left, however little: 2626.
     assert!(steps < 200, "{steps} steps");
