@@ -49,8 +49,12 @@ const BY_SPREADING: f64 = 30.0;
 const BY_TRIPLE: f64 = 0.05;
 const OVERHEAD: f64 = 2e4;
 
-/// The same by spring and step of a period: from a table, along a line, and where springs pass period after period.
-const BY_STEP: [f64; 3] = [5.0, 40.0, 100.0];
+/// The same by spring and step of a period: from a table, along a line, where springs pass period after period, and where they do so until they come to rest
+/// on a path that presses and lifts.
+const BY_STEP: [f64; 4] = [5.0, 10.0, 100.0, 5000.0];
+
+/// How much longer it takes where a profile is a table.
+const OF_TABLE: f64 = 4.0;
 
 /// Work of a step that is tried, nanoseconds of one core, about. The same on every machine, so that a run and one that was interrupted take the same way.
 pub(super) fn work_of_step(model: &Model) -> f64 {
@@ -62,16 +66,23 @@ pub(super) fn work_of_step(model: &Model) -> f64 {
         None => [resting, moving][moves],
     };
     let steps = if schedule.resolves() { schedule.loop_steps(1) as f64 } else { 1.0 };
-    let [from_table, along_line, by_periods] = BY_STEP;
+    let [from_table, along_line, by_periods, to_rest] = BY_STEP;
     let passed = match schedule.resolves() {
         false => 0.0,
         true if schedule.is_tabulated() => from_table,
         true if !schedule.leaves_axis() && !schedule.conditions().friction.remembers_slip() => along_line,
+        true if schedule.lifts() => to_rest,
         true => by_periods,
     };
+    let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
-    let by_spring = BY_SPRING[moves] + steps * (BY_PAIR * springs + passed) + spread;
+    let by_spring = table * BY_SPRING[moves] + steps * (BY_PAIR * springs + passed) + spread;
     OVERHEAD + evaluations * springs * by_spring + BY_TRIPLE * springs.powi(3)
+}
+
+/// Steps to try that cost as much as a look at what so many times the substeps would wear.
+pub(super) fn tries_of_look(finer: usize) -> f64 {
+    finer as f64 / EVALUATIONS[0]
 }
 
 /// Steps tried so far.

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::super::cost::{tries, work_of_step};
+use super::super::cost::{tries, tries_of_look, work_of_step};
 use super::super::parts::Parts;
-use super::substeps::Unsampled;
+use super::substeps::{FINER, Unsampled};
 use crate::data::Snapshot;
 use crate::scene::{Numerics, Scene, Stepper};
 use crate::solver::model::{OperatorStore, Schedule};
@@ -99,9 +99,9 @@ impl Companion {
         let most_steps = if implicit { coarser.most_steps } else { u64::MAX };
         let most_tries = if implicit { most_tries } else { f64::INFINITY };
         let stop = Arc::clone(coarser.stop);
-        let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_tries };
+        let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_tries, looked: 0.0 };
         let outcome = simulation.run(&mut [&mut seen]);
-        if tries(simulation.progress()) > most_tries {
+        if seen.tries(&simulation) > most_tries {
             return Err(Lost::Dear);
         }
         match outcome {
@@ -123,6 +123,14 @@ struct Seen {
     stop: Arc<AtomicBool>,
     most_steps: u64,
     most_tries: f64,
+    /// Steps to try that what was seen of the substeps cost as much as.
+    looked: f64,
+}
+
+impl Seen {
+    fn tries(&self, simulation: &Simulation) -> f64 {
+        tries(simulation.progress()) + self.looked
+    }
 }
 
 impl Observer for Seen {
@@ -130,13 +138,14 @@ impl Observer for Seen {
         self.worn.push(Worn::of(simulation));
         if let Some(unsampled) = &mut self.unsampled {
             unsampled.see(simulation);
+            self.looked += tries_of_look(FINER);
         }
         Ok(())
     }
 
     fn step(&mut self, simulation: &Simulation) -> crate::Result<Flow> {
         let progress = simulation.progress();
-        let lost = progress.steps > self.most_steps || tries(progress) > self.most_tries;
+        let lost = progress.steps > self.most_steps || self.tries(simulation) > self.most_tries;
         Ok(if lost || self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue })
     }
 }
