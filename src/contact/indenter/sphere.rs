@@ -96,7 +96,7 @@ impl Equivalent for SphereEquivalent {
     fn series(&self, radius: f64) -> Option<Vec<f64>> {
         let squared = self.radius * self.radius;
         let terms = (f64::EPSILON.ln() / (radius * radius / squared).ln()).ceil();
-        if !(terms <= MOST_TERMS as f64) {
+        if terms.is_nan() || terms > MOST_TERMS as f64 {
             return None;
         }
         let nu = 0.5 * (1.0 + self.grading);
