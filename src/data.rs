@@ -227,6 +227,17 @@ pub struct Checkpoint {
     pub error_estimate: Option<f64>,
     /// The accuracy that was asked for, where the program chose the springs.
     pub accuracy: Option<f64>,
+    /// How often the run had been made anew.
+    pub attempt: Attempt,
+}
+
+/// How a run came to be made anew, so that one that was interrupted takes the same way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Attempt {
+    /// How often it was made anew on more springs, or need not be any more.
+    pub refinements: u64,
+    /// Springs on which it came to an end, if less accurately than was asked for; zero where it did not.
+    pub ended_on: u64,
 }
 
 impl Checkpoint {

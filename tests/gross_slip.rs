@@ -368,6 +368,16 @@ fn a_sphere_in_gross_slip_stops_at_its_equator_with_a_reason() {
 }
 
 #[test]
+fn what_is_left_of_the_pressure_at_held_indentation_takes_no_more_steps() {
+    // Pressure falls by e^-400 on the way.
+    let results = scene(0.0, 2.0, 100.0, 4.0, "initial_force").simulate().unwrap();
+    let steps = results.steps();
+    // Every step resolved what was left, however little: 2626.
+    assert!(steps < 200, "{steps} steps");
+    assert_eq!(results.accuracy_met(), Some(true));
+}
+
+#[test]
 fn explicit_steps_are_refused_in_gross_slip() {
     for stepper in ["every-cycle", "cycle-jump"] {
         let text = format!(

@@ -72,6 +72,44 @@ fn the_same_physics_in_other_words_is_the_same_run() {
 }
 
 #[test]
+fn forces_that_are_held_are_left_out_where_next_to_nothing_slips() {
+    let text = |load: &str, control: &str, ratio: f64, exponent: f64, grading: f64| {
+        format!(
+            "[indenter.power-law]\ncoefficient = 1.0\nexponent = {exponent}\n[half_space]\ngrading = {grading}\nnormal_stiffness = 1e11\n\
+             stiffness_ratio = 0.8\n[friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1e-13\n[loading]\n{load}\n\
+             stick_ratio = {ratio}\ntau = 1000\n{control}[numerics]\naccuracy = 1e-3\n[output]\nsnapshots = 3\n"
+        )
+    };
+    let read =
+        |text: &str| Scene::from_toml(text, "scene.toml").unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let mut most = 0.0_f64;
+    for (exponent, grading) in [(2.0, 0.0), (2.0, -0.6), (2.0, 0.6), (0.5, 0.6)] {
+        let (held, slips) = ("indentation = 1e-6", 1e-2);
+        let plain = read(&text(held, "", 1.0 - slips, exponent, grading));
+        let force = format!("normal_force = {:e}", plain.contact().unwrap().normal_force());
+        let expected = plain.simulate().unwrap().last().wear_volume;
+        for (load, control) in [
+            (&*force, ""),
+            (held, "tangential_control = \"force\"\n"),
+            (&*force, "tangential_control = \"force\"\n"),
+        ] {
+            let scene = read(&text(load, control, 1.0 - slips, exponent, grading));
+            assert!(!scene.conditions().is_plain(), "{load} {control}");
+            let results = scene.simulate().unwrap();
+            let change = (results.last().wear_volume / expected - 1.0).abs() / slips;
+            println!("n = {exponent}, k = {grading}, {load} {control}: {change} of what slips");
+            most = most.max(change);
+            // A hundredth of 1e-3, and twice what slips: less than that is left out, and told.
+            let less = read(&text(load, control, 1.0 - 4e-6, exponent, grading));
+            let told = less.warnings().iter().filter(|it| it.contains("left out")).count();
+            assert!(less.conditions().is_plain() && told > 0, "{load} {control}: {:?}", less.warnings());
+        }
+    }
+    // Twice what slips is what the program takes it for.
+    assert!(most > 1.0 && most < 2.0, "{most}");
+}
+
+#[test]
 fn laws_without_kinks_keep_the_accuracy_asked() {
     let laws = [
         ("[friction.static-kinetic]\nstatic_coefficient = 0.7\nkinetic_coefficient = 0.5\n", ARCHARD),

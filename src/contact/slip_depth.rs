@@ -9,7 +9,7 @@
 //!
 //! As wear changes nothing inside `c`, the depth worn away is the growth of the slip depth, `w = S - S_0`.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::contact::indenter::{EquivalentProfile, RiseTransform};
 use crate::error::{Error, Result};
@@ -46,7 +46,16 @@ pub struct UnwornSlip {
     slip: SlipSeries,
     rule: Rule,
     table: Option<Arc<RiseTransform>>,
+    /// The slip of the terms of the profile where that is a series; found when the edge of stick has moved first.
+    terms: OnceLock<Option<Vec<Term>>>,
     limit_slip_area: f64,
+}
+
+/// `(F(x^(2j) - c^(2j)))/(c^(2j) ℓ^(1+μ))` of a term of a series, the same for every `c`, times its coefficient in the series.
+#[derive(Debug, Clone)]
+struct Term {
+    coefficient: f64,
+    slip: SlipSeries,
 }
 
 /// `(F(q_c - q_0))/ℓ^(1+μ)`.
@@ -64,6 +73,11 @@ enum SlipSeries {
 }
 
 impl SlipSeries {
+    fn smooth(slip: impl Fn(f64) -> f64, end: f64) -> Self {
+        let growth = (slip(end) / slip(AT_STICK * end)).ln() / end;
+        Self::Smooth { series: Chebyshev::fit(|l| slip(l) * (-growth * l).exp(), end), growth }
+    }
+
     fn value(&self, logarithm: f64) -> f64 {
         match self {
             Self::Smooth { series, growth } => series.value(logarithm) * (growth * logarithm).exp(),
@@ -162,11 +176,7 @@ impl UnwornSlip {
         let end = (MARGIN * limit_slip_area / squared).ln_1p();
         let slip = match &transform.table {
             Some(table) => SlipSeries::Table { series: table.series(logarithm)?, factor: transform.factor },
-            None => {
-                let growth = (transform.slip(end) / transform.slip(AT_STICK * end)).ln() / end;
-                let series = Chebyshev::fit(|l| transform.slip(l) * (-growth * l).exp(), end);
-                SlipSeries::Smooth { series, growth }
-            }
+            None => SlipSeries::smooth(|l| transform.slip(l), end),
         };
         Ok(Self {
             stick_radius_squared: squared,
@@ -178,6 +188,7 @@ impl UnwornSlip {
             slip,
             rule: transform.rule,
             table: transform.table,
+            terms: OnceLock::new(),
             limit_slip_area,
         })
     }
@@ -211,7 +222,7 @@ impl UnwornSlip {
 
     /// Slip depths at `z = r² - c²`, m², of the unworn contact with another stick radius `c` and compression `q_c` there.
     ///
-    /// A power law is the same at every scale; for other profiles the quadrature of `F` runs anew.
+    /// A power law is the same at every scale, and so is every term of a sphere's profile; for other profiles the quadrature of `F` runs anew.
     ///
     /// # Arguments
     /// * `stick_area` -- `c²`, m², at least that for which the slip was tabulated
@@ -229,12 +240,36 @@ impl UnwornSlip {
                 Some(table) => {
                     profile_factor(1.0 - self.mu, self.mu) * table.mean_from(stick_area, logarithm)
                 }
-                None => {
-                    Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm)
-                }
+                None => self.slip_elsewhere(stick_area, logarithm),
             },
         };
         self.values(logarithm, slip_compression, slip)
+    }
+
+    fn slip_elsewhere(&self, stick_area: f64, logarithm: f64) -> f64 {
+        let Some(terms) = self.terms.get_or_init(|| self.of_terms()) else {
+            return Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm);
+        };
+        let mut power = 1.0;
+        let slips = terms.iter().map(|term| {
+            power *= stick_area;
+            term.coefficient * power * term.slip.value(logarithm)
+        });
+        // The smallest first.
+        slips.collect::<Vec<_>>().into_iter().rev().sum()
+    }
+
+    /// The slip of the terms of the profile, as far out as the slip depth holds.
+    fn of_terms(&self) -> Option<Vec<Term>> {
+        let farthest = self.stick_radius_squared + self.largest_slip_area();
+        let coefficients = self.profile.series(farthest.sqrt())?;
+        let end = (self.largest_slip_area() / self.stick_radius_squared).ln_1p();
+        let transform = Transform::with_rule(&self.profile, 1.0, self.rule.clone());
+        let term = |(j, coefficient): (usize, f64)| Term {
+            coefficient,
+            slip: SlipSeries::smooth(|l| transform.slip_of_power(l, (j + 1) as f64), end),
+        };
+        Some(coefficients.into_iter().enumerate().map(term).collect())
     }
 
     /// Derivatives of the slip depths where `values` belong to.
@@ -290,6 +325,15 @@ impl<'a> Transform<'a> {
         let weighted = |(node, complement): (&f64, &f64)| {
             let rise = self.profile.rise(self.stick_radius, squared * (logarithm * complement).exp_m1());
             self.kernel(logarithm * node) * rise / logarithm
+        };
+        let terms = self.rule.nodes.iter().zip(&self.rule.complements).map(weighted);
+        self.factor * terms.zip(&self.rule.weights).map(|(term, weight)| term * weight).sum::<f64>()
+    }
+
+    /// The same of `(x/c)^(2j)` in the place of `g_0`.
+    fn slip_of_power(&self, logarithm: f64, power: f64) -> f64 {
+        let weighted = |(node, complement): (&f64, &f64)| {
+            self.kernel(logarithm * node) * (power * logarithm * complement).exp_m1() / logarithm
         };
         let terms = self.rule.nodes.iter().zip(&self.rule.complements).map(weighted);
         self.factor * terms.zip(&self.rule.weights).map(|(term, weight)| term * weight).sum::<f64>()

@@ -15,12 +15,14 @@
 //! The exponent of a load-dependent law makes the limit curved in the compression; taken as linear between the corners it is second order.
 
 mod enclosing;
+mod neighbours;
 mod response;
 mod steps;
 mod stick;
 
 use std::ops::ControlFlow;
 
+pub use neighbours::Neighbours;
 pub use response::Response;
 pub use steps::Steps;
 pub use stick::stick_compression;
@@ -216,12 +218,14 @@ fn periodic(
         spring.pass(path.points[0].tangential, limits, static_factor);
     }
     let limits = std::mem::take(&mut out.limit);
+    let count = path.points.len();
     out.periods = 0;
     let mut last_change = f64::INFINITY;
     loop {
         let before = spring;
         out.clear();
-        let (slip_path, loaded) = general_period(path, &limits, compression, &mut spring, static_factor, out);
+        let (slip_path, loaded) =
+            general_period(path, &limits, count, compression, &mut spring, static_factor, out);
         let step = difference(spring.deflection, before.deflection);
         let change = length(step);
         let repeats =
@@ -242,7 +246,7 @@ fn periodic(
         last_change = change;
         let mut after = |deflection: [f64; 2]| {
             let mut moved = Spring { deflection, ..before };
-            general_period(path, &limits, compression, &mut moved, static_factor, out);
+            general_period(path, &limits, count, compression, &mut moved, static_factor, out);
             moved.deflection
         };
         if let Some(found) = newton(before.deflection, spring.deflection, limits[0], &mut after) {
@@ -379,9 +383,13 @@ fn straight_substep(deflection: f64, moved: f64, limits: [f64; 2]) -> (f64, Pass
 }
 
 /// One period in two directions: lengths of the slip and of the path while loaded, m.
+///
+/// # Arguments
+/// * `substeps` -- that are passed, from the first on
 fn general_period(
     path: &Path,
     limits: &[f64],
+    substeps: usize,
     compression: f64,
     spring: &mut Spring,
     static_factor: f64,
@@ -390,7 +398,7 @@ fn general_period(
     let (mut slip_path, mut loaded) = (0.0, 0.0);
     let mut from = (path.points[0], limits[0]);
     let corners = path.points.iter().zip(limits);
-    for (&point, &limit) in corners.clone().skip(1).chain(corners.take(1)) {
+    for (&point, &limit) in corners.clone().skip(1).chain(corners.take(1)).take(substeps) {
         let whole = difference(point.tangential, from.0.tangential);
         let compressions = [compression - from.0.lift, compression - point.lift];
         match loaded_part(compressions, [from.1, limit]) {

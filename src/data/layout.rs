@@ -110,6 +110,15 @@ pub const ACCURACY: Quantity =
 pub const ACCURACY_MET: Quantity =
     quantity("accuracy_met", "1", "1 if the estimated error is as small as was asked for, 0 if not");
 
+/// How a run came to be made anew, scalars, in the group of the checkpoint; absent where it was not.
+pub const REFINEMENTS: Quantity =
+    quantity("refinements", "1", "how often the run was made anew on more springs, or need not be any more");
+pub const ENDED_ON: Quantity = quantity(
+    "ended_on",
+    "1",
+    "springs on which an attempt came to an end less accurately than was asked for, or 0",
+);
+
 /// A dataset, and the place of its values in the record it stores.
 pub(super) struct Field<Record, Value> {
     pub quantity: Quantity<'static>,

@@ -9,7 +9,7 @@ use super::layout::*;
 use super::reader::{OpenFile, Wanted};
 use super::save::Save;
 use super::seal::ResultPath;
-use super::{Checkpoint, Format, LimitCurves, RunHeader, Snapshot, StopReason, fretting_regimes};
+use super::{Attempt, Checkpoint, Format, LimitCurves, RunHeader, Snapshot, StopReason, fretting_regimes};
 use crate::contact::indenter::TabulatedProfile;
 use crate::contact::stick_slip::{FrettingRegime, Regime};
 use crate::error::Result;
@@ -228,6 +228,10 @@ fn put_checkpoint(checkpoint: &Checkpoint) -> Dataset {
         stored.scalar(ACCURACY, accuracy);
         stored.scalar(ACCURACY_MET, u64::from(met));
     }
+    if checkpoint.attempt != Attempt::default() {
+        stored.scalar(REFINEMENTS, checkpoint.attempt.refinements);
+        stored.scalar(ENDED_ON, checkpoint.attempt.ended_on);
+    }
     if !state.past.points.is_empty() {
         stored.groups.push((PAST.into(), put_past(&state.past)));
     }
@@ -396,6 +400,12 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
     }
     if stored.has(ACCURACY.name) {
         checkpoint.accuracy = Some(stored.take_scalar(ACCURACY)?);
+    }
+    if stored.has(REFINEMENTS.name) {
+        checkpoint.attempt = Attempt {
+            refinements: stored.take_scalar(REFINEMENTS)?,
+            ended_on: stored.take_scalar(ENDED_ON)?,
+        };
     }
     Ok(checkpoint)
 }

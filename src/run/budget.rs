@@ -40,7 +40,7 @@ const FEWEST: f64 = 14.0;
 const FEWEST_BELOW_A_HUNDREDTH: f64 = 18.0;
 
 /// How often a run is repeated on more springs, and the least and the largest factor by which they are raised.
-pub(in crate::run) const REFINEMENTS: usize = 3;
+pub(in crate::run) const REFINEMENTS: u64 = 3;
 const RAISES: [f64; 2] = [1.15, 2.0];
 
 /// Part of the accuracy that an estimate may take up before the run is repeated: of twenty errors one is 1.7 times its estimate.

@@ -6,7 +6,7 @@ use super::method::Method;
 use crate::error::{Error, Result};
 use crate::scene::Stepper as Choice;
 use crate::solver::model::{Model, State};
-use crate::solver::simulation::{End, Simulation};
+use crate::solver::simulation::{End, Progress, Simulation};
 
 /// Most steps of an explicit method, and most ends of blocks in a run: about a day.
 const MOST_STEPS: f64 = 1e9;
@@ -30,6 +30,87 @@ const STABLE: f64 = 2.5;
 
 /// Iterations of the power method; the estimate is one of magnitude.
 const ITERATIONS: usize = 30;
+
+/// Most work of a run whose springs the program chooses, as [`work_of_step`]: some eight seconds. What would be more is made on fewer springs, and told.
+pub(super) const MOST_WORK: f64 = 8e9;
+
+/// The same for a run on so few springs that none are left out.
+const MOST_WORK_OF_LAST: f64 = 1.2e10;
+
+/// Springs of a run that takes too long when it is made anew over those before, and fewest with which it is.
+const FEWER: f64 = 0.6;
+const FEWEST: usize = 12;
+
+/// Evaluations of a step that is tried: where the edge of stick rests, where it moves, and in gross slip beside one for every spring, for Newton's matrix is
+/// found by differences.
+const EVALUATIONS: [f64; 3] = [30.0, 60.0, 15.0];
+
+/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves; by pair of springs and step of a period; by pair of springs
+/// over which wear spreads; of the factors, by triple of springs; and of a step in any case.
+const BY_SPRING: [f64; 2] = [150.0, 500.0];
+const BY_PAIR: f64 = 0.05;
+const BY_SPREADING: f64 = 30.0;
+const BY_TRIPLE: f64 = 0.05;
+const OVERHEAD: f64 = 2e4;
+
+/// The same by spring and step of a period: from a table, along a line, where springs pass period after period, and where they do so until they come to rest
+/// on a path that presses and lifts.
+const BY_STEP: [f64; 4] = [5.0, 10.0, 100.0, 5000.0];
+
+/// How much longer it takes where a profile is a table.
+const OF_TABLE: f64 = 4.0;
+
+/// Work of a step that is tried, nanoseconds of one core, about. The same on every machine, so that a run and one that was interrupted take the same way.
+pub(super) fn work_of_step(model: &Model) -> f64 {
+    let (springs, schedule) = (model.springs() as f64, model.schedule());
+    let [resting, moving, beside_springs] = EVALUATIONS;
+    let moves = usize::from(model.moving().is_some());
+    let evaluations = match model.gross() {
+        Some(_) => springs + beside_springs,
+        None => [resting, moving][moves],
+    };
+    let steps = if schedule.resolves() { schedule.loop_steps(1) as f64 } else { 1.0 };
+    let [from_table, along_line, by_periods, to_rest] = BY_STEP;
+    let passed = match schedule.resolves() {
+        false => 0.0,
+        true if schedule.is_tabulated() => from_table,
+        true if !schedule.leaves_axis() && !schedule.conditions().friction.remembers_slip() => along_line,
+        true if schedule.lifts() => to_rest,
+        true => by_periods,
+    };
+    let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
+    let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
+    let by_spring = table * BY_SPRING[moves] + steps * (BY_PAIR * springs + passed) + spread;
+    OVERHEAD + evaluations * springs * by_spring + BY_TRIPLE * springs.powi(3)
+}
+
+/// Steps to try that cost as much as a look at what so many times the substeps would wear.
+pub(super) fn tries_of_look(finer: usize) -> f64 {
+    finer as f64 / EVALUATIONS[0]
+}
+
+/// Steps tried so far.
+pub(super) fn tries(progress: &Progress) -> f64 {
+    (progress.steps + progress.rejected_steps) as f64
+}
+
+/// Springs with which to make a run anew that takes too long; none if they would be too few.
+pub(super) fn fewer(springs: usize) -> Option<usize> {
+    let fewer = (FEWER * springs as f64).ceil() as usize;
+    (fewer >= FEWEST && fewer < springs).then_some(fewer)
+}
+
+/// Most steps that a run may try, whose springs the program chooses.
+pub(super) fn most_tries(model: &Model) -> f64 {
+    let most = if fewer(model.springs()).is_some() { MOST_WORK } else { MOST_WORK_OF_LAST };
+    most / work_of_step(model)
+}
+
+/// Whether a run that came to its end can be made anew on so many springs.
+pub(super) fn allows(simulation: &Simulation, springs: usize) -> bool {
+    let factor = (springs as f64 / simulation.model().springs() as f64).powi(3);
+    factor * tries(simulation.progress()) * work_of_step(simulation.model()) <= MOST_WORK
+}
 
 /// How a run is computed, and what it will take.
 #[derive(Debug, Clone, PartialEq)]

@@ -164,7 +164,7 @@ impl Run {
         checkpoint.accuracy = scene.numerics().accuracy_asked();
         // As many springs as it came to, however often it was made anew.
         let springs = Some(checkpoint.state.compression.len() + 1);
-        let parts = Parts::new(&scene, scene.numerics(), springs, &shared.operators)?;
+        let parts = Parts::new(&scene, scene.numerics(), springs, None, &shared.operators)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
             || checkpoint.state.stick.is_some() != parts.model.moving().is_some()
@@ -201,7 +201,7 @@ impl Run {
                 limit: parts.limit,
             })));
         }
-        let Checkpoint { state, progress, wall_seconds, .. } = checkpoint;
+        let Checkpoint { state, progress, wall_seconds, attempt, .. } = checkpoint;
         let stepping = stepping::Simulation::resume(
             parts.model,
             parts.stepper,
@@ -219,6 +219,7 @@ impl Run {
             writer: writer(file)?,
             saves_result: true,
             wall_seconds_before: wall_seconds,
+            attempt,
             watchers: vec![],
         }))))
     }

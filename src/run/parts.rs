@@ -31,13 +31,15 @@ impl Parts {
     /// # Arguments
     /// * `numerics` -- those of the scene, or coarser ones
     /// * `wanted` -- springs where none are given by hand, instead of those for the accuracy
+    /// * `known` -- the schedule, where a run of the scene with the same substeps has made it
     pub(super) fn new(
         scene: &Scene,
         numerics: &Numerics,
         wanted: Option<usize>,
+        known: Option<&Schedule>,
         store: &OperatorStore,
     ) -> Result<Self> {
-        let mut parts = Self::on_any(scene, numerics, wanted, store)?;
+        let mut parts = Self::on_any(scene, numerics, wanted, known, store)?;
         check_sliding(&parts.model)?;
         parts.limit = limit(&parts.model)?;
         if parts.model.gross().is_some() {
@@ -54,11 +56,15 @@ impl Parts {
         scene: &Scene,
         numerics: &Numerics,
         wanted: Option<usize>,
+        known: Option<&Schedule>,
         store: &OperatorStore,
     ) -> Result<Self> {
         let contact = scene.contact()?;
         check_regime(scene, &contact)?;
-        let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
+        let schedule = match known {
+            Some(schedule) => schedule.clone(),
+            None => Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?,
+        };
         let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
         check_stepper(numerics.stepper, &model)?;
         let tolerance =

@@ -23,7 +23,7 @@ impl Ready {
     }
 
     fn unkeyed(scene: &Scene, store: &OperatorStore) -> Result<Self> {
-        let parts = Parts::new(scene, scene.numerics(), None, store)?;
+        let parts = Parts::new(scene, scene.numerics(), None, None, store)?;
         let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
         cost::check(scene.numerics().stepper, &mut simulation)?;
         Ok(Self { simulation, limit: parts.limit })

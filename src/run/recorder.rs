@@ -9,11 +9,12 @@ use std::time::{Duration, Instant};
 use super::Shared;
 use super::accuracy::estimate::{Coarsening, Companions};
 use super::budget;
+use super::cost::{self, tries};
 use super::limit::worn_profile;
-use crate::data::{Checkpoint, RunWriter, Snapshot, StopReason};
+use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
-use crate::scene::Scene;
+use crate::scene::{Scene, Stepper};
 use crate::solver::model::{FrettingLoop, OperatorStore};
 use crate::solver::simulation::{Flow, Observer, Outcome, Simulation};
 
@@ -91,6 +92,13 @@ pub(super) struct Recorder {
     companions: Option<Companions>,
     /// The accuracy asked for, where the program chooses the springs.
     accuracy: Option<f64>,
+    /// Steps that may be tried, where the program chooses springs and steps, and whether there were more.
+    most_tries: f64,
+    takes_too_long: bool,
+    /// Whether the companions tell that it would take too long, and the same while they run.
+    would_take_too_long: bool,
+    are_dear: Arc<AtomicBool>,
+    pub(super) attempt: Attempt,
 }
 
 impl Recorder {
@@ -111,7 +119,22 @@ impl Recorder {
             saves_result: true,
             companions: None,
             accuracy: scene.numerics().accuracy_asked(),
+            most_tries: f64::INFINITY,
+            takes_too_long: false,
+            would_take_too_long: false,
+            are_dear: Arc::default(),
+            attempt: Attempt::default(),
         }
+    }
+
+    /// Whether the last run was stopped since it takes too long.
+    pub(super) fn takes_too_long(&self) -> bool {
+        self.takes_too_long
+    }
+
+    /// Whether the companions of a run tell that it would take too long.
+    pub(super) fn would_take_too_long(&self) -> bool {
+        self.would_take_too_long
     }
 
     /// Whether the file is written where the run ends.
@@ -125,24 +148,45 @@ impl Recorder {
     ///
     /// # Arguments
     /// * `limited` -- whether the scene has a limit in closed form
+    /// * `first` -- whether no coarser one came to its end before, so that it stops where its companions tell that it would take too long
     pub(super) fn run(
         &mut self,
         scene: &Scene,
         store: &OperatorStore,
         simulation: &mut Simulation,
         limited: bool,
+        first: bool,
         onlookers: &mut dyn Observer,
     ) -> Result<Outcome> {
         let chosen = scene.numerics().springs.is_none();
         self.companions = chosen.then(|| Companions::new(scene, simulation, limited));
+        let bounded = chosen && scene.numerics().stepper == Stepper::Implicit;
+        self.most_tries = if bounded { cost::most_tries(simulation.model()) } else { f64::INFINITY };
+        (self.takes_too_long, self.would_take_too_long) = (false, false);
+        self.are_dear = Arc::default();
         let coarsening = chosen.then(|| Coarsening::new(scene, simulation));
-        let stop = Arc::clone(&self.stop);
-        let run_companions = || coarsening.map(|it| it.run(scene, store, &stop));
+        let (stop, are_dear) = (Arc::clone(&self.stop), Arc::clone(&self.are_dear));
+        let run_companions = || {
+            let found = coarsening.map(|it| it.run(scene, store, &stop))?;
+            are_dear.store(first && found.are_dear(), Ordering::Relaxed);
+            Some(found)
+        };
         let (outcome, found) = beside(|| simulation.run(&mut [&mut *self, onlookers]), run_companions);
         if let (Some(companions), Some(found)) = (&mut self.companions, found) {
+            self.would_take_too_long = first && found.are_dear();
             companions.take(found);
         }
         outcome
+    }
+
+    /// Goes on with a simulation that was stopped because it would take too long, until it does.
+    pub(super) fn go_on(
+        &mut self,
+        simulation: &mut Simulation,
+        onlookers: &mut dyn Observer,
+    ) -> Result<Outcome> {
+        self.are_dear.store(false, Ordering::Relaxed);
+        simulation.run(&mut [&mut *self, onlookers])
     }
 
     /// By coarser runs where the program chose the springs, else by the balance of the worn volume, as before the first snapshot that a companion
@@ -164,7 +208,7 @@ impl Recorder {
     ) -> Option<usize> {
         let (accuracy, springs) = (scene.numerics().accuracy, simulation.model().springs());
         let companions = self.companions.as_ref()?;
-        match outcome {
+        let wanted = match outcome {
             Ok(Outcome::Interrupted) => None,
             // The companion of a finer run may come to an end.
             _ if companions.is_smooth() && companions.is_lost() => budget::refined(springs, None, accuracy),
@@ -176,7 +220,8 @@ impl Recorder {
             // More springs may find an end where few do not.
             Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
             Err(_) => None,
-        }
+        };
+        wanted.filter(|springs| cost::allows(simulation, *springs))
     }
 
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
@@ -186,6 +231,7 @@ impl Recorder {
             wall_seconds: self.wall_seconds_before + self.started.elapsed().as_secs_f64(),
             error_estimate: self.error_estimate(simulation),
             accuracy: self.accuracy,
+            attempt: self.attempt,
         }
     }
 }
@@ -197,7 +243,11 @@ impl Observer for Recorder {
     }
 
     fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
-        if self.stop.load(Ordering::Relaxed) {
+        if self.stop.load(Ordering::Relaxed) || self.are_dear.load(Ordering::Relaxed) {
+            return Ok(Flow::Stop);
+        }
+        if tries(simulation.progress()) > self.most_tries {
+            self.takes_too_long = true;
             return Ok(Flow::Stop);
         }
         if self.saved.elapsed() >= self.interval {

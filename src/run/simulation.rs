@@ -8,7 +8,7 @@ use super::ready::Ready;
 use super::recorder::{Recorder, snapshot};
 use super::{Results, Shared, Stop};
 use crate::contact::closed_form::LimitingShape;
-use crate::data::{Checkpoint, LimitDistance, RunHeader, RunWriter, Snapshot, StopReason};
+use crate::data::{Attempt, Checkpoint, LimitDistance, RunHeader, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Stepper};
 use crate::solver::simulation::{self as stepping, Flow, Observer, Outcome};
@@ -40,6 +40,7 @@ pub struct Simulation<'a> {
     /// Whether the file of the writer, if there is one, is to hold the result; else only checkpoints are written.
     pub(super) saves_result: bool,
     pub(super) wall_seconds_before: f64,
+    pub(super) attempt: Attempt,
     pub(super) watchers: Vec<Watcher<'a>>,
 }
 
@@ -97,6 +98,7 @@ impl<'a> Simulation<'a> {
             shared: shared.clone(),
             saves_result: true,
             wall_seconds_before: 0.0,
+            attempt: Attempt::default(),
             watchers: vec![],
         })
     }
@@ -153,10 +155,20 @@ impl<'a> Simulation<'a> {
     #[doc(hidden)]
     pub fn run_with(self, observer: Option<&mut dyn Observer>) -> Result<Results> {
         let Self {
-            stepping, limit, scene, shared, writer, saves_result, wall_seconds_before, watchers, ..
+            stepping,
+            limit,
+            scene,
+            shared,
+            writer,
+            saves_result,
+            wall_seconds_before,
+            attempt,
+            watchers,
+            ..
         } = self;
         let mut recorder = Recorder::new(&scene, writer, wall_seconds_before, &shared);
         recorder.saves_result = saves_result;
+        recorder.attempt = attempt;
         let mut onlookers = Onlookers { watchers, observer };
         let end = to_the_end(stepping, limit, &scene, &shared, &mut recorder, &mut onlookers);
         let End { stepping, limit, outcome, checkpoint } = end;
@@ -208,32 +220,59 @@ fn to_the_end(
     onlookers: &mut Onlookers,
 ) -> End {
     let store = &shared.operators;
-    let mut refinements = 0;
-    // Springs on which the run came to an end, if less accurately than was asked for.
-    let mut ended = None;
     loop {
-        let outcome = recorder.run(scene, store, &mut stepping, limit.is_some(), onlookers);
-        let checkpoint = recorder.checkpoint(&stepping);
-        let springs = match (&outcome, ended) {
-            // Finer ones do not.
-            (Err(Error::NotConverged { .. }), Some(springs)) => {
-                refinements = budget::REFINEMENTS;
-                Some(springs)
+        let known = stepping.model().schedule().clone();
+        let anew = |springs: usize| {
+            let parts = Parts::new(scene, scene.numerics(), Some(springs), Some(&known), store)?;
+            let stepping =
+                stepping::Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
+            Ok::<_, Error>((stepping, parts.limit))
+        };
+        // On fewer springs where these take too long; a mesh may need as many.
+        let coarser = |stepping: &stepping::Simulation| {
+            let springs = stepping.model().springs();
+            let coarser = cost::fewer(springs).and_then(|fewer| anew(fewer).ok());
+            coarser.filter(|(coarser, _)| coarser.model().springs() < springs)
+        };
+        let ended_on = recorder.attempt.ended_on as usize;
+        let first = ended_on == 0;
+        let mut outcome = recorder.run(scene, store, &mut stepping, limit.is_some(), first, onlookers);
+        if recorder.would_take_too_long() {
+            if let Some(found) = coarser(&stepping) {
+                (stepping, limit) = found;
+                recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
+                continue;
             }
-            _ if refinements < budget::REFINEMENTS => {
+            outcome = recorder.go_on(&mut stepping, onlookers);
+        }
+        if recorder.takes_too_long() {
+            if let Some(found) = (ended_on == 0).then(|| coarser(&stepping)).flatten() {
+                (stepping, limit) = found;
+                recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
+                recorder.attempt.refinements = budget::REFINEMENTS;
+                continue;
+            }
+            outcome = Err(stepping.takes_too_long());
+        }
+        let checkpoint = recorder.checkpoint(&stepping);
+        let springs = match &outcome {
+            // Finer ones do not end.
+            Err(Error::NotConverged { .. }) if ended_on > 0 => {
+                recorder.attempt.refinements = budget::REFINEMENTS;
+                Some(ended_on)
+            }
+            _ if recorder.attempt.refinements < budget::REFINEMENTS => {
                 recorder.more_springs(scene, &stepping, &outcome, &checkpoint)
             }
             _ => None,
         };
-        if let Some(springs) = springs
-            && let Ok(parts) = Parts::new(scene, scene.numerics(), Some(springs), store)
-            && let Ok(finer) =
-                stepping::Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)
-        {
-            ended = outcome.is_ok().then(|| stepping.model().springs());
-            (stepping, limit) = (finer, parts.limit);
+        if let Some(found) = springs.and_then(|springs| anew(springs).ok()) {
+            recorder.attempt = Attempt {
+                refinements: recorder.attempt.refinements + 1,
+                ended_on: outcome.map_or(0, |_| stepping.model().springs() as u64),
+            };
+            (stepping, limit) = found;
             recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
-            refinements += 1;
             continue;
         }
         return End { stepping, limit, outcome, checkpoint };

@@ -154,11 +154,13 @@ pub(super) fn lengths(contact: &InitialContact) -> Lengths {
 }
 
 pub(super) fn extent(contact: &InitialContact) -> Extent {
+    let slip_width = contact.contact_radius() - contact.stick_radius().unwrap_or(0.0);
     Extent {
         indentation: contact.indentation(),
         amplitude: contact.amplitude(),
         mean_pressure: contact.mean_pressure(),
-        slip_width: contact.contact_radius() - contact.stick_radius().unwrap_or(0.0),
+        slip_width,
+        slip_share: slip_width / contact.contact_radius(),
         tangential_stiffness: contact.tangential_stiffness(),
     }
 }

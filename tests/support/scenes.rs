@@ -16,6 +16,8 @@ pub enum Length {
     Short,
     /// As users ask for them.
     Usual,
+    /// At the ends of every range, with the numerics left to the program.
+    Extreme,
 }
 
 /// A scene and the files that it names.
@@ -29,7 +31,8 @@ pub struct RandomScene {
 
 impl RandomScene {
     pub fn new(seed: u64, length: Length) -> Self {
-        let mut draw = Draw { generator: ChaCha8Rng::seed_from_u64(seed), files: vec![] };
+        let extreme = length == Length::Extreme;
+        let mut draw = Draw { generator: ChaCha8Rng::seed_from_u64(seed), files: vec![], extreme };
         let text = draw.scene(length);
         Self { seed, text, files: draw.files }
     }
@@ -77,6 +80,7 @@ impl Sizes {
 struct Draw {
     generator: ChaCha8Rng,
     files: Vec<(&'static str, String)>,
+    extreme: bool,
 }
 
 impl Draw {
@@ -131,13 +135,23 @@ impl Draw {
         let end = match length {
             Length::Short => self.scale(1e-5, 1e-2),
             Length::Usual => self.scale(1e-4, 300.0),
+            Length::Extreme => self.scale(1e-6, 1e5),
         };
         [sizes.friction, sizes.wear] = [self.between(0.05, 1.2), self.scale(1e-18, 1e-12)];
+        if self.extreme {
+            // Wear of a cycle from some 1e-15 of the limit's depth to beyond it.
+            let cycles = if self.chance(0.2) { self.scale(1e-2, 1.0) } else { self.scale(1.0, 1e12) };
+            sizes.wear *= end / (cycles * sizes.tau_per_cycle());
+        }
         text += &self.friction(&sizes, clock, end);
         text += &self.wear(&sizes, clock, end);
-        text += &self.loading(&sizes, clock, end);
+        // What is refused by its keys alone tells nothing of extremes.
+        let keeps_displacement = self.extreme && text.contains("static-kinetic");
+        text += &self.loading(&sizes, clock, end, keeps_displacement);
         text += &self.numerics(length);
-        if self.chance(0.05) {
+        if self.chance(0.05)
+            && !(self.extreme && ["orbit]", "oscillation]", "path]"].iter().any(|it| text.contains(it)))
+        {
             let from = format!("[loading]\nwear_from = \"{}\"\n", self.one_of(&["settled", "first-cycle"]));
             text = text.replacen("[loading]\n", &from, 1);
         }
@@ -146,7 +160,7 @@ impl Draw {
     }
 
     fn indenter(&mut self) -> (String, Sizes) {
-        let radius = self.scale(1e-6, 1e-2);
+        let radius = if self.extreme { self.scale(1e-9, 1e3) } else { self.scale(1e-6, 1e-2) };
         let depth = radius * self.scale(1e-6, 3e-2);
         let sizes = Sizes {
             depth,
@@ -168,6 +182,7 @@ impl Draw {
             }
             4 => {
                 let exponent = match self.one_of(&[0, 1, 2]) {
+                    _ if self.extreme => self.scale(0.1, 20.0),
                     0 => self.one_of(&[1.0, 2.0, 3.0, 4.0]),
                     1 => self.between(0.3, 3.0),
                     _ => self.scale(0.3, 15.0),
@@ -206,6 +221,7 @@ impl Draw {
 
     fn half_space(&mut self, sizes: &mut Sizes) -> String {
         let grading = match self.below(4) {
+            1 | 2 if self.extreme => self.one_of(&[-1.0, 1.0]) * (1.0 - self.scale(1e-4, 1.0)),
             0 => self.one_of(&[0.0, 0.5, -0.5, 0.3, -0.3]),
             1 | 2 => self.between(-0.3, 0.9),
             _ => self.between(-0.99, 0.99),
@@ -248,6 +264,15 @@ impl Draw {
     fn friction(&mut self, sizes: &Sizes, clock: &str, end: f64) -> String {
         let coefficient = sizes.friction;
         let mut text = match self.below(6) {
+            2 if self.extreme => {
+                let last = coefficient * self.between(0.5, 1.5);
+                // Some part of what is dissipated up to the end.
+                let slip = 4.0 * coefficient * sizes.depth / sizes.stiffness_ratio;
+                let density = sizes.pressure() * slip * end / sizes.tau_per_cycle() * self.scale(1e-2, 10.0);
+                format!(
+                    "[friction.wear-dependent]\nfirst_coefficient = {coefficient:?}\nlast_coefficient = {last:?}\nenergy_density = {density:?}\n"
+                )
+            }
             0 => {
                 let kinetic = coefficient * self.between(0.5, 1.0);
                 format!(
@@ -267,7 +292,8 @@ impl Draw {
             }
             _ => format!("[friction.coulomb]\ncoefficient = {coefficient:?}\n"),
         };
-        if self.chance(0.25) {
+        let alone = self.extreme && text.contains("wear-dependent");
+        if self.chance(0.25) && !alone {
             text += &self.history("friction", false, sizes, clock, end);
         }
         text
@@ -277,6 +303,7 @@ impl Draw {
         let coefficient = sizes.wear;
         let written = self.quantity(coefficient, &[("1/MPa", 1e-6), ("mm^3/(N m)", 1e-9)]);
         let mut text = match self.below(9) {
+            4 if self.extreme => self.friction_power(sizes),
             0 => format!("[wear.dissipated-energy]\ncoefficient = {:?}\n", coefficient / sizes.friction),
             1 => {
                 let [by_pressure, by_slip] = [self.between(0.4, 2.0), self.between(0.4, 2.0)];
@@ -302,6 +329,24 @@ impl Draw {
             text += &self.history("wear", true, sizes, clock, end);
         }
         text
+    }
+
+    fn friction_power(&mut self, sizes: &Sizes) -> String {
+        let coefficient = sizes.wear / sizes.friction;
+        // Of the order of size of p s at a cycle per second.
+        let power = sizes.pressure() * 4.0 * sizes.friction.powi(2) * sizes.depth / sizes.stiffness_ratio;
+        let scope = self.one_of(&["global", "local"]);
+        let form = if self.chance(0.5) {
+            let decay = self.scale(1e-2, 1e2) / power;
+            let adhesive = coefficient * self.between(0.1, 0.9);
+            format!(
+                "abrasive_coefficient = {coefficient:?}\nadhesive_coefficient = {adhesive:?}\ndecay = {decay:?}"
+            )
+        } else {
+            let exponent = self.between(-0.6, 1.0);
+            format!("coefficient = {coefficient:?}\nexponent = {exponent:?}\nreference_power = {power:?}")
+        };
+        format!("[wear.friction-power]\nscope = \"{scope}\"\n{form}\n")
     }
 
     /// A time within the run or somewhat beyond, by the clock of the scene.
@@ -348,6 +393,15 @@ impl Draw {
 
     /// The compression at the edge of stick over the indentation: from stick through partial slip and the transition to gross slip.
     fn severity(&mut self) -> f64 {
+        if self.extreme {
+            return match self.below(6) {
+                0 => self.scale(1e-10, 1e-2),
+                1 => 1.0 - self.scale(1e-9, 1e-1),
+                2 => 1.0 + self.scale(1e-9, 1e-1),
+                3 => self.scale(1.0, 100.0),
+                _ => self.between(0.01, 0.95),
+            };
+        }
         match self.below(12) {
             0 => 0.0,
             1 => self.scale(1e-9, 1e-2),
@@ -359,7 +413,7 @@ impl Draw {
         }
     }
 
-    fn loading(&mut self, sizes: &Sizes, clock: &str, end: f64) -> String {
+    fn loading(&mut self, sizes: &Sizes, clock: &str, end: f64, keeps_displacement: bool) -> String {
         let mut text = String::from("[loading]\n");
         let load = match self.below(5) {
             0 => format!("normal_force = {:?}\n", sizes.force() * self.scale(0.3, 3.0)),
@@ -380,6 +434,9 @@ impl Draw {
             };
             text += &written;
         }
+        if self.extreme {
+            text += "frequency = 1.0\n";
+        }
         text += &match self.below(8) {
             0 => format!(
                 "until_rate = {:?}\n",
@@ -389,6 +446,7 @@ impl Draw {
             _ => format!("tau = {end:?}\n"),
         };
         match self.below(if mode == 0 { 6 } else { 12 }) {
+            0 | 1 if self.extreme && (mode != 0 || keeps_displacement) => {}
             0 => text += "tangential_control = \"force\"\n",
             1 => {
                 let stiffness = sizes.stiffness() * self.scale(0.1, 100.0);
@@ -405,7 +463,7 @@ impl Draw {
             text += "repeat = true\n";
         }
         let direction = self.one_of(&[-1.0, 0.0, 0.0, 1.0]);
-        let deeper = self.chance(0.3);
+        let deeper = self.chance(if self.extreme { 0.1 } else { 0.3 });
         let mut tables = String::new();
         let mut factor = 1.0;
         for _ in 0..blocks {
@@ -478,6 +536,10 @@ impl Draw {
 
     fn numerics(&mut self, length: Length) -> String {
         let mut text = String::from("[numerics]\n");
+        if self.extreme {
+            text += &format!("accuracy = {:?}\n", self.one_of(&[1e-2, 1e-3, 1e-4]));
+            return text;
+        }
         let short = length == Length::Short;
         if self.chance(0.6) || short {
             let finest = if short { 1e-3 } else { 1e-6 };
@@ -508,10 +570,15 @@ impl Draw {
     }
 
     fn output(&mut self, end: f64, length: Length) -> String {
-        let most = if length == Length::Short { 4 } else { 60 };
+        let most = match length {
+            Length::Short => 4,
+            Length::Usual => 60,
+            Length::Extreme => 20,
+        };
         let count = 1 + self.below(most);
         match self.below(4) {
             0 => String::new(),
+            _ if self.extreme => format!("[output]\nsnapshots = {count}\n"),
             1 => format!("[output]\nsnapshots = {count}\n"),
             2 => {
                 let times = (0..count).map(|i| end * 0.1 * ((i % 10) + 1) as f64);

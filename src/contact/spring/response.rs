@@ -1,8 +1,6 @@
 //! The periodic motion of all springs on a path at constant indentation, once for a run.
 
-use super::enclosing::{Circle, smallest_enclosing};
-use super::{Shakedown, SpringCycle, periodic};
-use crate::laws::friction::Coulomb;
+use super::{Neighbours, SpringCycle};
 use crate::laws::path::Path;
 
 /// Cells between no limit and the one that sticks.
@@ -28,9 +26,11 @@ pub struct Response {
     /// `l*`, m.
     largest: f64,
     cells: usize,
-    /// Slip in each substep, x and y in turn, m.
+    /// Numbers for the slip in each substep that is kept, x and y in turn.
     columns: usize,
-    /// By node: slip in each substep, then the energies.
+    /// Whether the second half of the period is the opposite of the first, which alone is kept.
+    mirrored: bool,
+    /// By node: slip in each substep, m, then the energies.
     values: Vec<f64>,
 }
 
@@ -43,28 +43,24 @@ impl Response {
     /// # Arguments
     /// * `path` -- one period
     pub fn new(path: &Path) -> Option<Self> {
-        let columns = 2 * path.points.len();
+        let mut springs = Neighbours::new(path)?;
+        let (mirrored, largest) = (springs.is_mirrored(), springs.sticking());
+        let kept = if mirrored { path.points.len() / 2 } else { path.points.len() };
+        let columns = 2 * kept;
         let width = columns + ENERGIES;
         let cells = CELLS.min(MOST_NUMBERS / width);
-        if !path.is_level() || cells < FEWEST_CELLS {
+        if cells < FEWEST_CELLS {
             return None;
         }
-        let mut level = path.clone();
-        level.points.iter_mut().for_each(|point| point.lift = 0.0);
-        let circles: Vec<Circle> =
-            level.points.iter().map(|point| Circle { centre: point.tangential, radius: 0.0 }).collect();
-        let largest = smallest_enclosing(&circles).radius;
-        let law = Coulomb { coefficient: 1.0 };
         let mut cycle = SpringCycle::default();
         let mut values = Vec::with_capacity((cells + 1) * width);
         for node in 0..cells {
-            let limit = largest * place(node as f64 / cells as f64);
-            periodic(&level, &law, 1.0, limit, &Shakedown::default(), true, &mut cycle);
-            values.extend(cycle.slip.iter().flatten());
+            springs.pass(largest * place(node as f64 / cells as f64), &mut cycle);
+            values.extend(cycle.slip.iter().take(kept).flatten());
             values.extend([cycle.dissipation, cycle.work]);
         }
         values.extend(std::iter::repeat_n(0.0, width));
-        Some(Self { largest, cells, columns, values })
+        Some(Self { largest, cells, columns, mirrored, values })
     }
 
     /// Slip in each substep, x and y in turn, m, shape `(2 · substeps,)`, with its derivative by the limit if that is asked for; returns
@@ -97,12 +93,21 @@ impl Response {
         let before = &self.values[cell * width..(cell + 1) * width];
         let after = &self.values[(cell + 1) * width..(cell + 2) * width];
         let between = |m: usize| before[m] + part * (after[m] - before[m]);
-        slip.iter_mut().enumerate().for_each(|(m, value)| *value = between(m));
+        self.fill(slip, between);
         if let Some(slope) = slope {
             let per_limit = (distance * self.largest).recip();
-            slope.iter_mut().enumerate().for_each(|(m, value)| *value = per_limit * (after[m] - before[m]));
+            self.fill(slope, |m| per_limit * (after[m] - before[m]));
         }
         [between(self.columns), between(self.columns + 1)]
+    }
+
+    /// Fills in a whole period from what is kept.
+    fn fill(&self, values: &mut [f64], kept: impl Fn(usize) -> f64) {
+        let (first, second) = values.split_at_mut(self.columns.min(values.len()));
+        first.iter_mut().enumerate().for_each(|(m, value)| *value = kept(m));
+        if self.mirrored {
+            second.iter_mut().zip(first).for_each(|(value, opposite)| *value = -*opposite);
+        }
     }
 }
 

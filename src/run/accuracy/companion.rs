@@ -3,12 +3,12 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::super::cost::{tries, tries_of_look, work_of_step};
 use super::super::parts::Parts;
-use super::substeps::Unsampled;
+use super::substeps::{FINER, Unsampled};
 use crate::data::Snapshot;
-use crate::error::Result;
 use crate::scene::{Numerics, Scene, Stepper};
-use crate::solver::model::OperatorStore;
+use crate::solver::model::{OperatorStore, Schedule};
 use crate::solver::simulation::{End, Flow, Observer, Outcome, Simulation};
 
 /// Worn volume and depth at one time.
@@ -46,8 +46,12 @@ pub(super) struct Coarser<'a> {
     pub offsets: &'a [f64],
     /// Whether it tells what the substeps of a period leave out, if periods are sampled.
     pub samples: bool,
+    /// The schedule of the run, where that has as many substeps.
+    pub schedule: Option<&'a Schedule>,
     /// Steps after which it is lost, if it chooses them by itself.
     pub most_steps: u64,
+    /// Work, as [`work_of_step`], after which the run would take too long.
+    pub most_work: f64,
     pub store: &'a OperatorStore,
     pub stop: &'a Arc<AtomicBool>,
 }
@@ -64,26 +68,51 @@ pub(in crate::run) struct Companion {
     pub(super) unsampled: Option<Unsampled>,
 }
 
+/// Why there is no companion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Lost {
+    /// It comes to no end.
+    NoEnd,
+    /// It takes longer than leaves time for the run.
+    Dear,
+}
+
 impl Companion {
-    /// Runs it; none if it comes to no end.
-    pub(super) fn run(coarser: &Coarser<'_>) -> Option<Self> {
+    /// Runs it.
+    pub(super) fn run(coarser: &Coarser<'_>) -> Result<Self, Lost> {
         let Coarser { scene, numerics, .. } = coarser;
-        let parts = Parts::on_any(scene, numerics, Some(coarser.springs), coarser.store).ok()?;
+        let Ok(parts) =
+            Parts::on_any(scene, numerics, Some(coarser.springs), coarser.schedule, coarser.store)
+        else {
+            return Err(Lost::NoEnd);
+        };
         let ends_by_rate = matches!(parts.plan.end, End::Rate(_));
         let samples = coarser.samples && !scene.conditions().mode.is_tangential();
-        let unsampled = if samples { Some(Unsampled::new(scene, numerics, &parts.model)?) } else { None };
+        let unsampled = samples.then(|| Unsampled::new(scene, numerics, &parts.model).ok_or(Lost::NoEnd));
+        let unsampled = unsampled.transpose()?;
         let model = parts.model.shown_at(coarser.offsets.to_vec());
-        let mut simulation = Simulation::new(model, parts.stepper, parts.tolerance, parts.plan).ok()?;
+        let most_tries = coarser.most_work / work_of_step(&model);
+        let simulation = Simulation::new(model, parts.stepper, parts.tolerance, parts.plan);
+        let Ok(mut simulation) = simulation else { return Err(Lost::NoEnd) };
         // Explicit steps are as many as cycles or stiffness ask for.
-        let most_steps = if numerics.stepper == Stepper::Implicit { coarser.most_steps } else { u64::MAX };
-        let mut seen = Seen { worn: vec![], unsampled, stop: Arc::clone(coarser.stop), most_steps };
-        let outcome = simulation.run(&mut [&mut seen]).ok()?;
-        (outcome != Outcome::Interrupted).then(|| Self {
-            springs: simulation.model().springs(),
-            seen: seen.worn,
-            spent: ends_by_rate && outcome != Outcome::Unending,
-            unsampled: seen.unsampled,
-        })
+        let implicit = numerics.stepper == Stepper::Implicit;
+        let most_steps = if implicit { coarser.most_steps } else { u64::MAX };
+        let most_tries = if implicit { most_tries } else { f64::INFINITY };
+        let stop = Arc::clone(coarser.stop);
+        let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_tries, looked: 0.0 };
+        let outcome = simulation.run(&mut [&mut seen]);
+        if seen.tries(&simulation) > most_tries {
+            return Err(Lost::Dear);
+        }
+        match outcome {
+            Ok(Outcome::Interrupted) | Err(_) => Err(Lost::NoEnd),
+            Ok(outcome) => Ok(Self {
+                springs: simulation.model().springs(),
+                seen: seen.worn,
+                spent: ends_by_rate && outcome != Outcome::Unending,
+                unsampled: seen.unsampled,
+            }),
+        }
     }
 }
 
@@ -93,19 +122,30 @@ struct Seen {
     unsampled: Option<Unsampled>,
     stop: Arc<AtomicBool>,
     most_steps: u64,
+    most_tries: f64,
+    /// Steps to try that what was seen of the substeps cost as much as.
+    looked: f64,
+}
+
+impl Seen {
+    fn tries(&self, simulation: &Simulation) -> f64 {
+        tries(simulation.progress()) + self.looked
+    }
 }
 
 impl Observer for Seen {
-    fn output(&mut self, simulation: &Simulation) -> Result<()> {
+    fn output(&mut self, simulation: &Simulation) -> crate::Result<()> {
         self.worn.push(Worn::of(simulation));
         if let Some(unsampled) = &mut self.unsampled {
             unsampled.see(simulation);
+            self.looked += tries_of_look(FINER);
         }
         Ok(())
     }
 
-    fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
-        let lost = simulation.progress().steps > self.most_steps;
+    fn step(&mut self, simulation: &Simulation) -> crate::Result<Flow> {
+        let progress = simulation.progress();
+        let lost = progress.steps > self.most_steps || self.tries(simulation) > self.most_tries;
         Ok(if lost || self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue })
     }
 }

@@ -7,15 +7,16 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
+use super::super::cost::MOST_WORK;
 use super::super::parts::resolution;
-use super::companion::{Coarser, Companion, Worn};
+use super::companion::{Coarser, Companion, Lost, Worn};
 use super::substeps::larger;
 use crate::data::{Snapshot, same_cycles};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::curve::distance_from_curve;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Scene, Stepper};
-use crate::solver::model::{Model, MovingStick, OperatorStore};
+use crate::solver::model::{Model, MovingStick, OperatorStore, Schedule};
 use crate::solver::simulation::{End, Outcome, Simulation};
 
 /// Springs of a run over those of its companion, and of that over those of the next; fewest of a companion.
@@ -53,6 +54,9 @@ const SHARE_OF_STICK: f64 = 2.0;
 /// reached.
 const MOST_STEPS: [u64; 2] = [2000, 4000];
 
+/// Work of a companion over that of the run, about, beyond which the run would take too long.
+const OF_COMPANION: f64 = 0.2;
+
 /// Coarser runs of a scene.
 #[derive(Debug)]
 pub(in crate::run) struct Companions {
@@ -87,6 +91,8 @@ pub(in crate::run) struct Coarsening {
     offsets: Vec<f64>,
     /// Substeps of a period where they are of a known order, so that coarser companions show what they leave out.
     substeps: Option<usize>,
+    /// That of the run, where companions have the same.
+    schedule: Option<Schedule>,
 }
 
 impl Coarsening {
@@ -94,23 +100,20 @@ impl Coarsening {
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation) -> Self {
         let (model, numerics) = (simulation.model(), scene.numerics());
         let smooth = numerics.stepper == Stepper::Implicit && model.wears_smoothly();
+        let substeps = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
         Self {
             springs: model.springs(),
             tolerance: simulation.tolerance(),
             smooth,
             alone: smooth || model.gross().is_some(),
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
-            substeps: resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps()),
+            schedule: substeps.is_none().then(|| model.schedule().clone()),
+            substeps,
         }
     }
 
-    /// Runs the companions, the finer one first; none of those that come to no end or are not needed.
-    pub(in crate::run) fn run(
-        &self,
-        scene: &Scene,
-        store: &OperatorStore,
-        stop: &Arc<AtomicBool>,
-    ) -> [Option<Companion>; 2] {
+    /// Runs the companions.
+    pub(in crate::run) fn run(&self, scene: &Scene, store: &OperatorStore, stop: &Arc<AtomicBool>) -> Found {
         let numerics = scene.numerics();
         let coarser = |steps: i32| {
             let coarser = |value: f64| (value * COARSER.powi(steps)).min(COARSEST);
@@ -125,15 +128,31 @@ impl Coarsening {
                 },
                 springs: fewer(self.springs).max(FEWEST),
                 offsets: &self.offsets,
+                schedule: self.schedule.as_ref(),
                 samples: steps == 1 && self.substeps.is_none(),
+                most_work: MOST_WORK * OF_COMPANION,
                 most_steps: MOST_STEPS[usize::from(!self.smooth)],
                 store,
                 stop,
             })
         };
         let first = coarser(1);
-        let second = if first.is_some() && !self.alone { coarser(2) } else { None };
-        [first, second]
+        let second = if first.is_ok() && !self.alone { coarser(2).ok() } else { None };
+        Found { first, second }
+    }
+}
+
+/// What companions came to.
+#[derive(Debug)]
+pub(in crate::run) struct Found {
+    first: std::result::Result<Companion, Lost>,
+    second: Option<Companion>,
+}
+
+impl Found {
+    /// Whether the run would take too long, as its companion did.
+    pub(in crate::run) fn are_dear(&self) -> bool {
+        matches!(self.first, Err(Lost::Dear))
     }
 }
 
@@ -171,7 +190,9 @@ impl Companions {
             gross,
             every,
             radii,
-            limit: (limited || smooth).then(|| [model.limit_volume(), model.depth_scale()]),
+            limit: (limited || smooth)
+                .then(|| [model.limit_volume(), model.depth_scale()])
+                .filter(|limit| limit.iter().all(|it| *it > 0.0)),
             left_out: if smooth { 0.0 } else { model.core_uncertainty().max(unseen()) },
             first: None,
             second: None,
@@ -179,8 +200,8 @@ impl Companions {
     }
 
     /// Takes what they came to.
-    pub(in crate::run) fn take(&mut self, [first, second]: [Option<Companion>; 2]) {
-        (self.first, self.second) = (first, second);
+    pub(in crate::run) fn take(&mut self, found: Found) {
+        (self.first, self.second) = (found.first.ok(), found.second);
     }
 
     /// Whether the order of convergence is known.
@@ -218,8 +239,10 @@ impl Companions {
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
         let substeps = first.unsampled.as_ref().map_or(0.0, |it| it.error(scale));
+        // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
+        let tells = ratio >= LEAST_RATIO;
         Some(Shares {
-            springs: finite(difference / (ratio.powf(order) - 1.0)),
+            springs: if tells { finite(difference / (ratio.powf(order) - 1.0)) } else { UNKNOWN },
             order,
             substeps: finite(substeps),
             left_out: finite(self.left_out),

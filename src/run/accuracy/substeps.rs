@@ -9,7 +9,7 @@ use crate::solver::simulation::Simulation;
 
 /// Substeps of a period with which those of a run are compared, over these. Halves would tell little: as more substeps come next to a reversal,
 /// the error may stand still and then fall at once.
-const FINER: usize = 8;
+pub(super) const FINER: usize = 8;
 
 /// The larger of two numbers; infinite where one is not a number.
 pub(super) fn larger(a: f64, b: f64) -> f64 {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::schedule::CycleLoading;
 use super::{CycleFields, Fields, Model};
-use crate::contact::spring::{Shakedown, SpringCycle, steady_cycle};
+use crate::contact::spring::{Neighbours, Shakedown, SpringCycle, steady_cycle};
 use crate::laws::path::{Path, PathPoint};
 use crate::numerics::quadrature::Rule;
 use crate::numerics::roots::bracketed;
@@ -151,8 +151,21 @@ impl Model {
         let mut force = [0, 1].map(|_| vec![0.0; steps + 1]);
         let mut work = 0.0;
         let mut spring = SpringCycle::default();
+        let friction = &*loading.friction;
+        let turns = !path.is_straight() && friction.static_factor() == 1.0;
+        let mut slipping = turns.then(|| Neighbours::new(path)).flatten();
+        let lift = path.points[0].lift;
         let mut add = |stiffness: f64, compression: f64| {
-            steady_cycle(path, &*loading.friction, ratio, compression, &Shakedown::default(), &mut spring);
+            let limit = friction.kinetic_strength(compression - lift) / ratio;
+            match slipping.as_mut().filter(|it| compression >= lift && limit < it.sticking()) {
+                Some(slipping) => {
+                    slipping.pass(limit, &mut spring);
+                    spring.work *= ratio;
+                }
+                None => {
+                    steady_cycle(path, friction, ratio, compression, &Shakedown::default(), &mut spring);
+                }
+            }
             work += stiffness * spring.work;
             for (axis, force) in force.iter_mut().enumerate() {
                 for (total, deflection) in force[1..].iter_mut().zip(&spring.deflection) {

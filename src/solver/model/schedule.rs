@@ -358,6 +358,11 @@ impl Schedule {
         self.loadings.iter().any(|loading| loading.path.is_some())
     }
 
+    /// Whether what springs do in all resolved periods is in a table.
+    pub fn is_tabulated(&self) -> bool {
+        self.loadings.iter().all(|loading| loading.response.is_some())
+    }
+
     /// Steps of the loop of every period, for which one to and fro at constant indentation takes `plain`.
     pub fn loop_steps(&self, plain: usize) -> usize {
         if self.conditions.mode.is_tangential() {

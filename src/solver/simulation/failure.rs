@@ -48,6 +48,24 @@ impl Simulation {
         }
     }
 
+    /// How far a run came that takes more steps than it may by itself.
+    pub fn takes_too_long(&self) -> Error {
+        let (model, progress, cycles) = (&self.model, &self.progress, self.state.cycles);
+        let tau = cycles * model.contact().tau_per_cycle();
+        let [stick, edge] = [model.without_core(self.cycle.stick_radius), model.contact_radius(&self.state)];
+        Error::NotConverged {
+            what: STEPPING,
+            why: format!(
+                "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m, wear goes on in steps of {:.1e} \
+                 cycles, and {} were tried on {} springs; end before (loading.tau = {tau:.3e}), or go on by hand (numerics.springs and numerics.tolerance), \
+                 however long it takes",
+                progress.next_step,
+                progress.steps + progress.rejected_steps,
+                model.springs()
+            ),
+        }
+    }
+
     /// The moment at which a run cannot go on, and what can be done.
     pub(super) fn stuck(&self, why: &str) -> Error {
         let (model, cycles) = (&self.model, self.state.cycles);

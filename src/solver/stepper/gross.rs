@@ -53,7 +53,7 @@ struct Slopes {
 }
 
 impl GrossBdf {
-    /// A stepper with a largest error of the compressions in one step, relative to the largest of them.
+    /// A stepper with a largest error of the compressions in one step, relative to the indentation, or to the largest of them where the force is held.
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance: tolerance.min(LARGEST_TOLERANCE),
@@ -175,7 +175,7 @@ impl GrossBdf {
             true => Past { order: 1, points: vec![PastPoint::new(state, &[])], linearised: None },
             false => state.past.clone(),
         };
-        let (now, scale) = (state.cycles + cycles, largest(&state.compression));
+        let (now, scale) = (state.cycles + cycles, whole(model, gross, &state.compression));
         let loading = model.schedule().loading(state.cycles, now);
         let times = TimesBefore::new(model, now, &past);
         let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
@@ -288,7 +288,7 @@ fn mesh(model: &Model) -> Result<&Gross> {
     })
 }
 
-/// Alexander's method of order 3, with the error of the compressions, relative to the largest, by the embedded one of order 2.
+/// Alexander's method of order 3, with the error of the compressions by the embedded one of order 2.
 #[derive(Debug)]
 pub struct GrossSdirk {
     tolerance: f64,
@@ -338,7 +338,7 @@ fn step(
         let loading = model.after_energy(model.schedule().loading(state.cycles, at), energy);
         model.gross_rates(gross, &loading, compression)
     };
-    let scale = largest(start);
+    let scale = whole(model, gross, start);
     let first = rates(state.cycles, state.dissipated_energy, start, evaluations)?;
     let step = cycles * ALEXANDER.diagonal;
     let slopes = slopes(start, evaluations, |compression| {
@@ -418,4 +418,10 @@ fn step(
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+}
+
+/// What errors of the compressions, m, are relative to: under a held force, under which wear goes on without end, the largest; else the indentation, which is as
+/// deep as anything wears.
+fn whole(model: &Model, gross: &Gross, compression: &[f64]) -> f64 {
+    if gross.holds_force() { largest(compression) } else { model.contact().indentation() }
 }
