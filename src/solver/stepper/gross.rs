@@ -24,9 +24,9 @@ const ROUND_OFF: f64 = 1e-12;
 /// Slowest contraction of Newton's corrections with which the slopes of the rates serve another step.
 const SAME_SLOPES: f64 = 0.3;
 
-/// Largest tolerance of backward differentiation: with larger ones compressions swing, as the formulas of higher order let modes grow that ground carried
-/// along makes.
-const LARGEST_TOLERANCE: f64 = 1e-4;
+/// Largest tolerance of backward differentiation. Formulas of higher order let modes grow that the ground carried along makes: with 1e-4 runs on 30 and more
+/// springs at k = 0.5 went over to a contact that no wear leads to.
+const LARGEST_TOLERANCE: f64 = 1e-5;
 
 /// Backward differentiation formulas of order 1 to 5, as [`Bdf`], where every cycle is the same, so that wear is smooth in time:
 ///
