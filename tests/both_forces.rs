@@ -252,7 +252,8 @@ fn the_tangential_force_gives_the_stick_radius_of_cattaneo_and_mindlin() {
             let text = by_ratio.text().replace("stick_ratio = 0.7", &format!("tangential_force = {force}"));
             for text in [text.replace("tangential_control = \"force\"\n", ""), text] {
                 let scene = Scene::from_str(&text).unwrap();
-                assert!(scene.conditions().holds_both_forces());
+                // Where next to nothing slips it makes no difference what is held, and is left out.
+                assert_eq!(scene.conditions().holds_both_forces(), share > 1e-5);
                 let contact = scene.contact().unwrap();
                 let expected = (1.0 - share).powf((exponent + 1.0 + grading).recip());
                 let found = contact.stick_radius().unwrap() / contact.contact_radius();

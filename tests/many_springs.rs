@@ -202,7 +202,7 @@ fn run(grading: f64, springs: usize, tolerance: f64) -> (f64, f64) {
         Clustering::Smooth,
     )
     .unwrap();
-    let expected = if springs < 300 { Backend::Dense } else { Backend::Hierarchical };
+    let expected = if springs < 601 { Backend::Dense } else { Backend::Hierarchical };
     assert_eq!(model.operators().backend(), expected);
     let cycles = 20.0 / contact.tau_per_cycle();
     let plan = Plan { outputs: vec![cycles], end: End::Cycles(cycles) };
@@ -216,8 +216,8 @@ fn run(grading: f64, springs: usize, tolerance: f64) -> (f64, f64) {
 #[test]
 fn wear_is_the_same_on_springs_of_either_backend() {
     for grading in [-0.9, -0.5, 0.0, 0.6, 0.9] {
-        let (dense, _) = run(grading, 299, 1e-5);
-        for springs in [300, 1600] {
+        let (dense, _) = run(grading, 500, 1e-5);
+        for springs in [601, 1600] {
             let (hierarchical, left) = run(grading, springs, 1e-5);
             let difference = (hierarchical / dense - 1.0).abs();
             println!("k = {grading}, {springs} springs: {difference:e}, {left:e} left");

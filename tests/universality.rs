@@ -244,7 +244,8 @@ fn cases_reach_the_limit_of_their_own_run_or_do_not() {
         if row.case.predicted == Prediction::Within {
             // Measured: 1e-7 is left of the transient, 4e-7 is the quadrature over thirty springs, 0.004 the way between two of them.
             assert!(distance < 4e-7, "{}: {distance:e}", row.case.name);
-            assert!((end.wear_volume / end.wear_volume_limit - 1.0).abs() < 2e-6, "{}", row.case.name);
+            let volume = (end.wear_volume / end.wear_volume_limit - 1.0).abs();
+            assert!(volume < 3e-6, "{}: {volume:e}", row.case.name);
             let gaps = end.curve.iter().zip(&end.curve_limit).map(|(a, b)| (a - b).abs());
             assert!(gaps.fold(0.0, f64::max) < 0.01, "{}", row.case.name);
         }

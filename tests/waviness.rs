@@ -271,7 +271,7 @@ fn a_run_of_thirty_waves_is_that_of_a_finer_mesh_and_ends_in_the_closed_form() {
     let volume = relative(fine_json["wear_volume"].as_f64().unwrap(), limit);
     println!("{found:?} {end:e} {volume:e}");
     assert_eq!(fine.snapshots.len(), 5);
-    assert!(found[0] < 2e-7 && found[1] < 4e-5, "{found:?}");
+    assert!(found[0] < 2e-7 && found[1] < 1e-4, "{found:?}");
     assert!(end < 8e-10 && volume < 1e-9, "{end:e} {volume:e}");
     let estimate = chosen_json["error_estimate"].as_f64().unwrap();
     assert!(estimate < 1e-4 && estimate > 0.3 * found[1], "{estimate:e} {found:?}");

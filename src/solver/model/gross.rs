@@ -180,7 +180,8 @@ impl Model {
                 (indenter.radius_at_height(held - at_edge).powi(2), held)
             }
         };
-        let pressed = mesh.load(compression) > 0.0;
+        // A load that is held presses.
+        let pressed = gross.held_load.is_none() || mesh.load(compression) > 0.0;
         if !(pressed && area > 0.0 && area.is_finite() && indentation.is_finite()) {
             return None;
         }

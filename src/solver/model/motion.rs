@@ -275,6 +275,7 @@ impl Model {
         fields: &Fields,
     ) -> AmplitudeSlope {
         let half_space = self.contact.half_space();
+        let grading = half_space.grading();
         let slips: Vec<f64> = slip.iter().map(|(value, _)| f64::from(u8::from(*value > 0.0))).collect();
         let weights: Vec<f64> = self
             .operators
@@ -290,7 +291,7 @@ impl Model {
         let by_amplitude = self.stuck_force(fields, 1.0) + sticking;
         let [by_force, direct] = loading.control.factors();
         let by_compression = (0..lifted.len()).map(|j| {
-            let strength = slips[j] * self.slope(|q| resistance(loading, q), lifted[j]);
+            let strength = slips[j] * self.slope(|q| resistance(loading, grading, q), lifted[j]);
             -by_force * weights[j] * strength / (by_force * by_amplitude + direct)
         });
         AmplitudeSlope { by_compression: by_compression.collect(), slips: slips.clone() }
@@ -305,11 +306,11 @@ impl Model {
         amplitude: f64,
     ) -> f64 {
         let half_space = self.contact.half_space();
-        let ratio = half_space.stiffness_ratio();
+        let (ratio, grading) = (half_space.stiffness_ratio(), half_space.grading());
         let borne: Vec<f64> = lifted
             .iter()
             .zip(&fields.density_factor)
-            .map(|(q, factor)| factor * (ratio * amplitude).min(resistance(loading, *q)))
+            .map(|(q, factor)| factor * (ratio * amplitude).min(resistance(loading, grading, *q)))
             .collect();
         self.stuck_force(fields, amplitude)
             + half_space.normal_stiffness() * fields.slip_area * dot(self.operators.abel.spring_sum(), &borne)
@@ -416,11 +417,13 @@ impl PathSprings<'_> {
     }
 }
 
-/// What resists the slip of a spring lifted to a compression, over its normal stiffness, m. Next to an edge of stick compressions swing about zero as they
-/// do in the balance of normal forces: a spring that is never lifted resists by the odd function of its compression, so that swings cancel and the balance
-/// of tangential forces has no kink there.
-pub(super) fn resistance(loading: &CycleLoading, lifted: f64) -> f64 {
-    if loading.lift == 0.0 {
+/// What resists the slip of a spring lifted to a compression, over its normal stiffness, m.
+///
+/// Next to an edge of stick in a medium whose modulus falls with depth, `k < 0`, compressions swing about zero as they do in the balance of normal forces: a
+/// spring that is never lifted resists by the odd function of its compression there, so that swings cancel and the balance of tangential forces has no kink.
+/// Elsewhere a spring that pulls resists nothing.
+pub(super) fn resistance(loading: &CycleLoading, grading: f64, lifted: f64) -> f64 {
+    if loading.lift == 0.0 && grading < 0.0 {
         loading.friction.kinetic_strength(lifted.abs()).copysign(lifted)
     } else {
         loading.friction.kinetic_strength(lifted)

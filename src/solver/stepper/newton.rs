@@ -166,12 +166,12 @@ impl Newton {
                 let part = if before.is_finite() { size / before } else { first }.min(SLOWEST);
                 correction.remaining = size * part / (1.0 - part);
                 let mut slow = false;
-                if mixing.is_none() {
+                if mixing.is_none() && free {
                     // What the next correction would take away is what this one left.
                     let next = factors.correction(equations);
                     let left = Correction::new(&next, at, equations.scale()).size();
                     (correction.remaining, correction.measured) = (left, true);
-                    slow = free && left > RENEWED * size;
+                    slow = left > RENEWED * size;
                     ahead = Some(next);
                 }
                 if equations.is_last(&correction) {

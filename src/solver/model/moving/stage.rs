@@ -472,7 +472,8 @@ impl StickStage<'_> {
         loading: &CycleLoading,
         trial: &StickTrial,
     ) -> f64 {
-        let strength = |q: f64| resistance(loading, q);
+        let grading = self.model.contact.half_space().grading();
+        let strength = |q: f64| resistance(loading, grading, q);
         if strength(q) >= self.model.contact.half_space().stiffness_ratio() * loading.amplitude {
             return 0.0;
         }
