@@ -28,7 +28,7 @@ const SAME_SLOPES: f64 = 0.3;
 /// springs at k = 0.5 went over to a contact that no wear leads to.
 const LARGEST_TOLERANCE: f64 = 1e-5;
 
-/// Backward differentiation formulas of order 1 to 5, as [`Bdf`], where every cycle is the same, so that wear is smooth in time:
+/// Backward differentiation formulas of order 1 to 5, as [`Bdf`](super::Bdf), where every cycle is the same, so that wear is smooth in time:
 ///
 /// ```text
 /// q - q̂ - h q'(q) = 0
