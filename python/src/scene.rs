@@ -98,21 +98,31 @@ impl Scene {
     }
 }
 
+/// What the scene of a dictionary is called in messages.
+const SCENE: &str = "scene";
+
+/// The text of a study or calibration that is a dictionary, and that of its scene where this is one as well.
+fn texts(table: &Bound<PyDict>) -> PyResult<(String, Option<String>)> {
+    let mut table = values::table(table, "")?;
+    let scene = match table.get_mut("scene") {
+        Some(scene @ Value::Table(_)) => {
+            let text = scene.to_string();
+            *scene = Value::String(SCENE.into());
+            Some(text)
+        }
+        _ => None,
+    };
+    Ok((table.to_string(), scene))
+}
+
 /// A study; the base scene of one that is a dictionary may be a dictionary as well.
 pub fn study(given: &Bound<PyAny>) -> PyResult<Study> {
     let here = Path::new("");
     let read = match given.cast::<PyDict>() {
-        Ok(table) => {
-            let mut table = values::table(table, "")?;
-            match table.get_mut("scene") {
-                Some(Value::Table(base)) => {
-                    let base = base.to_string();
-                    table.insert("scene".into(), Value::String("scene".into()));
-                    Study::from_texts(&table.to_string(), "study", &base, Path::new("scene"))
-                }
-                _ => Study::from_toml(&table.to_string(), "study", here),
-            }
-        }
+        Ok(table) => match texts(table)? {
+            (text, Some(scene)) => Study::from_texts(&text, "study", &scene, Path::new(SCENE)),
+            (text, None) => Study::from_toml(&text, "study", here),
+        },
         Err(_) => match Source::new(given)? {
             Source::File(path) => Study::read(&path),
             Source::Text(text) => Study::from_toml(&text, "study", here),
@@ -125,7 +135,7 @@ pub fn study(given: &Bound<PyAny>) -> PyResult<Study> {
 pub fn foretold(given: &Bound<PyAny>, draws: usize) -> PyResult<Foretold> {
     match Source::new(given)? {
         Source::File(path) => Foretold::read(&path, draws).map_err(|error| of_input(given.py(), &error)),
-        Source::Text(text) => Ok(Foretold { text, name: "scene".into(), draws }),
+        Source::Text(text) => Ok(Foretold { text, name: SCENE.into(), draws }),
     }
 }
 
@@ -133,18 +143,12 @@ pub fn foretold(given: &Bound<PyAny>, draws: usize) -> PyResult<Foretold> {
 pub fn calibration(given: &Bound<PyAny>) -> PyResult<Calibration> {
     let here = Path::new("");
     let read = match given.cast::<PyDict>() {
-        Ok(table) => {
-            let mut table = values::table(table, "")?;
-            match table.get_mut("scene") {
-                Some(Value::Table(base)) => {
-                    let base = base.to_string();
-                    table.insert("scene".into(), Value::String("scene".into()));
-                    let base = (&base[..], Path::new("scene"));
-                    Calibration::from_texts(&table.to_string(), "calibration", here, base)
-                }
-                _ => Calibration::from_toml(&table.to_string(), "calibration", here),
+        Ok(table) => match texts(table)? {
+            (text, Some(scene)) => {
+                Calibration::from_texts(&text, "calibration", here, (&scene, Path::new(SCENE)))
             }
-        }
+            (text, None) => Calibration::from_toml(&text, "calibration", here),
+        },
         Err(_) => match Source::new(given)? {
             Source::File(path) => Calibration::read(&path),
             Source::Text(text) => Calibration::from_toml(&text, "calibration", here),

@@ -184,17 +184,28 @@ impl Entries {
         self.0.iter().find(|(other, _)| *other == name).map(|(_, value)| value)
     }
 
-    /// Some of the readings of a record, in the order of their names, which blanks separate.
+    /// Some of the readings of a record, see [`named`].
     ///
     /// # Panics
     /// If there is none of a name.
     pub fn some<R>(readings: &[Reading<R>], record: &R, names: &str) -> Self {
-        let named = |name: &str| {
-            let found = readings.iter().find(|it| it.quantity.name == name);
-            found.unwrap_or_else(|| panic!("{name} is not declared"))
-        };
-        names.split_whitespace().map(named).map(|it| it.entry(record)).collect()
+        named(readings, names).map(|it| it.entry(record)).collect()
     }
+}
+
+/// Some of the readings, in the order of their names, which blanks separate.
+///
+/// # Panics
+/// If there is none of a name.
+pub fn named<'a, R: 'a>(
+    readings: impl IntoIterator<Item = &'a Reading<R>, IntoIter: Clone>,
+    names: &str,
+) -> impl Iterator<Item = &'a Reading<R>> {
+    let readings = readings.into_iter();
+    names.split_whitespace().map(move |name| {
+        let found = readings.clone().find(|it| it.quantity.name == name);
+        found.unwrap_or_else(|| panic!("{name} is not declared"))
+    })
 }
 
 impl<T: Serialize> Serialize for Entries<T> {

@@ -3,7 +3,7 @@
 use super::Results;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
-use crate::data::quantity::{Reading, number, word};
+use crate::data::quantity::{Reading, named, number, word};
 use crate::data::{LimitDistance, Value, largest};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
@@ -276,7 +276,5 @@ const CHECK: [Reading<ClosedForm>; 6] = [
 /// # Panics
 /// If nothing is under one of them.
 pub(crate) fn closed_form(names: &str) -> impl Iterator<Item = &'static Reading<ClosedForm>> {
-    let all = || LIMIT.iter().chain(&CHECK);
-    let named = move |name: &str| all().find(|it| it.quantity.name == name);
-    names.split_whitespace().map(move |name| named(name).unwrap_or_else(|| panic!("{name} is not declared")))
+    named(LIMIT.iter().chain(&CHECK), names)
 }

@@ -95,9 +95,8 @@ pub(super) struct Recorder {
     /// Steps that may be tried, where the program chooses springs and steps, and whether there were more.
     most_tries: f64,
     takes_too_long: bool,
-    /// Whether the companions tell that it would take too long, and the same while they run.
-    would_take_too_long: bool,
-    are_dear: Arc<AtomicBool>,
+    /// Whether the companions tell that it would take too long; they may do so while it runs.
+    would_take_too_long: Arc<AtomicBool>,
     pub(super) attempt: Attempt,
 }
 
@@ -121,8 +120,7 @@ impl Recorder {
             accuracy: scene.numerics().accuracy_asked(),
             most_tries: f64::INFINITY,
             takes_too_long: false,
-            would_take_too_long: false,
-            are_dear: Arc::default(),
+            would_take_too_long: Arc::default(),
             attempt: Attempt::default(),
         }
     }
@@ -134,7 +132,7 @@ impl Recorder {
 
     /// Whether the companions of a run tell that it would take too long.
     pub(super) fn would_take_too_long(&self) -> bool {
-        self.would_take_too_long
+        self.would_take_too_long.load(Ordering::Relaxed)
     }
 
     /// Whether the file is written where the run ends.
@@ -162,18 +160,16 @@ impl Recorder {
         self.companions = chosen.then(|| Companions::new(scene, simulation, limited));
         let bounded = chosen && scene.numerics().stepper == Stepper::Implicit;
         self.most_tries = if bounded { cost::most_tries(simulation.model()) } else { f64::INFINITY };
-        (self.takes_too_long, self.would_take_too_long) = (false, false);
-        self.are_dear = Arc::default();
+        (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
         let coarsening = chosen.then(|| Coarsening::new(scene, simulation));
-        let (stop, are_dear) = (Arc::clone(&self.stop), Arc::clone(&self.are_dear));
+        let (stop, too_long) = (Arc::clone(&self.stop), Arc::clone(&self.would_take_too_long));
         let run_companions = || {
             let found = coarsening.map(|it| it.run(scene, store, &stop))?;
-            are_dear.store(first && found.are_dear(), Ordering::Relaxed);
+            too_long.store(first && found.are_dear(), Ordering::Relaxed);
             Some(found)
         };
         let (outcome, found) = beside(|| simulation.run(&mut [&mut *self, onlookers]), run_companions);
         if let (Some(companions), Some(found)) = (&mut self.companions, found) {
-            self.would_take_too_long = first && found.are_dear();
             companions.take(found);
         }
         outcome
@@ -185,7 +181,7 @@ impl Recorder {
         simulation: &mut Simulation,
         onlookers: &mut dyn Observer,
     ) -> Result<Outcome> {
-        self.are_dear.store(false, Ordering::Relaxed);
+        self.would_take_too_long.store(false, Ordering::Relaxed);
         simulation.run(&mut [&mut *self, onlookers])
     }
 
@@ -243,7 +239,7 @@ impl Observer for Recorder {
     }
 
     fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
-        if self.stop.load(Ordering::Relaxed) || self.are_dear.load(Ordering::Relaxed) {
+        if self.stop.load(Ordering::Relaxed) || self.would_take_too_long() {
             return Ok(Flow::Stop);
         }
         if tries(simulation.progress()) > self.most_tries {

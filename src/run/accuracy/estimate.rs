@@ -99,7 +99,7 @@ impl Coarsening {
     /// That of a run.
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation) -> Self {
         let (model, numerics) = (simulation.model(), scene.numerics());
-        let smooth = numerics.stepper == Stepper::Implicit && model.wears_smoothly();
+        let smooth = is_smooth(scene, model);
         let substeps = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
         Self {
             springs: model.springs(),
@@ -156,6 +156,11 @@ impl Found {
     }
 }
 
+/// Whether the order of convergence is known.
+fn is_smooth(scene: &Scene, model: &Model) -> bool {
+    scene.numerics().stepper == Stepper::Implicit && model.wears_smoothly()
+}
+
 /// One in so many radii of a run is compared.
 fn every(model: &Model) -> usize {
     (model.offsets().len() / model.springs()).max(1)
@@ -167,9 +172,8 @@ impl Companions {
     /// # Arguments
     /// * `limited` -- whether the scene has a limit in closed form
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, limited: bool) -> Self {
-        let (model, numerics) = (simulation.model(), scene.numerics());
-        let smooth = numerics.stepper == Stepper::Implicit && model.wears_smoothly();
-        let (gross, every) = (model.gross().is_some(), every(model));
+        let model = simulation.model();
+        let (smooth, gross, every) = (is_smooth(scene, model), model.gross().is_some(), every(model));
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
         let sampled = model.schedule().lifts() && !model.schedule().takes_steps();

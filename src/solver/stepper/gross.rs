@@ -87,29 +87,27 @@ impl Slopes {
         at: &Arc<Linearised>,
         evaluations: &mut u64,
     ) -> Option<Self> {
-        let matrix = slopes(&at.compression, evaluations, |compression| {
-            model.gross_rates(gross, loading, compression)
-        })?;
+        let rates = |compression: &[f64]| model.gross_rates(gross, loading, compression);
+        let here = rates(&at.compression)?;
+        *evaluations += 1;
+        let matrix = slopes(&at.compression, &here, evaluations, rates)?;
         Some(Self { at: Arc::clone(at), matrix })
-    }
-
-    /// Factors of `1 - h ∂q'/∂q`.
-    fn factors(&self, step: f64) -> Factors<f64> {
-        let n = self.matrix.nrows();
-        Factors::new(Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - step * self.matrix[(i, j)]))
     }
 }
 
 /// `∂q'/∂q` by differences, shape `(springs - 1, springs - 1)`.
+///
+/// # Arguments
+/// * `here` -- the rates at these compressions
 fn slopes(
     compression: &[f64],
+    here: &GrossRates,
     evaluations: &mut u64,
     rates: impl Fn(&[f64]) -> Option<GrossRates>,
 ) -> Option<Mat<f64>> {
     let n = compression.len();
     let difference = DIFFERENCE * largest(compression);
-    *evaluations += n as u64 + 1;
-    let here = rates(compression)?.compression;
+    *evaluations += n as u64;
     let mut moved = compression.to_vec();
     let mut matrix = Mat::zeros(n, n);
     for j in 0..n {
@@ -117,10 +115,65 @@ fn slopes(
         let there = rates(&moved)?.compression;
         moved[j] = compression[j];
         for i in 0..n {
-            matrix[(i, j)] = (there[i] - here[i]) / difference;
+            matrix[(i, j)] = (there[i] - here.compression[i]) / difference;
         }
     }
     Some(matrix)
+}
+
+/// Equations `q - q̂ - h q'(q) = 0` of a step or stage.
+struct Stage<'a> {
+    /// `q̂`, m.
+    gathered: &'a [f64],
+    /// `h`, cycles.
+    step: f64,
+    /// What Newton's method may leave of the compressions, m.
+    left: f64,
+}
+
+/// What solves a stage.
+struct Solved {
+    compression: Vec<f64>,
+    /// The rates before the last correction.
+    rates: GrossRates,
+    /// Largest part of a correction that the next one was.
+    contraction: f64,
+}
+
+impl Stage<'_> {
+    /// Newton's method with one matrix, `1 - h ∂q'/∂q`; none if it does not converge.
+    fn solve(
+        &self,
+        slopes: &Mat<f64>,
+        guess: &[f64],
+        mut rates: impl FnMut(&[f64]) -> Option<GrossRates>,
+    ) -> Option<Solved> {
+        let n = guess.len();
+        let matrix = Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - self.step * slopes[(i, j)]);
+        let factors = Factors::new(matrix);
+        let mut compression = guess.to_vec();
+        let (mut before, mut contraction) = (f64::INFINITY, 0.0_f64);
+        for _ in 0..ITERATIONS {
+            let there = rates(&compression)?;
+            let mut change: Vec<f64> = (0..n)
+                .map(|i| compression[i] - self.gathered[i] - self.step * there.compression[i])
+                .collect();
+            factors.solve(&mut change);
+            let size = largest(&change);
+            compression.iter_mut().zip(&change).for_each(|(q, change)| *q -= change);
+            if before.is_finite() {
+                contraction = contraction.max(size / before);
+            }
+            if size <= self.left {
+                return Some(Solved { compression, rates: there, contraction });
+            }
+            if size.is_nan() || size >= 2.0 * before {
+                return None;
+            }
+            before = size;
+        }
+        None
+    }
 }
 
 impl Stepper for GrossBdf {
@@ -191,33 +244,15 @@ impl GrossBdf {
         };
         self.take_up_slopes(model, gross, state);
         let left = (LEFT * self.tolerance).max(ROUND_OFF) * scale;
-        let solve = |slopes: &Slopes, evaluations: &mut u64| -> Option<(Vec<f64>, GrossRates, f64)> {
-            let factors = slopes.factors(step);
-            let (mut at, mut before, mut contraction) = (guess.clone(), f64::INFINITY, 0.0_f64);
-            for _ in 0..ITERATIONS {
+        let stage = Stage { gathered: &gathered.compression, step, left };
+        let solve = |slopes: &Slopes, evaluations: &mut u64| {
+            stage.solve(&slopes.matrix, &guess, |compression| {
                 *evaluations += 1;
-                let there = model.gross_rates(gross, &loading, &at)?;
-                let mut change: Vec<f64> = (0..at.len())
-                    .map(|i| at[i] - gathered.compression[i] - step * there.compression[i])
-                    .collect();
-                factors.solve(&mut change);
-                let size = largest(&change);
-                at.iter_mut().zip(&change).for_each(|(q, change)| *q -= change);
-                if before.is_finite() {
-                    contraction = contraction.max(size / before);
-                }
-                if size <= left {
-                    return Some((at, there, contraction));
-                }
-                if size.is_nan() || size >= 2.0 * before {
-                    return None;
-                }
-                before = size;
-            }
-            None
+                model.gross_rates(gross, &loading, compression)
+            })
         };
         let found = self.slopes.as_ref().and_then(|slopes| solve(slopes, evaluations));
-        let (compression, rates, contraction) = match found {
+        let Solved { compression, rates, contraction } = match found {
             Some(found) => found,
             None => {
                 let at = Arc::new(Linearised {
@@ -341,13 +376,10 @@ fn step(
     let scale = whole(model, gross, start);
     let first = rates(state.cycles, state.dissipated_energy, start, evaluations)?;
     let step = cycles * ALEXANDER.diagonal;
-    let slopes = slopes(start, evaluations, |compression| {
+    let slopes = slopes(start, &first, evaluations, |compression| {
         let loading = model.schedule().loading(state.cycles, state.cycles);
         model.gross_rates(gross, &model.after_energy(loading, state.dissipated_energy), compression)
     })?;
-    let factors = Factors::new(Mat::from_fn(start.len(), start.len(), |i, j| {
-        f64::from(u8::from(i == j)) - step * slopes[(i, j)]
-    }));
     let mut stages: Vec<GrossRates> = Vec::with_capacity(ALEXANDER.matrix.len());
     let mut at = start.clone();
     for (row, time) in ALEXANDER.matrix.iter().zip(ALEXANDER.times) {
@@ -361,35 +393,20 @@ fn step(
         let spent = state.dissipated_energy + spent.sum::<f64>();
         let guess = stages.last().unwrap_or(&first);
         let mut dissipation = guess.dissipation;
-        for (i, q) in at.iter_mut().enumerate() {
-            *q = gathered[i] + cycles * ALEXANDER.diagonal * guess.compression[i];
-        }
+        let from: Vec<f64> = (0..start.len()).map(|i| gathered[i] + step * guess.compression[i]).collect();
         let left = (LEFT * tolerance).max(ROUND_OFF) * scale;
-        let mut before = f64::INFINITY;
-        let mut found = None;
-        for _ in 0..ITERATIONS {
-            let energy = spent + cycles * ALEXANDER.diagonal * dissipation;
-            let there = rates(state.cycles + time * cycles, energy, &at, evaluations)?;
+        let stage = Stage { gathered: &gathered, step, left };
+        let solved = stage.solve(&slopes, &from, |compression| {
+            let energy = spent + step * dissipation;
+            let there = rates(state.cycles + time * cycles, energy, compression, evaluations)?;
             dissipation = there.dissipation;
-            let mut change: Vec<f64> = (0..start.len())
-                .map(|i| at[i] - gathered[i] - cycles * ALEXANDER.diagonal * there.compression[i])
-                .collect();
-            factors.solve(&mut change);
-            let size = largest(&change);
-            at.iter_mut().zip(&change).for_each(|(q, change)| *q -= change);
-            if size <= left {
-                found = Some(there);
-                break;
-            }
-            if size.is_nan() || size >= 2.0 * before {
-                return None;
-            }
-            before = size;
-        }
-        let mut found = found?;
+            Some(there)
+        })?;
+        let mut found = solved.rates;
+        at = solved.compression;
         // The rate that makes the stage exact.
         for (i, rate) in found.compression.iter_mut().enumerate() {
-            *rate = (at[i] - gathered[i]) / (cycles * ALEXANDER.diagonal);
+            *rate = (at[i] - gathered[i]) / step;
         }
         stages.push(found);
     }

@@ -472,9 +472,9 @@ impl StickStage<'_> {
         loading: &CycleLoading,
         trial: &StickTrial,
     ) -> f64 {
-        let grading = self.model.contact.half_space().grading();
-        let strength = |q: f64| resistance(loading, grading, q);
-        if strength(q) >= self.model.contact.half_space().stiffness_ratio() * loading.amplitude {
+        let half_space = self.model.contact.half_space();
+        let strength = |q: f64| resistance(loading, half_space.grading(), q);
+        if strength(q) >= half_space.stiffness_ratio() * loading.amplitude {
             return 0.0;
         }
         let step = DIFFERENCE * trial.stick_zone.slip_compression;
