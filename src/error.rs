@@ -32,8 +32,13 @@ pub enum Error {
         why: String,
     },
     /// A scene that cannot be used; the message shows the line and the key.
-    #[error("{0}")]
-    Scene(String),
+    #[error("{shown}")]
+    Scene {
+        /// The dotted key that it is about, if it is about one.
+        key: Option<String>,
+        /// The message, with the line and the bad place marked where there is one.
+        shown: String,
+    },
     /// What is asked of a study besides its file, such as a number of threads or of shards, cannot be.
     #[error("{name}: {why}")]
     Option {
@@ -89,14 +94,14 @@ impl Error {
     /// ```
     pub fn domain(&self) -> Domain {
         match self {
-            Self::Scene(_) | Self::Option { .. } => Domain::Scene,
+            Self::Scene { .. } | Self::Option { .. } => Domain::Scene,
             Self::OutOfRange { .. } | Self::Inconsistent { .. } => Domain::Physics,
             Self::NotConverged { .. } => Domain::Solver,
             Self::Exists { .. } | Self::Unsealed { .. } | Self::File { .. } => Domain::File,
         }
     }
 
-    /// The dotted key of the scene that the error is about, where it is about one; messages of scenes begin with it.
+    /// The dotted key of the scene that the error is about, where it is about one.
     ///
     /// ```
     /// let error = "[indenter.ball]".parse::<fretwear::Scene>().unwrap_err();
@@ -107,13 +112,21 @@ impl Error {
             Self::OutOfRange { name, .. } | Self::Inconsistent { what: name, .. } => {
                 Some(*name).filter(|it| it.contains('.'))
             }
-            Self::Scene(text) => {
-                let (_, message) = text.lines().next()?.split_once(": ")?;
-                let end = message.find(|c: char| !c.is_alphanumeric() && !"_-.[]".contains(c))?;
-                let (key, rest) = message.split_at(end);
-                [": ", " = ", " is ", " has ", " and "].iter().any(|it| rest.starts_with(it)).then_some(key)
-            }
+            Self::Scene { key, .. } => key.as_deref(),
             _ => None,
+        }
+    }
+
+    /// The error of a scene, about no key.
+    pub(crate) fn scene(shown: String) -> Self {
+        Self::Scene { key: None, shown }
+    }
+
+    /// The error of a scene as one about a key.
+    pub(crate) fn about(self, key: &str) -> Self {
+        match self {
+            Self::Scene { shown, .. } => Self::Scene { key: Some(key.into()), shown },
+            other => other,
         }
     }
 

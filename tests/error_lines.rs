@@ -101,6 +101,12 @@ fn shows_its_place(message: &str, text: &str) -> bool {
     fits && caret.contains('^') && column <= written.chars().count() + 1
 }
 
+/// What is TOML is refused for a key, which the message says in words as well.
+fn names_its_key(error: &fretwear::Error) -> bool {
+    let message = error.to_string();
+    message.contains("not valid TOML") || error.key().is_some_and(|key| !key.is_empty() && message.contains(key))
+}
+
 #[test]
 fn every_mistake_in_any_line_of_any_file_is_shown_at_its_place() {
     let (mut refused, mut taken) = (0, 0);
@@ -122,6 +128,7 @@ fn every_mistake_in_any_line_of_any_file_is_shown_at_its_place() {
                         let context =
                             format!("{}, line {} as {edit:?}\n{message}", path.display(), number + 1);
                         assert!(shows_its_place(&message, &edited), "{context}");
+                        assert!(names_its_key(&error), "{:?}: {context}", error.key());
                         refused += 1;
                     }
                 }

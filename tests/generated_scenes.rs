@@ -72,7 +72,9 @@ fn judge(random: &RandomScene, patience: Duration) -> Result<(End, String), Stri
     let folder = tempfile::tempdir().expect("a folder");
     let scene = match random.read(folder.path()) {
         Ok(scene) => scene,
-        Err(error @ (Error::Scene(_) | Error::File { .. })) => return Ok((End::Unread, error.to_string())),
+        Err(error @ (Error::Scene { .. } | Error::File { .. })) => {
+            return Ok((End::Unread, error.to_string()));
+        }
         Err(error) => return Err(format!("read with an error that shows no place: {error}")),
     };
     let checked = CheckReport::new(&scene);

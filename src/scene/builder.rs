@@ -61,7 +61,10 @@ impl SceneBuilder {
     /// As [`Scene::from_toml`]; lines are those of the TOML that the keys make.
     pub fn build(self) -> Result<Scene> {
         match self.misplaced {
-            Some(key) => Err(Error::Scene(format!("{key}: stands below a key that has a value of its own"))),
+            Some(key) => {
+                let shown = format!("{key}: stands below a key that has a value of its own");
+                Err(Error::scene(shown).about(&key))
+            }
             None => Scene::from_toml(&self.document.to_string(), "scene"),
         }
     }

@@ -25,7 +25,7 @@ use toml::{Table, Value};
 use super::document::{Section, Source};
 use super::settings::set;
 use super::{LARGEST, Rows, Scene, base_table, read_text};
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// The one unknown of a calibration without a scene.
 const ALPHA: &str = "wear.dissipated-energy.coefficient";
@@ -210,7 +210,7 @@ impl Calibration {
     /// Reads a calibration, its base scene and its measurements.
     ///
     /// # Errors
-    /// [`Error::Scene`], whose message shows the line with the bad place marked, the key and the cure; [`Error::File`] where one of the files
+    /// [`Error::Scene`](crate::Error::Scene), whose message shows the line with the bad place marked, the key and the cure; [`Error::File`](crate::Error::File) where one of the files
     /// cannot be used, with the line.
     pub fn read(path: &Path) -> Result<Self> {
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -361,9 +361,7 @@ impl Calibration {
     pub fn scene(&self, data: usize, values: &[f64], cycles: &[f64], accuracy: f64) -> Result<Scene> {
         let mut table = self.base.clone().expect("a data set that needs a scene has one");
         let name = format!("{}, data[{data}]", self.name);
-        let mut put = |key: &str, value: Value| {
-            set(&mut table, key, value).map_err(|why| Error::Scene(format!("{name}: {key}: {why}")))
-        };
+        let mut put = |key: &str, value: Value| set(&mut table, &name, key, value);
         for (key, value) in self.settings.iter().chain(&self.data[data].settings) {
             put(key, value.clone())?;
         }
@@ -400,7 +398,7 @@ impl Calibration {
         let name = name.display().to_string();
         let own = self.settings.iter().map(|(key, value)| (key.as_str(), value.clone()));
         for (key, value) in own.chain(self.pairs(values).map(|(key, it)| (key, Value::Float(it)))) {
-            set(&mut table, key, value).map_err(|why| Error::Scene(format!("{name}: {key}: {why}")))?;
+            set(&mut table, &name, key, value)?;
         }
         Scene::with_rows(&table.to_string(), &name, &Rows::In(folder))
     }

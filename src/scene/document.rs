@@ -68,7 +68,7 @@ impl<'a> Source<'a> {
         let _ = writeln!(text, "{:gutter$} |", "");
         let _ = writeln!(text, "{number} | {shown}");
         let _ = write!(text, "{:gutter$} | {:indent$}{:^<carets$}", "", "", "");
-        Error::Scene(text)
+        Error::scene(text)
     }
 
     /// An error that something is missing, shown where it could be added: at the end.
@@ -79,7 +79,7 @@ impl<'a> Source<'a> {
 
     /// An error that concerns no line.
     pub(super) fn unplaced(&self, message: impl Display) -> Error {
-        Error::Scene(format!("{}: {message}", self.name))
+        Error::scene(format!("{}: {message}", self.name))
     }
 }
 
@@ -133,9 +133,18 @@ impl<'a> Section<'a> {
     /// An error about the table as a whole, shown at its name.
     pub(super) fn error(&self, message: impl Display) -> Error {
         match &self.place {
-            Some(place) => self.source.error(place.clone(), message),
+            Some(place) => self.source.error(place.clone(), message).about(&self.path),
             None => self.source.missing(message),
         }
+    }
+
+    /// An error about a key that is not there, shown at the name of the table.
+    ///
+    /// # Arguments
+    /// * `message` -- what follows the name of the key
+    pub(super) fn absent(&self, key: &str, message: impl Display) -> Error {
+        let name = self.name(key);
+        self.error(format_args!("{name} {message}")).about(&name)
     }
 
     /// Shows what is wrong with a key at its value, or at the innermost table in which it is missing.
@@ -150,12 +159,15 @@ impl<'a> Section<'a> {
             let Some(entry) = section.optional(part) else { break };
             match entry.section() {
                 Ok(inner) => section = inner,
-                Err(_) => return self.source.error(entry.place, format_args!("{name}{message}")),
+                Err(_) => {
+                    return self.source.error(entry.place, format_args!("{name}{message}")).about(&name);
+                }
             }
         }
+        let message = format!("{name}{message}");
         match section.place {
-            Some(place) => self.source.error(place, format_args!("{name}{message}")),
-            None => self.source.unplaced(format_args!("{name}{message}")),
+            Some(place) => self.source.error(place, message).about(&name),
+            None => self.source.unplaced(message).about(&name),
         }
     }
 
@@ -168,8 +180,9 @@ impl<'a> Section<'a> {
             Some(key) => format!("did you mean {}?", key.name),
             None => suggestion(stranger, &table.keys.iter().map(|key| key.name).collect::<Vec<_>>()),
         };
-        let message = format!("{} is not a key of {}; {cure}", self.name(stranger), self.source.kind);
-        Err(self.source.error(first.span(), message))
+        let name = self.name(stranger);
+        let message = format!("{name} is not a key of {}; {cure}", self.source.kind);
+        Err(self.source.error(first.span(), message).about(&name))
     }
 
     /// Names of keys of this table: `a, b or c`.
@@ -191,7 +204,7 @@ impl<'a> Section<'a> {
 
     /// The value of a key that must be there.
     pub(super) fn required(&self, key: &str, cure: &str) -> Result<Entry<'a>> {
-        self.optional(key).ok_or_else(|| self.error(format_args!("{} is missing; {cure}", self.name(key))))
+        self.optional(key).ok_or_else(|| self.absent(key, format_args!("is missing; {cure}")))
     }
 
     /// The one key given of several that exclude each other, and its value.
@@ -222,7 +235,7 @@ impl<'a> Section<'a> {
                 let key = name.rsplit('.').next().unwrap_or(name);
                 match self.optional(key) {
                     Some(entry) => entry.outside(range),
-                    None => self.error(format_args!("{} = {value} is outside {range}", self.name(key))),
+                    None => self.absent(key, format_args!("= {value} is outside {range}")),
                 }
             }
             other => self.error(other),
@@ -273,7 +286,12 @@ impl<'a> Entry<'a> {
     /// An error shown under the value: `half_space.grading = 1.5 is outside (-1, 1)` for the message `is outside (-1, 1)`.
     pub(super) fn error(&self, message: impl Display) -> Error {
         let value = printable(self.source.text.get(self.place.clone()).unwrap_or_default());
-        self.source.error(self.place.clone(), format_args!("{} = {value} {message}", self.path))
+        self.at(&self.place, format_args!(" = {value} {message}"))
+    }
+
+    /// An error shown at a place: the key, and what follows it.
+    fn at(&self, place: &Range<usize>, message: impl Display) -> Error {
+        self.source.error(place.clone(), format_args!("{}{message}", self.path)).about(&self.path)
     }
 
     /// The error that the value lies outside a range.
@@ -283,7 +301,7 @@ impl<'a> Entry<'a> {
 
     /// An error shown under the key: what is wrong with its being there.
     pub(super) fn misplaced(&self, message: impl Display) -> Error {
-        self.source.error(self.key_place.clone(), format_args!("{} {message}", self.path))
+        self.at(&self.key_place, format_args!(" {message}"))
     }
 
     /// The error that the key has no place beside another.
@@ -294,7 +312,7 @@ impl<'a> Entry<'a> {
     /// The error that one of several keys alone may be given; `other` was given before.
     pub(super) fn excludes(&self, other: &Entry, choice: &str) -> Error {
         let message = format!("{} and {} exclude each other; give one of {choice}", other.path, self.path);
-        self.source.error(self.key_place.clone(), message)
+        self.source.error(self.key_place.clone(), message).about(&self.path)
     }
 
     /// Where the value stands.
@@ -319,7 +337,7 @@ impl<'a> Entry<'a> {
         };
         // A table has no text of its own to show.
         let place = if matches!(self.value, DeValue::Table(_)) { &self.key_place } else { &self.place };
-        self.source.error(place.clone(), format_args!("{}: {wanted}, found {found}", self.path))
+        self.at(place, format_args!(": {wanted}, found {found}"))
     }
 
     /// Whether the value is a table.
@@ -435,6 +453,6 @@ impl<'a> Entry<'a> {
 
     /// The error `key: why` at the value.
     pub(super) fn explained(&self, why: String) -> Error {
-        self.source.error(self.place.clone(), format_args!("{}: {why}", self.path))
+        self.at(&self.place, format_args!(": {why}"))
     }
 }

@@ -63,7 +63,7 @@ impl<L: ?Sized> Given<'_, L> {
         (self.entry.build)(&self.values).map_err(|wrong| match wrong {
             Wrong::Value { key, why } => match self.section.optional(key) {
                 Some(entry) => entry.error(why),
-                None => self.section.error(format_args!("{} {why}", self.section.name(key))),
+                None => self.section.absent(key, why),
             },
             Wrong::Error(Error::Inconsistent { what, why }) => {
                 let named = |key: &&Key| self.section.name(key.name) == what;

@@ -6,7 +6,7 @@ use toml::{Table, Value};
 
 use super::document::{Section, Source};
 use super::{Rows, Scene, base_table, keys, read_text};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::units::{Key, Kind};
 
 impl Scene {
@@ -44,7 +44,7 @@ impl Scene {
             if let Some(other) = taken.iter().find(|other| keys::exclude(other, key)) {
                 return Err(wrong(format!("{key} and {other} exclude each other; set one of the two")));
             }
-            set(&mut scene, key, value).map_err(wrong)?;
+            set(&mut scene, SETTING, key, value)?;
             taken.push(key);
         }
         Self::with_rows(&scene.to_string(), &Self::name_with(name, settings), &rows)
@@ -59,9 +59,12 @@ impl Scene {
     }
 }
 
+/// What messages call a setting.
+const SETTING: &str = "setting";
+
 /// The document that messages about a setting show.
 fn outer(text: &str) -> Source<'_> {
-    Source { name: "setting", text, kind: "a scene" }
+    Source { name: SETTING, text, kind: "a scene" }
 }
 
 /// Key and value of a setting, checked by themselves.
@@ -79,7 +82,7 @@ fn parsed(setting: &str) -> Result<(&str, Value)> {
 /// Checks the value of a dotted key by itself.
 ///
 /// # Errors
-/// [`Error::Scene`](crate::Error::Scene) shows it as it would stand in a scene.
+/// [`Error::Scene`] shows it as it would stand in a scene.
 pub(super) fn check(key: &str, value: &Value, declared: &Key) -> Result<()> {
     let text = format!("{key} = {value}");
     let source = outer(&text);
@@ -94,16 +97,21 @@ pub(super) fn check(key: &str, value: &Value, declared: &Key) -> Result<()> {
 
 /// Sets a dotted key of a scene, and leaves out what cannot stand beside it.
 ///
+/// # Arguments
+/// * `name` -- of what sets it, for messages
+///
 /// # Errors
-/// The name of what should be a table of the scene and is none.
-pub(super) fn set(scene: &mut Table, dotted: &str, value: Value) -> std::result::Result<(), String> {
+/// [`Error::Scene`] names what should be a table of the scene and is none.
+pub(super) fn set(scene: &mut Table, name: &str, dotted: &str, value: Value) -> Result<()> {
     let (tables, last) = dotted.rsplit_once('.').unwrap_or(("", dotted));
     let (mut table, mut declared) = (scene, &keys::SCENE);
-    for name in tables.split('.').filter(|it| !it.is_empty()) {
-        declared.rivals(name).into_iter().for_each(|rival| drop(table.remove(rival)));
-        let inner = table.entry(name).or_insert_with(|| Value::Table(Table::new()));
-        table = inner.as_table_mut().ok_or_else(|| format!("{name} is no table in the base scene"))?;
-        if let Some(Kind::Table(inner)) = declared.key(name).map(|key| key.kind) {
+    for part in tables.split('.').filter(|it| !it.is_empty()) {
+        declared.rivals(part).into_iter().for_each(|rival| drop(table.remove(rival)));
+        let inner = table.entry(part).or_insert_with(|| Value::Table(Table::new()));
+        table = inner.as_table_mut().ok_or_else(|| {
+            Error::scene(format!("{name}: {dotted}: {part} is no table in the base scene")).about(dotted)
+        })?;
+        if let Some(Kind::Table(inner)) = declared.key(part).map(|key| key.kind) {
             declared = inner;
         }
     }

@@ -16,7 +16,7 @@ use super::{LARGEST, Rows, Scene, base_table, columns, read_text};
 use crate::data::layout::FORMAT_VERSION;
 #[cfg(feature = "hdf5")]
 use crate::data::{Fingerprint, SweepFile};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::units::Unit;
 use crate::units::split_number;
 
@@ -129,7 +129,7 @@ impl Study {
     /// Reads a study and its base scene.
     ///
     /// # Errors
-    /// [`Error::Scene`], whose message shows the line with the bad place marked, the key and the cure; [`Error::File`] if one of the two
+    /// [`Error::Scene`](crate::Error::Scene), whose message shows the line with the bad place marked, the key and the cure; [`Error::File`](crate::Error::File) if one of the two
     /// files cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -290,15 +290,14 @@ impl Study {
     /// The TOML text of a scene.
     ///
     /// # Errors
-    /// [`Error::Scene`] if a key leads through something that is no table.
+    /// [`Error::Scene`](crate::Error::Scene) if a key leads through something that is no table.
     ///
     /// # Panics
     /// If there is no scene of this number.
     pub fn scene_text(&self, scene: u64) -> Result<String> {
         let mut table = self.base.clone();
         for (key, value) in self.keys().into_iter().zip(self.values(scene)) {
-            set(&mut table, key, value)
-                .map_err(|why| Error::Scene(format!("{}: {key}: {why}", self.name)))?;
+            set(&mut table, &self.name, key, value)?;
         }
         Ok(table.to_string())
     }
@@ -306,7 +305,7 @@ impl Study {
     /// A scene.
     ///
     /// # Errors
-    /// [`Error::Scene`] names the scene, shows the line of its text and the cure.
+    /// [`Error::Scene`](crate::Error::Scene) names the scene, shows the line of its text and the cure.
     ///
     /// # Panics
     /// If there is no scene of this number.

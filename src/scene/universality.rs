@@ -180,7 +180,7 @@ impl UniversalityStudy {
         self.cases.iter().find(|case| case.name == name).ok_or_else(|| {
             let names: Vec<&str> = self.cases.iter().map(|case| case.name.as_str()).collect();
             let near = most_alike(name, &names).map_or("", |(_, near)| near);
-            Error::Scene(format!("{}: no case has the name {name:?}; did you mean {near:?}?", self.name))
+            Error::scene(format!("{}: no case has the name {name:?}; did you mean {near:?}?", self.name))
         })
     }
 

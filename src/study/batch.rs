@@ -114,7 +114,7 @@ pub(crate) fn check_valid(wrong: &[String], total: u64) -> Result<()> {
     const SHOWN: usize = 3;
     match wrong.len() {
         0 => Ok(()),
-        count => Err(Error::Scene(format!(
+        count => Err(Error::scene(format!(
             "{count} of {total} scenes are not valid, nothing was run:\n{}",
             wrong[..count.min(SHOWN)].join("\n")
         ))),
