@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt
 plt.rcParams["svg.hashsalt"] = "fretwear"  # the same file from the same measurement
 
 *paths, figure = sys.argv[1:]
-# The profile is judged at the radii of each run's own file.
+# The profile is compared at the radii of each run's own file.
 OWN = {"volume": "volume", "profile": "node"}
 COLOURS = {"implicit": "tab:blue", "cycle-jump": "tab:orange", "every-cycle": "tab:green"}
 ERRORS = [("volume", "error of the worn volume"), ("profile", "error of the profile")]
@@ -45,9 +45,9 @@ def draw(axes, data, error, cost):
     front = np.flatnonzero(data[f"front_{error}_{kind}"] == 1)
     front = front[np.argsort(x[front])]
     axes.step(x[front], y[front], where="post", color="k", linewidth=1)
-    knob = ~by_hand & np.isfinite(y)
-    axes.loglog(x[knob], y[knob], "D", color="tab:red", markersize=5)
-    for at in np.flatnonzero(knob):
+    chosen = ~by_hand & np.isfinite(y)
+    axes.loglog(x[chosen], y[chosen], "D", color="tab:red", markersize=5)
+    for at in np.flatnonzero(chosen):
         axes.annotate(f"{data['accuracy'][at]:.0e}".replace("e-0", "e-"), (x[at], y[at]), xytext=(4, 3),
                       textcoords="offset points", fontsize=6, color="tab:red")
     # Below this the reference itself is not surer.
@@ -65,11 +65,11 @@ def table(data):
     print("|---|---|---|---|---|---|---|---|---|")
     fronts = {kind: data["front_" + "_".join(kind)] == 1 for kind in KINDS}
     shown = np.flatnonzero(fronts["volume", "time"] | fronts["profile", "time"])
-    knob = np.flatnonzero(~np.isnan(data["accuracy"]) & (data["status"] == "done"))
-    for at in [*shown[np.argsort(data["wall_seconds"][shown])], *knob]:
+    chosen = np.flatnonzero(~np.isnan(data["accuracy"]) & (data["status"] == "done"))
+    for at in [*shown[np.argsort(data["wall_seconds"][shown])], *chosen]:
         error = lambda name: ("<" if data[f"{OWN[name]}_error_max_bounded"][at] else "") + f"{data[f'{OWN[name]}_error_max'][at]:.1e}"
-        if at in knob:
-            over = [data[f"knob_{name}_time"][at] for name in ["volume", "profile"]]
+        if at in chosen:
+            over = [data[f"chosen_{name}_time"][at] for name in ["volume", "profile"]]
             words = [f"{ratio:.2f}" if np.isfinite(ratio) else "beyond" for ratio in over]
             place = f"accuracy {data['accuracy'][at]:.0e}: {words[0]} (volume), {words[1]} (profile)"
         else:

@@ -104,7 +104,8 @@ fn shows_its_place(message: &str, text: &str) -> bool {
 /// What is TOML is refused for a key, which the message says in words as well.
 fn names_its_key(error: &fretwear::Error) -> bool {
     let message = error.to_string();
-    message.contains("not valid TOML") || error.key().is_some_and(|key| !key.is_empty() && message.contains(key))
+    message.contains("not valid TOML")
+        || error.key().is_some_and(|key| !key.is_empty() && message.contains(key))
 }
 
 #[test]

@@ -581,7 +581,7 @@ fn bad_requests_are_refused_with_what_to_do_and_write_nothing() {
         (&["plot", "missing.h5", "-o", "a.svg"], "missing.h5: No such file"),
         (
             &["plot", &run_h5, "-o", "a.pdf"],
-            "a.pdf: has a name from which the form cannot be told; end it in .svg or .png",
+            "a.pdf: ends neither in .svg nor in .png; give it the ending of one",
         ),
         (&["plot", &run_h5, "-o", "there.svg"], "there.svg: exists already; give --force"),
         (&["plot", &run_h5, "-o", "no/a.svg"], "create its directory first"),

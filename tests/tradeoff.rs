@@ -23,7 +23,7 @@ loading = { indentation = 1, stick_ratio = 0.7, tau = 30 }
 output = { at_tau = [1, 10] }
 "#;
 
-/// Sixteen candidates and a knob, of milliseconds each.
+/// Sixteen candidates and one by `accuracy`, of milliseconds each.
 const LADDERS: [&str; 10] = [
     "--springs",
     "12,24,48",
@@ -119,21 +119,21 @@ fn errors_fall_with_finer_numerics_and_follow_from_the_runs() {
         let point = |row: &Value| Some((row[cost].as_f64()?, row[error].as_f64()?));
         for place in &front {
             let (own_cost, own_error) = point(&rows[*place]).expect("a front has costs and errors");
-            assert!(rows[*place]["accuracy"].is_null(), "the knob is no part of a front");
+            assert!(rows[*place]["accuracy"].is_null(), "what `accuracy` chose is no part of a front");
             let beaten = rows.iter().filter(|it| it["accuracy"].is_null()).filter_map(point);
             let mut beaten = beaten.filter(|it| it.0 < own_cost && it.1 < own_error);
             assert_eq!(beaten.next(), None, "{name}: {place} at {own_cost}, {own_error}");
         }
     }
-    let knob = rows.iter().find(|row| row["accuracy"] == 1e-2).expect("the knob");
+    let chosen = rows.iter().find(|row| row["accuracy"] == 1e-2).expect("the row of `accuracy`");
     assert!(
-        knob["springs"].as_u64().unwrap() > 12 && number(knob, "tolerance") > 0.0,
-        "what it chose: {knob}"
+        chosen["springs"].as_u64().unwrap() > 12 && number(chosen, "tolerance") > 0.0,
+        "what it chose: {chosen}"
     );
     the_errors_follow_from_the_runs(&found, &output);
 }
 
-/// Forms errors from the kept runs, without a line of the judge's code.
+/// Forms errors from the kept runs, without a line of the code that does so in the program.
 fn the_errors_follow_from_the_runs(found: &Value, output: &Path) {
     let scene = Scene::from_toml(SCENE, "scene.toml").unwrap();
     let limit = LimitingShape::from_contact(&scene.contact().unwrap()).unwrap().expect("partial slip");
@@ -145,7 +145,7 @@ fn the_errors_follow_from_the_runs(found: &Value, output: &Path) {
         }
         let run = RunFile::open(&output.join(format!("runs/candidate{place}.h5"))).unwrap();
         for (snapshot, errors) in run.snapshots[1..].iter().zip(row["snapshots"].as_array().unwrap()) {
-            let volume = match errors["judges"][0].as_str().unwrap() {
+            let volume = match errors["references"][0].as_str().unwrap() {
                 "limit" => limit.wear_volume(),
                 "reference" => {
                     let same = reference.snapshots.iter().find(|it| it.cycles == snapshot.cycles);
@@ -159,7 +159,7 @@ fn the_errors_follow_from_the_runs(found: &Value, output: &Path) {
                 assert!((error / expected - 1.0).abs() < 1e-6, "{place}: {error:e}, not {expected:e}");
                 checked[0] += 1;
             }
-            if errors["judges"][1] == "limit" && errors["bounded"][2] == false {
+            if errors["references"][1] == "limit" && errors["bounded"][2] == false {
                 let c = limit.stick_radius();
                 let gap = |(r, depth): (&f64, &f64)| {
                     (depth - limit.wear_depth_at_offset((r - c) * (r + c))).abs() / limit.wear_depth_max()
@@ -172,7 +172,7 @@ fn the_errors_follow_from_the_runs(found: &Value, output: &Path) {
             }
         }
     }
-    assert!(checked[0] > 20, "few errors were clear of the judge's own: {checked:?}");
+    assert!(checked[0] > 20, "few errors were clear of the reference's own: {checked:?}");
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn the_file_has_a_row_for_each_candidate_with_units_and_meaning() {
     let summary = DatasetSummary::read(&output.join("tradeoff.h5")).unwrap().expect("arrays");
     assert_eq!((summary.format.as_str(), summary.complete), ("fretwear-tradeoff", true));
     let table = fs::read_to_string(output.join("tradeoff.csv")).unwrap();
-    // Two ways through a cycle, three numbers of springs, two tolerances; and the knob.
+    // Two ways through a cycle, three numbers of springs, two tolerances; and `accuracy`.
     assert_eq!(table.lines().count(), 1 + 2 * 3 * 2 + 1);
     assert!(!output.join("runs").exists(), "what was kept for a restart is gone");
 
@@ -197,7 +197,7 @@ fn the_file_has_a_row_for_each_candidate_with_units_and_meaning() {
 
 /// At 1 - k = 1e-9 nothing is known better than the closed transient.
 #[test]
-fn the_gibson_transient_judges_next_to_its_medium() {
+fn the_gibson_transient_is_the_reference_next_to_its_medium() {
     let scene = SCENE
         .replace("grading = 0,", "grading = 0.999999999,")
         .replace("tau = 30", "tau = 3")
@@ -206,7 +206,7 @@ fn the_gibson_transient_judges_next_to_its_medium() {
     let found = object(folder.path(), &arguments(&["--json", "--steppers", "implicit"]));
     let row = by_hand(&found, "implicit", 48, 1e-4);
     for errors in row["snapshots"].as_array().unwrap() {
-        assert_eq!(errors["judges"][0], "gibson", "{errors}");
+        assert_eq!(errors["references"][0], "gibson", "{errors}");
         assert!(number(errors, "volume_error") < 1e-3, "{errors}");
     }
 }

@@ -60,7 +60,7 @@ pub fn export(arguments: &Export) -> Result<String> {
         }
         Some("vtkhdf") => return Err(refused(output, "a surface has no table; leave out --table")),
         _ => {
-            let why = "what is wanted shows in the name: give one that ends in .csv for a table, or in .vtkhdf for the worn surface of a run";
+            let why = "end the name in .csv for a table, or in .vtkhdf for the worn surface of a run";
             return Err(refused(output, why));
         }
     }

@@ -27,13 +27,13 @@ pub struct Tradeoff {
     /// Tolerances of the time stepping; by default 1e-2 to 1e-8, by tens
     #[arg(long, value_name = "T1,T2,...", value_delimiter = ',')]
     tolerances: Option<Vec<f64>>,
-    /// Accuracies asked of the knob; by default 1e-2 to 1e-6, by tens
+    /// Values of `accuracy`; by default 1e-2 to 1e-6, by tens
     #[arg(long, value_name = "A1,A2,...", value_delimiter = ',')]
     accuracies: Option<Vec<f64>>,
     /// Steppers; by default all
     #[arg(long, value_name = "S1,S2,...", value_delimiter = ',', value_parser = stepper)]
     steppers: Option<Vec<Stepper>>,
-    /// Wall time up to which a candidate is run, s; the knob may take five times, a reference twenty times as long
+    /// Wall time up to which a candidate is run, s; what `accuracy` chooses may take five times, a reference twenty times as long
     #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = super::seconds)]
     most_seconds: f64,
     /// Runs of which the least wall time is taken, fewer where a run takes long

@@ -1,4 +1,4 @@
-//! The paper's solution: the limiting shape of a fretted profile in closed form, the judge of every simulation.
+//! The paper's solution: the limiting shape of a fretted profile in closed form, the reference of every simulation.
 //!
 //! \[S\] is "Effect of elastic grading on fretting wear", Scientific Reports, 2019. Nothing here uses the discrete transforms of the
 //! time stepping; the only tools are quadrature and root finding. Where the paper's own form subtracts nearly equal numbers at small

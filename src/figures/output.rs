@@ -32,7 +32,7 @@ impl FigureFile {
             "svg" => Form::Svg,
             "png" => Form::Png,
             _ => {
-                let why = "has a name from which the form cannot be told; end it in .svg or .png".into();
+                let why = "ends neither in .svg nor in .png; give it the ending of one".into();
                 return Err(Error::File { path: path.to_owned(), why });
             }
         };

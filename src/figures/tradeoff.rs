@@ -1,4 +1,4 @@
-//! Error against cost, with the fronts and what the knob `accuracy` costs beside them.
+//! Error against cost, with the fronts and what `accuracy` chooses beside them.
 
 use super::measure::Measure;
 use crate::data::{Dataset, Words};
@@ -11,14 +11,14 @@ use crate::scene::{Cycle, Stepper};
 /// A cost: dataset, name of its fronts, quantity and unit.
 const COSTS: [(&str, &str, &str, &str); 2] =
     [("wall_seconds", "time", "wall time", "s"), ("rate_evaluations", "evaluations", "rate evaluations", "")];
-/// An error: dataset, name of its fronts, and what it is of. The profile is judged at the radii of each run's own file.
+/// An error: dataset, name of its fronts, and what it is of. The profile is compared at the radii of each run's own file.
 const ERRORS: [(&str, &str, &str); 2] = [
     ("volume_error_max", "volume", "error of the worn volume"),
     ("node_error_max", "profile", "error of the profile"),
 ];
 /// Errors below this are shown at it.
 const FLOOR: f64 = 1e-16;
-const KNOB: Colour = Colour([200, 0, 60]);
+const CHOSEN: Colour = Colour([200, 0, 60]);
 
 /// The candidates as far as figures need them.
 struct Candidates<'a> {
@@ -92,7 +92,7 @@ impl Candidates<'_> {
         front.sort_by(|one, other| one[0].total_cmp(&other[0]));
         let style = Style::Line { width: 1.4, dash: Dash::Solid };
         panel.series.push(Series::new("front", style, Colour::BLACK, stairs(&front)).in_legend());
-        self.add_knob(&mut panel, &known, &point);
+        self.add_chosen(&mut panel, &known, &point);
         Ok(panel)
     }
 
@@ -119,15 +119,15 @@ impl Candidates<'_> {
         }
     }
 
-    fn add_knob(&self, panel: &mut Panel, known: &[usize], point: &dyn Fn(usize) -> [f64; 2]) {
+    fn add_chosen(&self, panel: &mut Panel, known: &[usize], point: &dyn Fn(usize) -> [f64; 2]) {
         let asked: Vec<usize> = known.iter().copied().filter(|at| self.accuracies[*at].is_finite()).collect();
         let style = Style::Points { shape: Shape::Diamond, radius: 3.6 };
         let points = asked.iter().map(|at| point(*at)).collect();
-        panel.series.push(Series::new("accuracy", style, KNOB, points).in_legend());
+        panel.series.push(Series::new("accuracy", style, CHOSEN, points).in_legend());
         for at in asked {
             let exponent = self.accuracies[at].log10().round();
             let text = format!("10^{{−{}}}", exponent.abs());
-            panel.labels.push(Label { shift: [6.0, -4.0], ..Label::new(text, point(at), KNOB) });
+            panel.labels.push(Label { shift: [6.0, -4.0], ..Label::new(text, point(at), CHOSEN) });
         }
     }
 

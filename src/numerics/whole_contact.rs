@@ -37,15 +37,15 @@ const BEYOND_DEGREE: usize = 16;
 /// Width of the last of the panels, each half as wide as the one before, over which an end that is not analytic is integrated.
 const LAST_PANEL: f64 = 1e-7;
 
-/// A place between the axis, `y = 0`, and the edge, `y = 1`.
+/// A radius by the coordinate `y` of the mesh, from 0 on the axis to 1 at the edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct Coordinate {
     y: f64,
     /// `1 - y`, to full relative accuracy.
     h: f64,
 }
 
-impl Place {
+impl Coordinate {
     fn inwards(from: Self, distance: f64) -> Self {
         Self { y: from.y - distance, h: from.h + distance }
     }
@@ -59,7 +59,7 @@ pub struct WholeContact {
     /// `m`.
     power: f64,
     /// The inner nodes, outwards, and the edge.
-    nodes: Vec<Place>,
+    nodes: Vec<Coordinate>,
     /// Barycentric weights.
     weights: Vec<f64>,
     /// `ξ` of the nodes.
@@ -82,9 +82,9 @@ impl WholeContact {
         let at_edge = if grading < SOFT { POWER + FALL * grading } else { POWER / (1.0 - grading.min(0.0)) };
         let power = at_edge.min(most).max(1.0);
         let zeros = Rule::jacobi(inner, AT_EDGE, 0.0)?;
-        let mut nodes: Vec<Place> =
-            zeros.nodes.iter().zip(&zeros.complements).map(|(y, h)| Place { y: *y, h: *h }).collect();
-        nodes.push(Place { y: 1.0, h: 0.0 });
+        let mut nodes: Vec<Coordinate> =
+            zeros.nodes.iter().zip(&zeros.complements).map(|(y, h)| Coordinate { y: *y, h: *h }).collect();
+        nodes.push(Coordinate { y: 1.0, h: 0.0 });
         // The factor keeps the products representable.
         let weights = (0..=inner).map(|i| {
             let others = (0..=inner).filter(|j| *j != i);
@@ -103,7 +103,7 @@ impl WholeContact {
             area: vec![],
             nodes,
         };
-        it.fractions = it.nodes.iter().map(|place| it.fraction(*place)).collect();
+        it.fractions = it.nodes.iter().map(|coordinate| it.fraction(*coordinate)).collect();
         let slopes = it.slopes();
         it.fill_profile()?;
         it.fill_pressure(&slopes)?;
@@ -171,29 +171,29 @@ impl WholeContact {
         dot(&self.area, values)
     }
 
-    /// The place with a fraction `ξ` from 0 to 1 of the contact's area.
-    pub fn place(&self, fraction: f64) -> Place {
+    /// The coordinate with a fraction `ξ` from 0 to 1 of the contact's area.
+    pub fn coordinate(&self, fraction: f64) -> Coordinate {
         let root = fraction.sqrt().sqrt();
         let h = (-root).ln_1p() / self.power;
-        Place { y: -h.exp_m1(), h: h.exp() }
+        Coordinate { y: -h.exp_m1(), h: h.exp() }
     }
 
-    /// `ξ` at a place.
-    pub fn fraction(&self, place: Place) -> f64 {
-        self.root(place).powi(4)
+    /// `ξ` at a coordinate.
+    pub fn fraction(&self, coordinate: Coordinate) -> f64 {
+        self.root(coordinate).powi(4)
     }
 
-    /// Value at a place of a polynomial that is given at all nodes.
-    pub fn value(&self, values: &[f64], place: Place) -> f64 {
-        dot(&self.cardinals(place), values)
+    /// Value at a coordinate of a polynomial that is given at all nodes.
+    pub fn value(&self, values: &[f64], coordinate: Coordinate) -> f64 {
+        dot(&self.cardinals(coordinate), values)
     }
 
-    /// Value at a place of the polynomial through the inner nodes alone.
-    pub fn value_inside(&self, inside: &[f64], place: Place) -> f64 {
+    /// Value at a coordinate of the polynomial through the inner nodes alone.
+    pub fn value_inside(&self, inside: &[f64], coordinate: Coordinate) -> f64 {
         // Weights without the edge, of which the distance is what they lack.
         let mut sums = [0.0; 2];
         for ((node, weight), value) in self.nodes.iter().zip(&self.weights).zip(inside) {
-            let away = difference(place, *node);
+            let away = difference(coordinate, *node);
             if away == 0.0 {
                 return *value;
             }
@@ -203,11 +203,11 @@ impl WholeContact {
         sums[0] / sums[1]
     }
 
-    /// Outermost place at which values inside exceed `level`, if they do on the axis or at a node.
-    pub fn last_above(&self, inside: &[f64], level: f64) -> Option<Place> {
+    /// Outermost coordinate at which values inside exceed `level`, if they do on the axis or at a node.
+    pub fn last_above(&self, inside: &[f64], level: f64) -> Option<Coordinate> {
         let mut values = inside.to_vec();
         values.push(0.0);
-        let axis = Place { y: 0.0, h: 1.0 };
+        let axis = Coordinate { y: 0.0, h: 1.0 };
         let above = (0..inside.len()).rev().find(|i| inside[*i] > level);
         let mut low = match above {
             Some(i) => self.nodes[i],
@@ -218,7 +218,7 @@ impl WholeContact {
         }
         let mut high = self.nodes[above.map_or(0, |i| i + 1)];
         for _ in 0..60 {
-            let middle = Place { y: 0.5 * (low.y + high.y), h: 0.5 * (low.h + high.h) };
+            let middle = Coordinate { y: 0.5 * (low.y + high.y), h: 0.5 * (low.h + high.h) };
             if self.value(&values, middle) > level { low = middle } else { high = middle }
         }
         Some(low)
@@ -228,24 +228,24 @@ impl WholeContact {
     ///
     /// # Errors
     /// Those of the quadrature.
-    pub fn up_to(&self, end: Place, inside: &[f64]) -> Result<Vec<[f64; 3]>> {
+    pub fn up_to(&self, end: Coordinate, inside: &[f64]) -> Result<Vec<[f64; 3]>> {
         let mut values = inside.to_vec();
         values.push(0.0);
         let panel = self.panel_at_axis(end, self.nu)?;
         Ok(panel
             .into_iter()
-            .map(|(place, weight)| [self.fraction(place), weight, self.value(&values, place)])
+            .map(|(coordinate, weight)| [self.fraction(coordinate), weight, self.value(&values, coordinate)])
             .collect())
     }
 
     /// `√√ξ = 1 - h^m`.
-    fn root(&self, place: Place) -> f64 {
-        let log = if place.y < 0.5 { (-place.y).ln_1p() } else { place.h.ln() };
+    fn root(&self, coordinate: Coordinate) -> f64 {
+        let log = if coordinate.y < 0.5 { (-coordinate.y).ln_1p() } else { coordinate.h.ln() };
         -(self.power * log).exp_m1()
     }
 
     /// `ξ(outer) - ξ(inner)` of places a distance apart.
-    fn rise(&self, outer: Place, inner: Place, distance: f64) -> f64 {
+    fn rise(&self, outer: Coordinate, inner: Coordinate, distance: f64) -> f64 {
         let of_roots = if outer.h == 0.0 {
             inner.h.powf(self.power)
         } else {
@@ -257,12 +257,12 @@ impl WholeContact {
     }
 
     /// Values of the cardinal polynomials.
-    fn cardinals(&self, place: Place) -> Vec<f64> {
-        if let Some(at) = self.nodes.iter().position(|node| difference(place, *node) == 0.0) {
+    fn cardinals(&self, coordinate: Coordinate) -> Vec<f64> {
+        if let Some(at) = self.nodes.iter().position(|node| difference(coordinate, *node) == 0.0) {
             return (0..self.nodes.len()).map(|j| if j == at { 1.0 } else { 0.0 }).collect();
         }
         let mut cardinals: Vec<f64> =
-            self.nodes.iter().zip(&self.weights).map(|(node, w)| w / difference(place, *node)).collect();
+            self.nodes.iter().zip(&self.weights).map(|(node, w)| w / difference(coordinate, *node)).collect();
         let sum: f64 = cardinals.iter().sum();
         cardinals.iter_mut().for_each(|value| *value /= sum);
         cardinals
@@ -290,7 +290,7 @@ impl WholeContact {
     }
 
     /// Places and weights of `∫_0^ξ(end) ξ^(exponent-1) ... dξ`.
-    fn panel_at_axis(&self, end: Place, exponent: f64) -> Result<Vec<(Place, f64)>> {
+    fn panel_at_axis(&self, end: Coordinate, exponent: f64) -> Result<Vec<(Coordinate, f64)>> {
         let lower = 4.0 * exponent - 1.0;
         let rule = Rule::jacobi(self.rule_size(), 0.0, lower)?;
         let scale = end.y.powf(4.0 * exponent) / exponent * self.power;
@@ -299,9 +299,10 @@ impl WholeContact {
             .iter()
             .zip(&rule.weights)
             .map(|(v, w)| {
-                let place = Place { y: end.y * v, h: 1.0 - end.y * v };
-                let smooth = (self.root(place) / place.y).powf(lower) * place.h.powf(self.power - 1.0);
-                (place, scale * w * smooth)
+                let coordinate = Coordinate { y: end.y * v, h: 1.0 - end.y * v };
+                let smooth =
+                    (self.root(coordinate) / coordinate.y).powf(lower) * coordinate.h.powf(self.power - 1.0);
+                (coordinate, scale * w * smooth)
             })
             .collect())
     }
@@ -315,16 +316,17 @@ impl WholeContact {
             let end = self.nodes[row];
             let half = 0.5 * end.y;
             let mut sum = vec![0.0; self.nodes.len()];
-            let mut add = |place: Place, weight: f64| {
-                for (sum, value) in sum.iter_mut().zip(self.cardinals(place)) {
+            let mut add = |coordinate: Coordinate, weight: f64| {
+                for (sum, value) in sum.iter_mut().zip(self.cardinals(coordinate)) {
                     *sum += prefactor * weight * value;
                 }
             };
-            for (place, weight) in self.panel_at_axis(Place::inwards(end, half), nu)? {
-                add(place, weight * self.rise(end, place, end.y - place.y).powf(-nu));
+            for (coordinate, weight) in self.panel_at_axis(Coordinate::inwards(end, half), nu)? {
+                add(coordinate, weight * self.rise(end, coordinate, end.y - coordinate.y).powf(-nu));
             }
             // Near the node, at a distance below that of the edge first: 1 - √√ξ is a power of the distance from there.
-            let slope = |place: Place| 4.0 * self.root(place).powf(4.0 * nu - 1.0) * self.power;
+            let slope =
+                |coordinate: Coordinate| 4.0 * self.root(coordinate).powf(4.0 * nu - 1.0) * self.power;
             let (first, at_node) = if end.h == 0.0 {
                 (LAST_PANEL, self.power * (1.0 - nu) - 1.0)
             } else {
@@ -333,19 +335,21 @@ impl WholeContact {
             let rule = Rule::jacobi(size, 0.0, at_node)?;
             for (v, w) in rule.nodes.iter().zip(&rule.weights) {
                 let distance = first * v;
-                let place = Place::inwards(end, distance);
-                let kernel = self.rise(end, place, distance).powf(-nu) * place.h.powf(self.power - 1.0);
+                let coordinate = Coordinate::inwards(end, distance);
+                let kernel =
+                    self.rise(end, coordinate, distance).powf(-nu) * coordinate.h.powf(self.power - 1.0);
                 let scale = first.powf(at_node + 1.0) / (at_node + 1.0);
-                add(place, scale * w * slope(place) * kernel * distance.powf(-at_node));
+                add(coordinate, scale * w * slope(coordinate) * kernel * distance.powf(-at_node));
             }
             let mut from = first;
             while from < half {
                 let to = (2.0 * from).min(half);
                 for (v, w) in plain.nodes.iter().zip(&plain.weights) {
                     let distance = from + (to - from) * v;
-                    let place = Place::inwards(end, distance);
-                    let kernel = self.rise(end, place, distance).powf(-nu) * place.h.powf(self.power - 1.0);
-                    add(place, (to - from) * w * slope(place) * kernel);
+                    let coordinate = Coordinate::inwards(end, distance);
+                    let kernel =
+                        self.rise(end, coordinate, distance).powf(-nu) * coordinate.h.powf(self.power - 1.0);
+                    add(coordinate, (to - from) * w * slope(coordinate) * kernel);
                 }
                 from = to;
             }
@@ -365,17 +369,17 @@ impl WholeContact {
             let start = self.nodes[row];
             let half = 0.5 * start.h;
             let mut sum = vec![0.0; self.nodes.len()];
-            let mut add = |place: Place, weight: f64| {
-                for (sum, value) in sum.iter_mut().zip(self.cardinals(place)) {
+            let mut add = |coordinate: Coordinate, weight: f64| {
+                for (sum, value) in sum.iter_mut().zip(self.cardinals(coordinate)) {
                     *sum -= weight * value / PI;
                 }
             };
             let first = start.y.min(half);
             for (v, w) in at_node.nodes.iter().zip(&at_node.weights) {
                 let distance = first * v;
-                let place = Place::inwards(start, -distance);
-                let kernel = (self.rise(place, start, distance) / distance).powf(nu - 1.0);
-                add(place, first.powf(nu) / nu * w * kernel);
+                let coordinate = Coordinate::inwards(start, -distance);
+                let kernel = (self.rise(coordinate, start, distance) / distance).powf(nu - 1.0);
+                add(coordinate, first.powf(nu) / nu * w * kernel);
             }
             let mut panels = vec![];
             let mut from = first;
@@ -394,8 +398,8 @@ impl WholeContact {
             for [from, to] in panels {
                 for (v, w) in plain.nodes.iter().zip(&plain.weights) {
                     let distance = from + (to - from) * v;
-                    let place = Place::inwards(start, -distance);
-                    add(place, (to - from) * w * self.rise(place, start, distance).powf(nu - 1.0));
+                    let coordinate = Coordinate::inwards(start, -distance);
+                    add(coordinate, (to - from) * w * self.rise(coordinate, start, distance).powf(nu - 1.0));
                 }
             }
             for j in 0..self.inner() {
@@ -412,10 +416,10 @@ impl WholeContact {
         let mut sum = vec![0.0; self.nodes.len()];
         let mut whole = 0.0;
         for ((v, complement), w) in rule.nodes.iter().zip(&rule.complements).zip(&rule.weights) {
-            let place = Place { y: *v, h: *complement };
-            let weight = w * (self.root(place) / v).powf(lower);
+            let coordinate = Coordinate { y: *v, h: *complement };
+            let weight = w * (self.root(coordinate) / v).powf(lower);
             whole += weight;
-            for (sum, value) in sum.iter_mut().zip(self.cardinals(place)) {
+            for (sum, value) in sum.iter_mut().zip(self.cardinals(coordinate)) {
                 *sum += weight * value;
             }
         }
@@ -426,7 +430,7 @@ impl WholeContact {
 }
 
 /// `y - y_other`, by the distances from the nearer end.
-fn difference(one: Place, other: Place) -> f64 {
+fn difference(one: Coordinate, other: Coordinate) -> f64 {
     if one.y + other.y < 1.0 { one.y - other.y } else { other.h - one.h }
 }
 

@@ -1,25 +1,25 @@
 //! The measured cost of accuracy: one scene, computed in every way there is.
 //!
-//! Candidates combine stepper, way through a cycle, springs and tolerance; beside them stands what the knob `accuracy` chooses. Each is run
-//! alone for its wall time, its evaluations and its errors at every snapshot. Errors are judged by whatever is known best of that time: the
+//! Candidates combine stepper, way through a cycle, springs and tolerance; beside them stands what `accuracy` chooses. Each is run
+//! alone for its wall time, its evaluations and its errors at every snapshot. Errors are measured against what is known best at that time: the
 //! closed-form limit, the Gibson transient where `1 - k` is tiny, or two runs finer than any candidate, whose difference is their
-//! uncertainty. An error below three times the uncertainty of its judge is given as a bound.
+//! uncertainty. An error below three times that uncertainty is given as a bound.
 //!
 //! Runs that are done are kept in a hidden directory of the program's own inside `DIR` until all are: a measurement that was stopped goes on with the
 //! same command. After the end, or an error, that directory is gone.
 
 mod candidates;
+mod errors;
 mod files;
 mod front;
-mod judge;
 mod measure;
 mod profile;
 mod reference;
 mod report;
 
 pub use candidates::{Candidate, Choice, Ladders};
+pub use errors::{Errors, Measured, ReferenceKind, Worst};
 pub use front::{cheapest, pareto_front};
-pub use judge::{Errors, Measured, ReferenceKind, Worst};
 pub use measure::{Cost, Measurement};
 pub use reference::Reference;
 pub use report::TradeoffReport;
@@ -46,15 +46,15 @@ const PREFLIGHT: f64 = 1e-4;
 /// Passes in which short runs are measured once more.
 const AGAIN: usize = 2;
 
-/// Time for the knob over the time for other candidates: what it chooses is of interest even where it is dear.
-const KNOB_PATIENCE: f64 = 5.0;
+/// Time for what `accuracy` chooses over that for other candidates: it is of interest even where it is dear.
+const PATIENCE: f64 = 5.0;
 
 /// How a scene is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// What is tried.
     pub ladders: Ladders,
-    /// Wall time up to which a candidate by hand is run, s; the knob may take five times, a reference twenty times as long.
+    /// Wall time up to which a candidate by hand is run, s; what `accuracy` chooses may take five times, a reference twenty times as long.
     pub most_seconds: f64,
     /// Most runs of a candidate for its wall time, one after the other; short ones are run twice more after all others, unless this is 1.
     pub repeats: usize,
@@ -87,9 +87,9 @@ pub struct CandidateResult {
     pub errors: Vec<Errors>,
     /// The largest of them.
     pub worst: Option<Worst>,
-    /// Whether it lies on each of [`FRONTS`]; the knob does not.
+    /// Whether it lies on each of [`FRONTS`]; what `accuracy` chooses does not.
     pub on_front: [bool; 4],
-    /// For the knob: its cost over that of the cheapest candidate that is as accurate, in the sense of each of [`FRONTS`].
+    /// Of what `accuracy` chooses: its cost over that of the cheapest candidate that is as accurate, in the sense of each of [`FRONTS`].
     pub over_front: [Option<f64>; 4],
 }
 
@@ -161,7 +161,7 @@ pub struct Outcome {
     pub title: Option<String>,
     /// One row for each candidate.
     pub rows: Vec<CandidateResult>,
-    /// What judged them.
+    /// What they were compared with.
     pub reference: Reference,
     /// Volume, m³, that errors of the volume are relative to: that of the limit, or of the end where there is no limit.
     pub volume_scale: f64,
@@ -209,12 +209,12 @@ impl<'a> Tradeoff<'a> {
             .map(with_scene)
             .collect::<Result<_>>()?;
         // What no candidate could run is refused before anything is written.
-        let knob = Candidate {
-            choice: Choice::Knob(PREFLIGHT),
+        let chosen = Candidate {
+            choice: Choice::Accuracy(PREFLIGHT),
             stepper: Stepper::default(),
             cycle: candidates::cycles(scene)[0],
         };
-        let plain = scene.varied(&knob.numerics(scene), "")?;
+        let plain = scene.varied(&chosen.numerics(scene), "")?;
         Simulation::check(&plain)?;
         files::check_folder(folder, options.overwrite)?;
         if options.keep_runs {
@@ -227,7 +227,7 @@ impl<'a> Tradeoff<'a> {
 
     /// Wall time up to which a candidate is run, s.
     fn patience(&self, candidate: &Candidate) -> f64 {
-        self.options.most_seconds * if candidate.accuracy().is_some() { KNOB_PATIENCE } else { 1.0 }
+        self.options.most_seconds * if candidate.accuracy().is_some() { PATIENCE } else { 1.0 }
     }
 
     /// Number of candidates.
@@ -238,7 +238,7 @@ impl<'a> Tradeoff<'a> {
     /// Measures all candidates and writes `tradeoff.h5` and `tradeoff.csv`; none if it was stopped first. A candidate that fails is a row.
     ///
     /// # Errors
-    /// [`Error::File`] if files cannot be written, [`Error::NotConverged`] if nothing could be run that would judge the candidates.
+    /// [`Error::File`] if files cannot be written, [`Error::NotConverged`] if no reference could be run.
     pub fn execute(self, progress: Option<&dyn Progress>) -> Result<Option<Outcome>> {
         let runs = Runs::new(&self.folder, &self.stop, self.options.repeats)?;
         let outcome = self.execute_in(&runs, progress)?;
@@ -254,13 +254,14 @@ impl<'a> Tradeoff<'a> {
         }
         let Some(measured) = self.measure(runs, progress)? else { return Ok(None) };
         let most_seconds = self.options.most_seconds;
-        let Some((judge, reference)) = reference::judge(self.scene, runs, &measured, most_seconds)? else {
+        let Some((references, reference)) = reference::found(self.scene, runs, &measured, most_seconds)?
+        else {
             return Ok(None);
         };
         let mut rows = vec![];
         for (number, (candidate, measurement)) in measured.into_iter().enumerate() {
             let errors = match measurement.cost() {
-                Some(_) => judge.errors(&runs.read(&name(number))?),
+                Some(_) => references.errors(&runs.read(&name(number))?),
                 None => vec![],
             };
             rows.push(CandidateResult::new(candidate, measurement, errors));
@@ -270,8 +271,8 @@ impl<'a> Tradeoff<'a> {
             title: self.scene.title().map(str::to_owned),
             rows,
             reference,
-            volume_scale: judge.scales[0],
-            depth_scale: judge.scales[1],
+            volume_scale: references.scales[0],
+            depth_scale: references.scales[1],
             files: vec![],
             wall_seconds: self.started.elapsed().as_secs_f64(),
         };
@@ -337,7 +338,7 @@ fn too_dear(
         .filter(|(other, _)| other.is_akin(candidate))
         .filter_map(|(other, measurement)| match other.choice {
             Choice::Hand { springs, tolerance } => Some((springs, tolerance, measurement)),
-            Choice::Knob(_) => None,
+            Choice::Accuracy(_) => None,
         })
         .collect();
     let coarser = |it: &&(usize, f64, &Measurement)| it.0 <= springs && it.1 >= tolerance;
@@ -362,12 +363,12 @@ fn too_dear(
         .then(|| format!("would take some {predicted:.1} s, more than {most_seconds} s"))
 }
 
-/// Finds the fronts, and where the knob stands against them.
+/// Finds the fronts, and where what `accuracy` chooses stands against them.
 fn place_on_fronts(rows: &mut [CandidateResult]) {
     for (number, front) in FRONTS.iter().enumerate() {
         let by_hand = |row: &CandidateResult| match row.candidate.choice {
             Choice::Hand { .. } => front.point(row),
-            Choice::Knob(_) => (f64::NAN, f64::NAN),
+            Choice::Accuracy(_) => (f64::NAN, f64::NAN),
         };
         let points: Vec<(f64, f64)> = rows.iter().map(by_hand).collect();
         for place in pareto_front(&points) {

@@ -25,7 +25,7 @@ use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::numerics::linear::dot;
-use crate::numerics::whole_contact::{Place, WholeContact};
+use crate::numerics::whole_contact::WholeContact;
 
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
 const SHOWN: [usize; 2] = [64, 128];
@@ -283,7 +283,11 @@ impl Model {
 
     pub(super) fn gross_depth_at(&self, gross: &Gross, fields: &Fields, squared: f64) -> f64 {
         let fraction = squared / fields.slip_area;
-        if fraction < 1.0 { gross.mesh.value(&fields.wear_depth, gross.mesh.place(fraction)) } else { 0.0 }
+        if fraction < 1.0 {
+            gross.mesh.value(&fields.wear_depth, gross.mesh.coordinate(fraction))
+        } else {
+            0.0
+        }
     }
 
     pub(super) fn gross_volume(&self, gross: &Gross, fields: &Fields) -> f64 {
@@ -325,12 +329,12 @@ impl Model {
             let loading = self.loading_in(state, self.schedule.loading(state.cycles, state.cycles));
             let (_, cycle, sliding) = self.gross_wear(gross, &loading, &state.compression, &whole);
             for (i, squared) in offsets.iter().enumerate().take_while(|(_, squared)| **squared < whole.area) {
-                let place: Place = mesh.place(squared / whole.area);
-                let elastic = mesh.value(&whole.elastic, place);
+                let coordinate = mesh.coordinate(squared / whole.area);
+                let elastic = mesh.value(&whole.elastic, coordinate);
                 let unworn = self.contact.indenter().profile(squared.sqrt());
                 wear_depth[i] = (whole.indentation - elastic - unworn).max(0.0);
-                pressure[i] = mesh.value_inside(&whole.pressure, place);
-                slip[i] = sliding.slip_at(mesh, &cycle, place).max(0.0);
+                pressure[i] = mesh.value_inside(&whole.pressure, coordinate);
+                slip[i] = sliding.slip_at(mesh, &cycle, coordinate).max(0.0);
             }
         }
         RadialFields { wear_depth, pressure, slip }

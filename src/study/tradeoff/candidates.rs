@@ -1,4 +1,4 @@
-//! What is tried on a scene: every stepper, every way through a cycle, ladders of springs and tolerances, and the knob.
+//! What is tried on a scene: every stepper, every way through a cycle, ladders of springs and tolerances, and what `accuracy` chooses.
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ pub struct Ladders {
     pub springs: Vec<usize>,
     /// Tolerances of the time stepping, falling.
     pub tolerances: Vec<f64>,
-    /// Accuracies asked of the knob, falling.
+    /// Values of `accuracy`, falling.
     pub accuracies: Vec<f64>,
     /// Methods of time stepping.
     pub steppers: Vec<Stepper>,
@@ -89,7 +89,7 @@ pub enum Choice {
         tolerance: f64,
     },
     /// By the accuracy asked for.
-    Knob(f64),
+    Accuracy(f64),
 }
 
 /// One way to compute the scene.
@@ -97,7 +97,7 @@ pub enum Choice {
 pub struct Candidate {
     /// Springs and tolerance, or what decides them.
     pub choice: Choice,
-    /// Method of time stepping; that of the knob is the default.
+    /// Method of time stepping; with `accuracy` the default.
     pub stepper: Stepper,
     /// How a cycle is passed through.
     pub cycle: Cycle,
@@ -107,7 +107,7 @@ impl Candidate {
     /// The table `[numerics]` that asks for it; what else the scene says there about periods is kept.
     pub(super) fn numerics(&self, scene: &Scene) -> String {
         let mut text = match self.choice {
-            Choice::Knob(accuracy) => format!("accuracy = {accuracy:e}\n"),
+            Choice::Accuracy(accuracy) => format!("accuracy = {accuracy:e}\n"),
             Choice::Hand { springs, tolerance } => format!(
                 "springs = {springs}\ntolerance = {tolerance:e}\nstepper = {:?}\ncycle = {:?}\n",
                 self.stepper.name(),
@@ -121,10 +121,10 @@ impl Candidate {
         text
     }
 
-    /// The accuracy asked of the knob.
+    /// The accuracy asked for.
     pub fn accuracy(&self) -> Option<f64> {
         match self.choice {
-            Choice::Knob(accuracy) => Some(accuracy),
+            Choice::Accuracy(accuracy) => Some(accuracy),
             Choice::Hand { .. } => None,
         }
     }
@@ -159,11 +159,11 @@ pub(super) fn candidates(scene: &Scene, ladders: &Ladders) -> Vec<Candidate> {
             }
         }
     }
-    let knob = |&accuracy: &f64| Candidate {
-        choice: Choice::Knob(accuracy),
+    let chosen = |&accuracy: &f64| Candidate {
+        choice: Choice::Accuracy(accuracy),
         stepper: Stepper::default(),
         cycle: cycles(scene)[0],
     };
-    found.extend(ladders.accuracies.iter().map(knob));
+    found.extend(ladders.accuracies.iter().map(chosen));
     found
 }

@@ -32,13 +32,13 @@ pub(super) const READINGS: [Reading<CandidateResult>; 28] = [
     number(
         "accuracy",
         "1",
-        "accuracy asked of the knob; not a number where springs and tolerance were given by hand",
+        "accuracy asked for; not a number where springs and tolerance were given by hand",
         |row| row.candidate.accuracy().into(),
     ),
     number("springs", "1", "springs over the slip annulus, asked for or chosen", |row| {
         match row.candidate.choice {
             Choice::Hand { springs, .. } => springs.into(),
-            Choice::Knob(_) => cost(row, |it| it.springs),
+            Choice::Accuracy(_) => cost(row, |it| it.springs),
         }
     }),
     number(
@@ -47,7 +47,7 @@ pub(super) const READINGS: [Reading<CandidateResult>; 28] = [
         "tolerance of a step over the limit's largest depth, asked for or chosen",
         |row| match row.candidate.choice {
             Choice::Hand { tolerance, .. } => tolerance.into(),
-            Choice::Knob(_) => cost(row, |it| it.tolerance),
+            Choice::Accuracy(_) => cost(row, |it| it.tolerance),
         },
     ),
     number("wall_seconds", "s", "least wall time of a run in memory, setting up included", |row| {
@@ -81,7 +81,7 @@ pub(super) const READINGS: [Reading<CandidateResult>; 28] = [
     number(
         "volume_error_max_bounded",
         "1",
-        "1 where that error is a bound: not clear of the uncertainty of its judge",
+        "1 where that error is a bound: not clear of the uncertainty of its reference",
         |row| worst(row, |it| it.volume.bounded),
     ),
     number("profile_error_max_bounded", "1", "the same of the depth on common radii", |row| {
@@ -90,20 +90,20 @@ pub(super) const READINGS: [Reading<CandidateResult>; 28] = [
     number("node_error_max_bounded", "1", "the same of the depth at own radii", |row| {
         worst(row, |it| it.nodes.bounded)
     }),
-    // On which of the fronts it lies, and the cost of the knob over theirs.
+    // On which of the fronts it lies, and the cost of what `accuracy` chose over theirs.
     number("front_volume_time", "1", "1 on the front of volume error against wall time", |row| {
         row.on_front[0].into()
     }),
     number(
-        "knob_volume_time",
+        "chosen_volume_time",
         "1",
-        "wall time of the knob over that of the cheapest candidate with at most its volume error",
+        "wall time of what accuracy chose over that of the cheapest candidate with at most its volume error",
         |row| row.over_front[0].into(),
     ),
     number("front_profile_time", "1", "1 on the front of profile error against wall time", |row| {
         row.on_front[1].into()
     }),
-    number("knob_profile_time", "1", "the same with the profile error", |row| row.over_front[1].into()),
+    number("chosen_profile_time", "1", "the same with the profile error", |row| row.over_front[1].into()),
     number(
         "front_volume_evaluations",
         "1",
@@ -111,9 +111,9 @@ pub(super) const READINGS: [Reading<CandidateResult>; 28] = [
         |row| row.on_front[2].into(),
     ),
     number(
-        "knob_volume_evaluations",
+        "chosen_volume_evaluations",
         "1",
-        "evaluations of the knob over those of the cheapest candidate with at most its volume error",
+        "evaluations of what accuracy chose over those of the cheapest candidate with at most its volume error",
         |row| row.over_front[2].into(),
     ),
     number(
@@ -122,32 +122,33 @@ pub(super) const READINGS: [Reading<CandidateResult>; 28] = [
         "1 on the front of profile error against rate evaluations",
         |row| row.on_front[3].into(),
     ),
-    number("knob_profile_evaluations", "1", "the same with the profile error", |row| {
+    number("chosen_profile_evaluations", "1", "the same with the profile error", |row| {
         row.over_front[3].into()
     }),
 ];
 
-const WHO: &str =
-    "who judged: 0 nobody, 1 the closed-form limit, 2 the Gibson transient, 3 the reference run";
+const WHO: &str = "what the error is measured against: 0 nothing, 1 the closed-form limit, 2 the Gibson transient, 3 the reference run";
 
 /// All that is told of a candidate at a snapshot.
 const AT_SNAPSHOTS: [Reading<Errors>; 14] = [
     number("cycles", "1", "number of cycles", |it| it.cycles.into()),
     number("tau", "1", "dimensionless time", |it| it.tau.into()),
     number("wear_volume", "m3", "worn volume", |it| it.wear_volume.into()),
-    number("wear_volume_judge", "m3", "worn volume of the judge", |it| it.wear_volume_judge.into()),
-    number("volume_judge", "1", WHO, |it| (it.sources[0] as usize).into()),
-    number("profile_judge", "1", WHO, |it| (it.sources[1] as usize).into()),
+    number("wear_volume_reference", "m3", "worn volume of the reference", |it| {
+        it.wear_volume_reference.into()
+    }),
+    number("volume_reference", "1", WHO, |it| (it.sources[0] as usize).into()),
+    number("profile_reference", "1", WHO, |it| (it.sources[1] as usize).into()),
     number(
         "volume_uncertainty",
         "1",
-        "uncertainty of the judge in the volume, over that of the limit",
+        "uncertainty of the reference in the volume, over that of the limit",
         |it| it.uncertainty[0].into(),
     ),
     number(
         "profile_uncertainty",
         "1",
-        "uncertainty of the judge in the depth, over the largest of the limit",
+        "uncertainty of the reference in the depth, over the largest of the limit",
         |it| it.uncertainty[1].into(),
     ),
     number("volume_error", "1", "error of the worn volume over the volume of the limit", |it| {

@@ -3,7 +3,7 @@
 /// An error below another by less than this part of it is no smaller: the last digits are worth no cost.
 const SAME_ERROR: f64 = 1e-2;
 
-/// Those of some candidates that no other beats: at most as dear and at most as wrong, and better in one of the two. An error that is
+/// The Pareto front: candidates for which no other is at least as cheap and as accurate, and better in one of the two. An error that is
 /// smaller by less than a hundredth is the same.
 ///
 /// # Arguments

@@ -1,9 +1,9 @@
-//! Runs finer than any candidate, by which candidates are judged.
+//! Runs finer than any candidate, with which candidates are compared.
 
 use std::collections::BTreeSet;
 
 use super::candidates::{Candidate, Choice, cycles};
-use super::judge::Judge;
+use super::errors::References;
 use super::measure::{Cost, Measurement, Runs};
 use super::name as candidate_name;
 use crate::data::SAME_CYCLES;
@@ -24,7 +24,7 @@ const TOLERANCES: [f64; 2] = [0.25, 0.5];
 /// Powers of the number of steps with which the tolerance falls: those of methods of orders 2 to 4.
 const POWERS: [f64; 2] = [3.0, 5.0];
 
-/// The runs that candidates were judged by.
+/// The runs that candidates were compared with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
     /// Springs of both, the finer first.
@@ -42,21 +42,21 @@ pub(super) fn name(number: usize) -> String {
     format!("reference{number}")
 }
 
-/// The judge of all candidates; none if a signal came.
+/// What all candidates are compared with; none if a signal came.
 ///
 /// # Errors
 /// [`Error::NotConverged`] if no reference could be run; [`Error::File`] concerns all runs.
-pub(super) fn judge(
+pub(super) fn found(
     scene: &Scene,
     runs: &Runs,
     measured: &[(Candidate, Measurement)],
     most_seconds: f64,
-) -> Result<Option<(Judge, Reference)>> {
-    let unjudged = |why: String| Error::NotConverged { what: "reference of the trade-off", why };
+) -> Result<Option<(References, Reference)>> {
+    let unknown = |why: String| Error::NotConverged { what: "reference of the trade-off", why };
     let Some(Finest { cost: finest, tolerance, power }) = finest(scene, measured) else {
         let reasons: BTreeSet<&str> = measured.iter().map(|it| it.1.reason()).collect();
         let reasons: Vec<&str> = reasons.into_iter().filter(|why| !why.is_empty()).take(3).collect();
-        return Err(unjudged(format!("no candidate came to its end: {}", reasons.join("; "))));
+        return Err(unknown(format!("no candidate came to its end: {}", reasons.join("; "))));
     };
     let times = times(runs, measured)?;
     let mut reason = String::new();
@@ -72,7 +72,7 @@ pub(super) fn judge(
             Some(Err(why)) => reason = why,
         }
     }
-    Err(unjudged(reason))
+    Err(unknown(reason))
 }
 
 /// What is known of the candidates by hand, of the default method where that came to an end.
@@ -156,7 +156,7 @@ impl Plan {
         scene: &Scene,
         runs: &Runs,
         times: &[f64],
-    ) -> Result<Option<std::result::Result<(Judge, Reference), String>>> {
+    ) -> Result<Option<std::result::Result<(References, Reference), String>>> {
         let patch = format!(
             "loading = {{ cycles = {:e} }}\noutput = {{ at_cycles = [{}] }}",
             times.last().copied().unwrap_or(f64::NAN),
@@ -176,14 +176,14 @@ impl Plan {
             }
             files.push(runs.read(&name)?);
         }
-        let judge = Judge::new(scene, files.try_into().expect("two were pushed"))?;
+        let references = References::new(scene, files.try_into().expect("two were pushed"))?;
         let of = |number: usize| &costs[number];
         let reference = Reference {
             springs: [0, 1].map(|it| of(it).springs),
             tolerance: [0, 1].map(|it| of(it).tolerance),
             wall_seconds: [0, 1].map(|it| of(it).wall_seconds),
-            uncertainty: judge.largest_uncertainty(),
+            uncertainty: references.largest_uncertainty(),
         };
-        Ok(Some(Ok((judge, reference))))
+        Ok(Some(Ok((references, reference))))
     }
 }

@@ -24,7 +24,7 @@ pub struct TradeoffReport {
     pub volume_scale: f64,
     /// Depth that errors of the profile are relative to, m.
     pub depth_scale: f64,
-    /// The runs that judged where nothing else was known better.
+    /// The finer runs, with which errors are measured where nothing else is known better.
     pub reference: ReferenceReport,
     /// The fronts by name; each a list of places in `candidates`, by rising cost.
     pub fronts: Entries<Vec<usize>>,
@@ -32,7 +32,7 @@ pub struct TradeoffReport {
     pub candidates: Vec<CandidateReport>,
 }
 
-/// The runs that judged, the finer first.
+/// The two finer runs, the finest first.
 #[derive(Debug, Clone, Serialize)]
 pub struct ReferenceReport {
     /// Springs of both.
@@ -64,22 +64,22 @@ pub struct CandidateReport {
     node_error: Option<f64>,
     /// Which of the three are bounds.
     bounded: Option<[bool; 3]>,
-    /// For the knob: its cost over that of the cheapest candidate by hand with at most its error, by front; null where no candidate by hand is as
+    /// Of what `accuracy` chose: its cost over that of the cheapest candidate by hand with at most its error, by front; null where no candidate by hand is as
     /// accurate.
     over_front: Option<Entries>,
     /// The snapshots after the start.
     snapshots: Vec<SnapshotReport>,
 }
 
-/// Errors of one snapshot; null where nobody could judge.
+/// Errors of one snapshot; null where nothing is known.
 #[derive(Debug, Clone, Serialize)]
 struct SnapshotReport {
     cycles: f64,
     tau: f64,
-    /// Who judged volume and depth: `none`, `limit`, `gibson` or `reference`.
-    judges: [&'static str; 2],
+    /// What volume and depth are compared with: `none`, `limit`, `gibson` or `reference`.
+    references: [&'static str; 2],
     wear_volume: f64,
-    wear_volume_judge: f64,
+    wear_volume_reference: f64,
     volume_error: f64,
     profile_error: f64,
     node_error: f64,
@@ -93,9 +93,9 @@ impl SnapshotReport {
         Self {
             cycles: errors.cycles,
             tau: errors.tau,
-            judges: errors.sources.map(ReferenceKind::name),
+            references: errors.sources.map(ReferenceKind::name),
             wear_volume: errors.wear_volume,
-            wear_volume_judge: errors.wear_volume_judge,
+            wear_volume_reference: errors.wear_volume_reference,
             volume_error: errors.volume.value,
             profile_error: errors.profile.value,
             node_error: errors.nodes.value,
@@ -152,7 +152,7 @@ impl TradeoffReport {
         TableFile::new(&path, overwrite)?.write(&json(self))
     }
 
-    /// The fronts and the knob for people.
+    /// The fronts, and what `accuracy` chose, for people.
     pub fn text(&self, outcome: &Outcome) -> String {
         let mut text = self.title.as_ref().map_or(String::new(), |title| format!("{title}\n\n"));
         for front in &FRONTS {
@@ -165,7 +165,7 @@ impl TradeoffReport {
         }
         let _ = writeln!(
             text,
-            "The knob, and its wall time over that of the fronts of volume and profile\n{HEADER}"
+            "What accuracy chose, and its wall time over that of the fronts of volume and profile\n{HEADER}"
         );
         for row in &outcome.rows {
             let Some(accuracy) = row.candidate.accuracy() else { continue };
@@ -183,7 +183,7 @@ impl TradeoffReport {
         rows.row("candidates", counts.join(", "));
         let reference = &self.reference;
         rows.row(
-            "judged by the limit where reached, else by",
+            "compared with the limit where reached, else with",
             format!(
                 "{} springs, tolerance {}; uncertain by {:.1e} (volume), {:.1e} (profile)",
                 reference.springs[0],
@@ -205,7 +205,7 @@ const HEADER: &str = "  stepper      cycle        springs  tolerance   wall time
 fn places(front: &Front, rows: &[CandidateResult]) -> Vec<usize> {
     let points = rows.iter().map(|row| match row.candidate.choice {
         Choice::Hand { .. } => front.point(row),
-        Choice::Knob(_) => (f64::NAN, f64::NAN),
+        Choice::Accuracy(_) => (f64::NAN, f64::NAN),
     });
     pareto_front(&points.collect::<Vec<_>>())
 }

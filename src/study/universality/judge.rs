@@ -86,7 +86,7 @@ impl Judgement {
     pub(super) fn new(scene: &Scene, run: &RunFile) -> Result<Self> {
         let nothing = |why: &str| Error::Inconsistent { what: "the limit of this run", why: why.to_owned() };
         let last = run.snapshots.last().ok_or_else(|| nothing("it has no snapshot"))?;
-        let Course { stick_radius, indentation } = Course::of(&run.snapshots);
+        let Extremes { stick_radius, indentation } = Extremes::of(&run.snapshots);
         if stick_radius.is_nan() || stick_radius <= 0.0 {
             return Err(nothing("nothing sticks throughout"));
         }
@@ -143,13 +143,13 @@ impl Judgement {
     }
 }
 
-/// What the limit depends on.
-struct Course {
+/// What the limit depends on: the smallest stick radius and the largest indentation of a run.
+struct Extremes {
     stick_radius: f64,
     indentation: f64,
 }
 
-impl Course {
+impl Extremes {
     fn of(snapshots: &[Snapshot]) -> Self {
         let indentations: Vec<f64> = snapshots.iter().map(|it| it.indentation).collect();
         Self {

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use faer::Mat;
 
 use super::{Gross, Whole};
-use crate::numerics::whole_contact::{Place, WholeContact};
+use crate::numerics::whole_contact::{Coordinate, WholeContact};
 use crate::solver::model::cycle::Surface;
 use crate::solver::model::motion::{Bearing, Energies, Motion};
 use crate::solver::model::schedule::CycleLoading;
@@ -53,7 +53,7 @@ struct Stick {
 }
 
 impl ClosedForm {
-    /// `M s/μ`, m, at a place where `F b` is given; without the springs that stick, for which `F` has taken `M U/μ - b` as well.
+    /// `M s/μ`, m, at a coordinate where `F b` is given; without the springs that stick, for which `F` has taken `M U/μ - b` as well.
     fn slip_depth(&self, carried: f64, fraction: f64) -> f64 {
         let Some(stick) = &self.stick else { return self.level - carried };
         if fraction <= stick.fraction {
@@ -68,14 +68,14 @@ impl ClosedForm {
 }
 
 impl Sliding {
-    /// Slip amplitude, m, at a place.
-    pub(super) fn slip_at(&self, mesh: &WholeContact, cycle: &CycleFields, place: Place) -> f64 {
+    /// Slip amplitude, m, at a coordinate.
+    pub(super) fn slip_at(&self, mesh: &WholeContact, cycle: &CycleFields, coordinate: Coordinate) -> f64 {
         match &self.closed {
             Some(closed) => {
-                let carried = mesh.value(&closed.carried, place);
-                closed.per_depth * closed.slip_depth(carried, mesh.fraction(place))
+                let carried = mesh.value(&closed.carried, coordinate);
+                closed.per_depth * closed.slip_depth(carried, mesh.fraction(coordinate))
             }
-            None => mesh.value_inside(&cycle.slip, place),
+            None => mesh.value_inside(&cycle.slip, coordinate),
         }
     }
 }
@@ -109,7 +109,7 @@ impl Model {
             None => {
                 // At the edge the polynomial through the other nodes.
                 let mut all = depth.clone();
-                all.push(mesh.value_inside(&depth, mesh.place(1.0)));
+                all.push(mesh.value_inside(&depth, mesh.coordinate(1.0)));
                 PI * whole.area * mesh.area(&all)
             }
         };

@@ -7,13 +7,13 @@ use crate::error::Result;
 use crate::numerics::curve::distance_from_curve;
 use crate::scene::Scene;
 
-/// An error is a number of its own from so many times the uncertainty of the judge on; below it is bounded.
+/// An error is a number of its own from so many times the uncertainty of the reference on; below it is bounded.
 const CLEAR: f64 = 3.0;
 
-/// Who judged a snapshot.
+/// What a snapshot is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReferenceKind {
-    /// Nobody: the reference has no snapshot of that time, and the limit is far.
+    /// Nothing: the finer run has no snapshot of that time, and the limit is far.
     None,
     /// The closed-form limit.
     Limit,
@@ -41,14 +41,14 @@ impl ReferenceKind {
 /// An error as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
-    /// The error, or its bound: what was found and the uncertainty of the judge together.
+    /// The error, or its bound: what was found and the uncertainty of the reference together.
     pub value: f64,
     /// Whether it is only a bound.
     pub bounded: bool,
 }
 
 impl Measured {
-    /// From what was found against a judge who may be off himself.
+    /// From what was found against a reference of some uncertainty.
     ///
     /// ```
     /// use fretwear::study::tradeoff::Measured;
@@ -74,11 +74,11 @@ pub struct Errors {
     pub tau: f64,
     /// Its worn volume, m³.
     pub wear_volume: f64,
-    /// That of the judge, m³.
-    pub wear_volume_judge: f64,
-    /// Who judged volume and depth.
+    /// That of the reference, m³.
+    pub wear_volume_reference: f64,
+    /// What volume and depth were compared with.
     pub sources: [ReferenceKind; 2],
-    /// Uncertainty of the judge in the volume and in the depth.
+    /// Uncertainty of the reference in the volume and in the depth.
     pub uncertainty: [f64; 2],
     /// Error of the worn volume.
     pub volume: Measured,
@@ -100,10 +100,10 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// None where no snapshot could be judged.
+    /// None where no snapshot could be compared.
     pub fn of(errors: &[Errors]) -> Option<Self> {
-        let judged = errors.iter().filter(|it| !it.sources.contains(&ReferenceKind::None));
-        judged.map(|it| Self { volume: it.volume, profile: it.profile, nodes: it.nodes }).reduce(|a, b| {
+        let compared = errors.iter().filter(|it| !it.sources.contains(&ReferenceKind::None));
+        compared.map(|it| Self { volume: it.volume, profile: it.profile, nodes: it.nodes }).reduce(|a, b| {
             Self {
                 volume: a.volume.larger(b.volume),
                 profile: a.profile.larger(b.profile),
@@ -113,8 +113,8 @@ impl Worst {
     }
 }
 
-/// What somebody holds to be right, and how far he may be off.
-struct Truth<T> {
+/// A value to compare with, and how far it may be off.
+struct Known<T> {
     source: ReferenceKind,
     uncertainty: f64,
     value: T,
@@ -123,15 +123,15 @@ struct Truth<T> {
 /// Depths, m, at radii, m.
 type Depths<'a> = Box<dyn Fn(&[f64]) -> Vec<f64> + 'a>;
 
-/// Whoever is least uncertain. A limit that is far off, or a medium far from Gibson's, is no judge even where there is no other.
-fn best<T>(all: impl IntoIterator<Item = Truth<T>>) -> Option<Truth<T>> {
+/// The least uncertain. A limit that is far off, or a medium far from Gibson's, is no reference even where there is no other.
+fn best<T>(all: impl IntoIterator<Item = Known<T>>) -> Option<Known<T>> {
     const TOO_UNCERTAIN: f64 = 0.1;
     let usable = all.into_iter().filter(|it| it.uncertainty < TOO_UNCERTAIN);
     usable.min_by(|a, b| a.uncertainty.total_cmp(&b.uncertainty))
 }
 
-/// All that runs are judged by.
-pub(super) struct Judge {
+/// All that runs are compared with.
+pub(super) struct References {
     shape: Shape,
     /// First contact radius, m, where the edge of stick moves over the ground: there the profile is steep at places that are known to the error of that
     /// edge, and what is measured is the distance of the curves, of depth over the largest or of radius over this one.
@@ -147,7 +147,7 @@ pub(super) struct Judge {
     pub(super) scales: [f64; 2],
 }
 
-impl Judge {
+impl References {
     /// From two runs, of which the first is the finer.
     ///
     /// # Errors
@@ -171,11 +171,11 @@ impl Judge {
             true => GibsonTransient::from_contact(&contact)?.map(|it| (it, 1.0 - grading)),
             false => None,
         };
-        let mut judge =
+        let mut references =
             Self { shape, moves_at, limit, gibson, reference, uncertainty: vec![], to_limit: vec![], scales };
-        judge.uncertainty = judge.difference(&other);
-        judge.to_limit = judge.distances_to_limit();
-        Ok(judge)
+        references.uncertainty = references.difference(&other);
+        references.to_limit = references.distances_to_limit();
+        Ok(references)
     }
 
     /// Largest differences of the references over all snapshots: volume and depth.
@@ -241,18 +241,18 @@ impl Judge {
     }
 
     /// The worn volume, m³, after some cycles.
-    fn volume(&self, cycles: f64, tau: f64) -> Option<Truth<f64>> {
-        let reference = self.reference_at(cycles).map(|(it, uncertainty)| Truth {
+    fn volume(&self, cycles: f64, tau: f64) -> Option<Known<f64>> {
+        let reference = self.reference_at(cycles).map(|(it, uncertainty)| Known {
             source: ReferenceKind::Reference,
             uncertainty: uncertainty[0],
             value: it.wear_volume,
         });
-        let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
+        let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Known {
             source: ReferenceKind::Limit,
             uncertainty,
             value: limit.wear_volume(),
         });
-        let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Truth {
+        let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Known {
             source: ReferenceKind::Gibson,
             uncertainty: *uncertainty,
             value: gibson.wear_volume(tau),
@@ -261,19 +261,19 @@ impl Judge {
     }
 
     /// The wear depths after some cycles.
-    fn depths(&self, cycles: f64, tau: f64) -> Option<Truth<Depths<'_>>> {
+    fn depths(&self, cycles: f64, tau: f64) -> Option<Known<Depths<'_>>> {
         let own = &self.reference.header.radius;
-        let reference = self.reference_at(cycles).map(|(it, uncertainty)| Truth {
+        let reference = self.reference_at(cycles).map(|(it, uncertainty)| Known {
             source: ReferenceKind::Reference,
             uncertainty: uncertainty[1],
             value: Box::new(move |radii: &[f64]| self.shape.depth_at(own, it, radii)) as Depths,
         });
-        let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Truth {
+        let limit = self.limit_at(cycles).map(|(limit, uncertainty)| Known {
             source: ReferenceKind::Limit,
             uncertainty,
             value: Box::new(move |radii: &[f64]| limit_depths(limit, radii)) as Depths,
         });
-        let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Truth {
+        let gibson = self.gibson.as_ref().map(|(gibson, uncertainty)| Known {
             source: ReferenceKind::Gibson,
             uncertainty: *uncertainty,
             value: Box::new(move |radii: &[f64]| radii.iter().map(|r| gibson.wear_depth(*r, tau)).collect())
@@ -293,7 +293,7 @@ impl Judge {
             cycles: snapshot.cycles,
             tau: snapshot.tau,
             wear_volume: snapshot.wear_volume,
-            wear_volume_judge: f64::NAN,
+            wear_volume_reference: f64::NAN,
             sources: [ReferenceKind::None; 2],
             uncertainty: [f64::NAN; 2],
             volume: unknown,
@@ -303,7 +303,7 @@ impl Judge {
         if let Some(truth) = self.volume(snapshot.cycles, snapshot.tau) {
             let found = (snapshot.wear_volume - truth.value).abs() / self.scales[0];
             errors.volume = Measured::new(found, truth.uncertainty);
-            errors.wear_volume_judge = truth.value;
+            errors.wear_volume_reference = truth.value;
             (errors.sources[0], errors.uncertainty[0]) = (truth.source, truth.uncertainty);
         }
         if let Some(truth) = self.depths(snapshot.cycles, snapshot.tau) {
