@@ -3,11 +3,13 @@
 mod support;
 
 use faer::Mat;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use fretwear::contact::spring::{Neighbours, Response, Shakedown, SpringCycle, steady_cycle};
+use fretwear::contact::spring::{Neighbours, Response, Shakedown, SpringCycle, Steps, steady_cycle};
 use fretwear::laws::conditions::Conditions;
-use fretwear::laws::motion::{NormalOscillation, SampledPath};
+use fretwear::laws::friction::Coulomb;
+use fretwear::laws::motion::{NormalOscillation, Orbit, SampledPath};
 use fretwear::numerics::grid::Clustering;
 use fretwear::solver::model::{Model, State};
 use fretwear::solver::simulation::{End, Plan, Simulation};
@@ -171,8 +173,13 @@ fn slopes_of_growth_are_those_of_differences_in_every_mode_under_every_law() {
             }
         }
         worst = worst.max(error / whole);
-        // Differences of 1e-6 leave 1e-4; on a circle the table has kinks and the slip turns with the compression.
-        let allowed = if name.starts_with("circle") { 3e-2 } else { 5e-4 };
+        // Differences of 1e-6 leave 1e-4. On an orbit the slip turns with the compression, where slopes take its direction as given, and on a circle the
+        // table has kinks as well.
+        let allowed = match &name {
+            name if name.starts_with("circle") => 3e-2,
+            name if name.contains("ellipse") => 5e-3,
+            _ => 5e-4,
+        };
         if error > allowed * whole {
             failed.push(format!("{name}: {:e}", error / whole));
         }
@@ -272,6 +279,16 @@ fn every_stepper_wears_alike_with_closed_and_with_resolved_cycles() {
     }
 }
 
+/// Length of the slip that is given at nodes, x and y in turn: at one of a pair it may go against the other.
+fn path_of(slip: &[f64], paired: bool) -> f64 {
+    let node = |m: usize| [slip[2 * m], slip[2 * m + 1]];
+    let along = |m: usize| {
+        let ([x, y], [other_x, other_y]) = (node(m), node(if paired { m ^ 1 } else { m }));
+        x.hypot(y) * if x * (x + other_x) + y * (y + other_y) < 0.0 { -1.0 } else { 1.0 }
+    };
+    (0..slip.len() / 2).map(along).sum()
+}
+
 #[test]
 fn the_table_of_an_orbit_is_that_of_its_springs() {
     let case = Case::new(2.0, 0.0, 0.7, 20);
@@ -285,9 +302,9 @@ fn the_table_of_an_orbit_is_that_of_its_springs() {
         assert!(Response::new(&path).unwrap() == table, "{name}: another table");
         let law = *contact.friction();
         let mut cycle = SpringCycle::default();
-        let mut slip = vec![0.0; 2 * path.points.len()];
+        let mut slip = vec![0.0; table.columns()];
         let free: f64 = path.length();
-        let (mut error, mut path_error, mut periods) = (0.0_f64, 0.0_f64, 0);
+        let (mut energy_error, mut path_error, mut periods) = (0.0_f64, 0.0_f64, 0);
         let mut times = 0.0;
         // Irrational steps, so that no limit is one of the table.
         for i in 0..2000 {
@@ -298,21 +315,17 @@ fn the_table_of_an_orbit_is_that_of_its_springs() {
             steady_cycle(&path, &law, 1.0, limit, &Shakedown::default(), &mut cycle);
             times += start.elapsed().as_secs_f64();
             periods = periods.max(cycle.periods);
-            table.at(limit, &mut slip, None);
-            let exact: Vec<f64> = cycle.slip.iter().flatten().copied().collect();
-            error = error.max(
-                distance(&exact, &slip)
-                    / largest(&cycle.slip.iter().flatten().copied().collect::<Vec<_>>())
-                        .max(1e-3 * amplitude),
-            );
-            let total: f64 = slip.chunks(2).map(|s| s[0].hypot(s[1])).sum();
+            let [dissipation, _] = table.at(limit, &mut slip, None);
+            energy_error = energy_error.max((dissipation - cycle.dissipation).abs() / (amplitude * free));
+            let total = path_of(&slip, table.is_paired());
             path_error = path_error.max((total - cycle.slip_path).abs() / free);
         }
         println!(
-            "{name}: substep {error:e}, path {path_error:e}, periods {periods}, built in {built:?}, direct {:e} s each",
+            "{name}: energy {energy_error:e}, path {path_error:e}, periods {periods}, built in {built:?}, direct {:e} s each",
             times / 2000.0
         );
-        assert!(path_error < 1e-4, "{name}: {path_error:e}");
+        // Where slip begins within a step of one spring its path is of second order in the step.
+        assert!(energy_error < 1e-4 && path_error < 1e-3, "{name}: {energy_error:e}, {path_error:e}");
     }
 }
 
@@ -320,7 +333,7 @@ fn the_table_of_an_orbit_is_that_of_its_springs() {
 fn springs_that_begin_near_the_ones_before_repeat_what_springs_from_rest_do() {
     let case = Case::new(2.0, 0.0, 0.7, 20);
     let contact = case.contact();
-    let law = fretwear::laws::friction::Coulomb { coefficient: 1.0 };
+    let law = Coulomb { coefficient: 1.0 };
     for (name, mode) in laws::modes(&contact).into_iter().skip(3) {
         let path = SampledPath::new(&*mode, contact.amplitude(), contact.indentation(), 96).path;
         let mut springs = Neighbours::new(&path).unwrap();
@@ -338,6 +351,64 @@ fn springs_that_begin_near_the_ones_before_repeat_what_springs_from_rest_do() {
         println!("{name}: {worst:?}");
         // Springs from rest next to the one that sticks may not have come to an end in their thousand periods.
         assert!(worst[0] < 1e-5 && worst[1] < 1e-5, "{name}: {worst:?}");
+    }
+}
+
+#[test]
+fn springs_through_steps_do_what_they_do_from_corner_to_corner() {
+    let (amplitude, slope) = (2.0, 0.5);
+    for (lift, ratio, phase) in
+        [(0.1, [1, 1], 1.0), (0.3, [2, 1], 0.4), (1.5, [1, 1], 0.9), (3.0, [3, 2], 0.6), (2.5, [1, 2], 2.0)]
+    {
+        let mode = NormalOscillation { amplitude: lift, frequency_ratio: ratio, phase };
+        let path = SampledPath::with_turns(&mode, amplitude, 2.0, 512, slope).path;
+        let steps = Steps::new(path, 64, slope).unwrap();
+        let law = Coulomb { coefficient: slope };
+        let mut cycle = SpringCycle::default();
+        let [mut slip, mut slopes, mut before, mut after] = [(); 4].map(|()| vec![0.0; steps.columns()]);
+        let mut worst = [0.0_f64; 3];
+        for i in 1..400 {
+            let compression = 4.0 * 2.0 * lift.max(amplitude) * (0.618_033_988_75 * f64::from(i)).fract();
+            steady_cycle(steps.path(), &law, 1.0, compression, &Shakedown::default(), &mut cycle);
+            let passed = steps.pass(compression, &mut slip, &mut slopes);
+            let total: f64 = slip.chunks(2).map(|pair| (pair[0] + pair[1]).abs()).sum();
+            let [h, scale] = [1e-7, amplitude];
+            steps.pass(compression - h, &mut before, &mut []);
+            steps.pass(compression + h, &mut after, &mut []);
+            let slope_errors: Vec<f64> =
+                (0..slip.len()).map(|m| (after[m] - before[m]) / (2.0 * h) - slopes[m]).collect();
+            worst[0] =
+                worst[0].max((total - cycle.slip_path).abs().max((passed.slip_path - total).abs()) / scale);
+            worst[1] = worst[1].max((passed.dissipation - cycle.work).abs() / (scale * scale));
+            worst[2] = worst[2].max(largest(&slope_errors));
+        }
+        println!("{lift}, {ratio:?}: {worst:?}");
+        assert!(worst[0] < 1e-12 && worst[1] < 1e-12 && worst[2] < 1e-5, "{lift}, {ratio:?}: {worst:?}");
+    }
+}
+
+#[test]
+fn the_wear_of_an_orbit_is_of_second_order_in_the_substeps() {
+    for (transverse, phase) in [(0.6, 0.0), (0.7, 0.5), (1.0, FRAC_PI_2)] {
+        let case = Case::new(2.0, 0.0, 0.7, 24);
+        let contact = case.contact();
+        let transverse_amplitude = transverse * contact.amplitude();
+        let mode = Orbit { transverse_amplitude, phase, centre: [0.0; 2] };
+        let conditions = Conditions { mode: Arc::new(mode), ..laws::plain(&contact) };
+        let depth = |substeps: usize| -> Vec<f64> {
+            let model = laws::model(&case, &conditions, Some(substeps));
+            let state = some_compression(&model);
+            let fields = model.fields(&state);
+            let cycle = model.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields);
+            cycle.growth.iter().zip(&fields.slip_depth).map(|(growth, slip)| growth * slip).collect()
+        };
+        let finest = depth(6144);
+        let errors: Vec<f64> = [96, 192, 384, 768]
+            .map(|substeps| distance(&depth(substeps), &finest) / largest(&finest))
+            .to_vec();
+        let mean = orders(&errors).iter().sum::<f64>() / 3.0;
+        println!("{transverse}, {phase}: {errors:?}, order {mean:.2}");
+        assert!(mean > 1.8 && errors[1] < 1e-3, "{errors:?}: {mean}");
     }
 }
 

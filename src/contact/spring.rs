@@ -19,12 +19,13 @@ mod neighbours;
 mod response;
 mod steps;
 mod stick;
+mod turns;
 
 use std::ops::ControlFlow;
 
 pub use neighbours::Neighbours;
 pub use response::Response;
-pub use steps::Steps;
+pub use steps::{PassedSteps, Steps};
 pub use stick::stick_compression;
 
 use crate::laws::friction::FrictionLaw;

@@ -1,32 +1,37 @@
 //! Springs that slip for ever on a path at constant indentation, one after the other.
 
 use super::enclosing::{Circle, smallest_enclosing};
-use super::{
-    Shakedown, Spring, SpringCycle, difference, general_period, length, newton, periodic, scaled, sum,
-};
+use super::{Shakedown, Spring, SpringCycle, difference, dot, general_period, length, periodic, scaled, sum};
 use crate::laws::friction::Coulomb;
 use crate::laws::path::Path;
 
 /// Change of the deflection over a period, over its limit, below which the spring repeats itself, and the rounds in which it is to come to that from a
 /// deflection nearby.
-const PERIODIC: f64 = 1e-11;
-const ROUNDS: usize = 8;
+const PERIODIC: f64 = 1e-10;
+const ROUNDS: usize = 16;
+
+/// Largest part of a change that the one a period later may be for what follows from it to be summed up.
+const SLOWEST: f64 = 0.999;
 
 /// Difference of two places, over the reach of the path, that is round-off.
 const SAME: f64 = 1e-13;
 
 /// Springs that slip for ever on a path at constant indentation, without a static coefficient, in the order of the limit of their deflection.
 ///
-/// What they repeat does not depend on where they began, so that each begins near what the ones before repeat and finds its own by Newton's method. On
-/// a path of which the second half goes back the way of the first, as on an ellipse, half a period is passed: after it the deflection is the opposite.
+/// What they repeat does not depend on where they began, so that each begins near what the ones before repeat. A period takes any
+/// deflection on to a curve, along which its changes fall by a factor that is nearly that of the spring before, so that their sum is known from the
+/// first, and from two of them the factor (secant method). On a path of which the second half goes back the way of the first, as on an ellipse, half a period is passed: after it the
+/// deflection is the opposite.
 #[derive(Debug)]
 pub struct Neighbours {
     path: Path,
     limits: Vec<f64>,
     mirrored: bool,
     sticking: f64,
-    /// What the last two repeat at the first point, over their limits.
-    before: [Option<[f64; 2]>; 2],
+    /// What the last three repeat at the first point, over their limits, each with its limit.
+    before: [Option<(f64, [f64; 2])>; 3],
+    /// Part of a change of the deflection that the one a period later is.
+    part: f64,
 }
 
 impl Neighbours {
@@ -44,7 +49,8 @@ impl Neighbours {
             limits: vec![0.0; path.points.len()],
             mirrored: goes_back(&path),
             sticking: smallest_enclosing(&circles).radius,
-            before: [None; 2],
+            before: [None; 3],
+            part: 0.0,
             path,
         })
     }
@@ -65,36 +71,53 @@ impl Neighbours {
     /// * `limit` -- of its deflection, m, in `[0, sticking)`
     /// * `out` -- overwritten; its memory is used again
     pub fn pass(&mut self, limit: f64, out: &mut SpringCycle) {
-        let near = match self.before {
-            [Some(last), Some(other)] => Some(difference(scaled(2.0, last), other)),
-            [last, _] => last,
-        };
-        let found = near.filter(|_| limit > 0.0).and_then(|near| {
+        let found = self.expected(limit).filter(|_| limit > 0.0).and_then(|near| {
             let size = length(near).max(1.0);
             self.from(scaled(limit / size, near), limit, out)
         });
         let law = Coulomb { coefficient: 1.0 };
         if found.is_none() {
             periodic(&self.path, &law, 1.0, limit, &Shakedown::default(), true, out);
+            self.part = 0.0;
         }
         let repeated = found.or_else(|| out.deflection.last().copied()).filter(|_| limit > 0.0);
-        self.before = [repeated.map(|it| scaled(limit.recip(), it)), self.before[0]];
+        self.before = [repeated.map(|it| (limit, scaled(limit.recip(), it))), self.before[0], self.before[1]];
+    }
+
+    /// What a spring repeats over its limit, by the polynomial through those before.
+    fn expected(&self, limit: f64) -> Option<[f64; 2]> {
+        let before: Vec<(f64, [f64; 2])> = self.before.iter().map_while(|it| *it).collect();
+        let weight = |i: usize| -> f64 {
+            let others = before.iter().enumerate().filter(|(j, _)| *j != i);
+            others.map(|(_, (other, _))| (limit - other) / (before[i].0 - other)).product()
+        };
+        let parts = before.iter().enumerate().map(|(i, (_, place))| scaled(weight(i), *place));
+        parts.reduce(sum).filter(|place| place.iter().all(|it| it.is_finite()))
     }
 
     /// The motion that a spring repeats, from a deflection nearby; the deflection at the first point, or none where it is not found.
     fn from(&mut self, start: [f64; 2], limit: f64, out: &mut SpringCycle) -> Option<[f64; 2]> {
         self.limits.fill(limit);
         let mut deflection = start;
+        let mut last: Option<([f64; 2], [f64; 2])> = None;
         for _ in 0..ROUNDS {
             let end = self.after(deflection, limit, out);
-            if length(difference(end, deflection)) <= PERIODIC * limit {
+            let change = difference(end, deflection);
+            if length(change) <= PERIODIC * limit {
                 if self.mirrored {
                     turn(out);
                 }
                 return Some(end);
             }
-            let mut map = |from| self.after(from, limit, out);
-            deflection = newton(deflection, end, limit, &mut map).unwrap_or(end);
+            if let Some((place, left)) = last {
+                let moved = difference(deflection, place);
+                let part = 1.0 + dot(difference(change, left), moved) / dot(moved, moved);
+                self.part = if part.abs() < SLOWEST { part } else { 0.0 };
+            }
+            last = Some((deflection, change));
+            let found = sum(deflection, scaled((1.0 - self.part).recip(), change));
+            let size = length(found);
+            deflection = if size > limit { scaled(limit / size, found) } else { found };
         }
         None
     }

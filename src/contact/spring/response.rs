@@ -1,5 +1,6 @@
 //! The periodic motion of all springs on a path at constant indentation, once for a run.
 
+use super::turns::Turns;
 use super::{Neighbours, SpringCycle};
 use crate::laws::path::Path;
 
@@ -10,7 +11,7 @@ const CELLS: usize = 1024;
 const FEWEST_CELLS: usize = 128;
 const MOST_NUMBERS: usize = 1 << 23;
 
-/// What springs slip in each substep of a path at constant indentation, as a function of the limit `l` of their deflection alone.
+/// What springs slip in each step of a path at constant indentation, as a function of the limit `l` of their deflection alone.
 ///
 /// Whatever the law of friction, how it changes with time and how far the spring is compressed, the limit is all that [`steady_cycle`](super::steady_cycle) knows
 /// of it while static and kinetic strength are the same. With `l*` at which a spring sticks, the functions are tabulated over
@@ -20,17 +21,14 @@ const MOST_NUMBERS: usize = 1 << 23;
 /// ```
 ///
 /// and linear between: slip begins with a root on a circle, with a kink on an ellipse, and without a limit the spring turns fast. They are
-/// second order in the cells but at kinks; on 1024 the path of slip is good to `3e-5` of that of a spring without limit.
+/// second order in the cells but at kinks; on 1024 what a spring dissipates is good to `1e-4` of the amplitude times the path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
     /// `l*`, m.
     largest: f64,
     cells: usize,
-    /// Numbers for the slip in each substep that is kept, x and y in turn.
-    columns: usize,
-    /// Whether the second half of the period is the opposite of the first, which alone is kept.
-    mirrored: bool,
-    /// By node: slip in each substep, m, then the energies.
+    turns: Turns,
+    /// By node of the table: slip at the nodes of the steps, m, x and y in turn, then the energies.
     values: Vec<f64>,
 }
 
@@ -44,32 +42,41 @@ impl Response {
     /// * `path` -- one period
     pub fn new(path: &Path) -> Option<Self> {
         let mut springs = Neighbours::new(path)?;
-        let (mirrored, largest) = (springs.is_mirrored(), springs.sticking());
-        let kept = if mirrored { path.points.len() / 2 } else { path.points.len() };
-        let columns = 2 * kept;
-        let width = columns + ENERGIES;
+        let (turns, largest) = (Turns::new(path, springs.is_mirrored()), springs.sticking());
+        let width = 2 * turns.nodes() + ENERGIES;
         let cells = CELLS.min(MOST_NUMBERS / width);
         if cells < FEWEST_CELLS {
             return None;
         }
         let mut cycle = SpringCycle::default();
-        let mut values = Vec::with_capacity((cells + 1) * width);
-        for node in 0..cells {
+        let mut values = vec![0.0; (cells + 1) * width];
+        for (node, values) in values.chunks_mut(width).take(cells).enumerate() {
             springs.pass(largest * place(node as f64 / cells as f64), &mut cycle);
-            values.extend(cycle.slip.iter().take(kept).flatten());
-            values.extend([cycle.dissipation, cycle.work]);
+            let (slip, energies) = values.split_at_mut(width - ENERGIES);
+            turns.at_nodes(&cycle.slip[..turns.kept()], slip);
+            energies.copy_from_slice(&[cycle.dissipation, cycle.work]);
         }
-        values.extend(std::iter::repeat_n(0.0, width));
-        Some(Self { largest, cells, columns, mirrored, values })
+        Some(Self { largest, cells, turns, values })
     }
 
-    /// Slip in each substep, x and y in turn, m, shape `(2 · substeps,)`, with its derivative by the limit if that is asked for; returns
-    /// dissipation and work over the tangential stiffness, m².
+    /// Numbers for the slip of a period, x and y in turn.
+    pub fn columns(&self) -> usize {
+        2 * self.turns.nodes()
+    }
+
+    /// Whether the slip in a step is given at two nodes, of which one alone may be against the other.
+    pub fn is_paired(&self) -> bool {
+        self.turns.is_paired()
+    }
+
+    /// Slip in each step, or at its nodes, x and y in turn, m, shape `(columns,)`, with its derivative by the limit if that is asked for; returns
+    /// dissipation and work over the tangential stiffness, m². Where the second half of a period is the opposite of the first, twice the first stands for both.
     ///
     /// # Arguments
     /// * `limit` -- of the deflection, m, at least 0
     pub fn at(&self, limit: f64, slip: &mut [f64], slope: Option<&mut [f64]>) -> [f64; 2] {
-        let width = self.columns + ENERGIES;
+        let columns = self.columns();
+        let width = columns + ENERGIES;
         if limit >= self.largest {
             slip.fill(0.0);
             if let Some(slope) = slope {
@@ -92,22 +99,15 @@ impl Response {
         let part = (relative - node(cell)) / distance;
         let before = &self.values[cell * width..(cell + 1) * width];
         let after = &self.values[(cell + 1) * width..(cell + 2) * width];
-        let between = |m: usize| before[m] + part * (after[m] - before[m]);
-        self.fill(slip, between);
+        let between = |(before, after): (&f64, &f64)| before + part * (after - before);
+        let ends = || before.iter().zip(after);
+        slip.iter_mut().zip(ends()).for_each(|(slip, ends)| *slip = between(ends));
         if let Some(slope) = slope {
             let per_limit = (distance * self.largest).recip();
-            self.fill(slope, |m| per_limit * (after[m] - before[m]));
+            let slopes = ends().map(|(before, after)| per_limit * (after - before));
+            slope.iter_mut().zip(slopes).for_each(|(to, slope)| *to = slope);
         }
-        [between(self.columns), between(self.columns + 1)]
-    }
-
-    /// Fills in a whole period from what is kept.
-    fn fill(&self, values: &mut [f64], kept: impl Fn(usize) -> f64) {
-        let (first, second) = values.split_at_mut(self.columns.min(values.len()));
-        first.iter_mut().enumerate().for_each(|(m, value)| *value = kept(m));
-        if self.mirrored {
-            second.iter_mut().zip(first).for_each(|(value, opposite)| *value = -*opposite);
-        }
+        [0, 1].map(|m| between((&before[columns + m], &after[columns + m])))
     }
 }
 

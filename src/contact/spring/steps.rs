@@ -1,7 +1,10 @@
 //! The steps of a period along a line in which the indenter also moves up and down, and what the springs do in them.
 
-use super::SpringCycle;
-use crate::laws::path::Path;
+mod pass;
+
+pub use pass::PassedSteps;
+
+use crate::laws::path::{Path, PathPoint};
 
 /// Parts of a step in which springs are followed.
 const PARTS: usize = 8;
@@ -32,6 +35,16 @@ pub struct Steps {
     /// What pushes on, and what pushes back, in each substep, m.
     pushes: Vec<[f64; 2]>,
     steps: Vec<Step>,
+    phases: Vec<Phase>,
+    /// `μ_f/M`.
+    slope: f64,
+}
+
+/// Substeps between two turns of what pushes, or of the lift.
+#[derive(Debug, Clone, PartialEq)]
+struct Phase {
+    first: usize,
+    end: usize,
 }
 
 /// One step.
@@ -44,6 +57,8 @@ struct Step {
     lifts: [f64; 2],
     /// `∫ lift df` and `3 ∫ (2f - 1) lift df`, m.
     moments: [f64; 2],
+    /// `∫ ds`, `∫ (2f - 1) ds` and `∫ lift ds` of a spring that slips on, or back, all through it, m, m and m².
+    whole: [[f64; 3]; 2],
 }
 
 impl Steps {
@@ -87,6 +102,8 @@ impl Steps {
             step_of: vec![None; corners],
             through: vec![[0.0; 2]; corners],
             steps: vec![],
+            phases: phases.iter().map(|(first, end, _)| Phase { first: *first, end: *end }).collect(),
+            slope,
             pushes,
             path,
         };
@@ -104,7 +121,8 @@ impl Steps {
     fn add(&mut self, first: usize, end: usize) {
         let push = |m: usize| self.pushes[m].iter().sum::<f64>();
         let whole: f64 = (first..end).map(push).sum();
-        let mut step = Step { first, end, lifts: [f64::INFINITY, f64::NEG_INFINITY], moments: [0.0; 2] };
+        let lifts = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut step = Step { first, end, lifts, moments: [0.0; 2], whole: [[0.0; 3]; 2] };
         let mut through = 0.0;
         for m in first..end {
             let next = if m + 1 == end { 1.0 } else { (through + push(m) / whole).min(1.0) };
@@ -117,6 +135,10 @@ impl Steps {
             self.through[m] = [through, next];
             self.step_of[m] = Some(self.steps.len());
             through = next;
+            for side in 0..2 {
+                let part = self.part(m, side, [0.0, 1.0]);
+                step.whole[side].iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+            }
         }
         self.steps.push(step);
     }
@@ -132,6 +154,7 @@ impl Steps {
         for step in &mut self.steps {
             step.lifts = step.lifts.map(|lift| lift + by);
             step.moments[0] += by;
+            step.whole.iter_mut().for_each(|[slip, _, lifted]| *lifted += by * *slip);
         }
     }
 
@@ -140,30 +163,19 @@ impl Steps {
         Self::NODES * self.steps.len()
     }
 
-    /// Slip of a spring at the nodes, m, shape `(columns,)`.
-    ///
-    /// # Arguments
-    /// * `cycle` -- of the spring along [`Steps::path`]
-    /// * `compression` -- at the largest indentation, m
-    pub fn slip(&self, cycle: &SpringCycle, compression: f64, slip: &mut [f64]) {
-        slip.fill(0.0);
-        let half = 0.5 * 3.0_f64.sqrt();
-        let corners = self.path.points.len();
-        for (m, moved) in cycle.slip.iter().enumerate() {
-            let (moved, Some(step)) = (moved[0], self.step_of[m]) else { continue };
-            if moved == 0.0 {
-                continue;
-            }
-            let [from, to] = self.through[m];
-            let push = self.pushes[m][usize::from(moved < 0.0)];
-            let part = if push > 0.0 { (moved.abs() / push).min(1.0) } else { 1.0 } * (to - from);
-            // Slip that has begun lasts to the end of the substep, or until the spring lifts off.
-            let lifts_off = compression < self.path.points[(m + 1) % corners].lift;
-            let middle = if lifts_off { from + 0.5 * part } else { to - 0.5 * part };
-            let aside = half * moved * (2.0 * middle - 1.0);
-            slip[2 * step] += 0.5 * moved - aside;
-            slip[2 * step + 1] += 0.5 * moved + aside;
-        }
+    /// Which way springs slip at each node, 1 or -1; 0 where some go one way and some the other.
+    pub fn ways(&self) -> Vec<f64> {
+        let way = |step: &Step| match self.pushes[step.first] {
+            [on, 0.0] if on > 0.0 => 1.0,
+            [0.0, _] => -1.0,
+            _ => 0.0,
+        };
+        self.steps.iter().flat_map(|step| [way(step); Self::NODES]).collect()
+    }
+
+    /// A corner of the path; after the last one comes the first.
+    fn corner(&self, m: usize) -> &PathPoint {
+        &self.path.points[if m < self.path.points.len() { m } else { m - self.path.points.len() }]
     }
 
     /// Load `(q - lift)₊` of a spring at the nodes and its derivative by `q`, m and 1, shape `(columns,)` each.

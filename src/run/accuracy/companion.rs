@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::super::cost::{tries, tries_of_look, work_of_step};
 use super::super::parts::Parts;
-use super::substeps::{FINER, Unsampled};
+use super::substeps::{Unsampled, finer_than};
 use crate::data::Snapshot;
 use crate::scene::{Numerics, Scene, Stepper};
 use crate::solver::model::{OperatorStore, Schedule};
@@ -138,7 +138,7 @@ impl Observer for Seen {
         self.worn.push(Worn::of(simulation));
         if let Some(unsampled) = &mut self.unsampled {
             unsampled.see(simulation);
-            self.looked += tries_of_look(FINER);
+            self.looked += tries_of_look(finer_than(simulation.model().schedule()));
         }
         Ok(())
     }

@@ -244,20 +244,30 @@ impl Model {
             for m in 0..columns {
                 (0..stuck).for_each(|i| slip[(i, m)] = 0.0);
             }
-            if loading.path.is_some() {
+            let known = motion.ways.iter().all(|way| *way != 0.0) && !motion.ways.is_empty();
+            if known {
+                direction = Mat::from_fn(n, columns, |_, m| motion.ways[m]);
+            } else if loading.path.is_some() {
                 let slipped =
                     Mat::from_fn(inner, columns, |j, m| motion.slip[(j, m)] * fields.density_factor[j]);
-                let slipped = if motion.paired { pair_sums(&slipped) } else { slipped };
                 product_without_signs(&mut direction, self.operators.abel.profile(), slipped.as_ref());
+                if motion.paired {
+                    turn_to_pairs(&mut direction, components);
+                }
                 normalise(&mut direction, components);
             }
         }
-        let along = |i: usize, m: usize| -> f64 {
-            let columns = components * m..components * (m + 1);
-            let along = columns.map(|c| slip[(i, c)] * direction[(i, c)]).sum::<f64>();
-            if steps > 2 { along } else { along.max(0.0) }
-        };
-        let mut path = Mat::from_fn(n, steps, along);
+        let mut path = Mat::<f64>::zeros(n, steps);
+        for m in 0..steps {
+            let along = path.col_as_slice_mut(m);
+            for c in components * m..components * (m + 1) {
+                let parts = slip.col_as_slice(c).iter().zip(direction.col_as_slice(c));
+                along.iter_mut().zip(parts).for_each(|(sum, (slip, direction))| *sum += slip * direction);
+            }
+            if steps <= 2 {
+                along.iter_mut().for_each(|along| *along = along.max(0.0));
+            }
+        }
         // Ahead of a front of slip that cells do not resolve the stencils may leave a negative sum over the steps: there is no slip there.
         for i in 0..n {
             if path.row(i).iter().sum::<f64>() < 0.0 {
@@ -280,10 +290,13 @@ impl Model {
         let mean_pressure = self.contact.mean_pressure();
         for i in 0..n {
             let total: f64 = (0..steps).map(|m| surface.path[(i, m)]).sum();
+            let rate_in = |m: usize| {
+                law.rate(&Rubbing { pressure: surface.pressure[(i, m)], path: total, mean_pressure })
+            };
+            let first = rate_in(0);
             for m in 0..steps {
-                let pressure = surface.pressure[(i, m.min(surface.pressure.ncols() - 1))];
                 let path = surface.path[(i, m)];
-                let rate = law.rate(&Rubbing { pressure, path: total, mean_pressure });
+                let rate = if m == 0 || surface.pressure.ncols() == 1 { first } else { rate_in(m) };
                 worn.depth[i] += rate.depth * path;
                 if slopes {
                     worn.by_pressure[(i, m)] = rate.by_pressure * path;
@@ -510,9 +523,22 @@ fn product_without_signs(to: &mut Mat<f64>, left: &Mat<f64>, right: MatRef<'_, f
     }
 }
 
-/// The matrix with the sum of each pair of columns in both.
-fn pair_sums(of: &Mat<f64>) -> Mat<f64> {
-    Mat::from_fn(of.nrows(), of.ncols(), |i, m| of[(i, m)] + of[(i, m ^ 1)])
+/// Turns each of the vectors along a row that goes against the sum of its pair.
+fn turn_to_pairs(vectors: &mut Mat<f64>, components: usize) {
+    for first in (0..vectors.ncols()).step_by(2 * components) {
+        for i in 0..vectors.nrows() {
+            let node = |node: usize, axis: usize| vectors[(i, first + node * components + axis)];
+            let along = |it: usize| -> f64 {
+                (0..components).map(|axis| node(it, axis) * (node(0, axis) + node(1, axis))).sum()
+            };
+            let against = [along(0) < 0.0, along(1) < 0.0];
+            for (it, _) in against.iter().enumerate().filter(|(_, against)| **against) {
+                for axis in 0..components {
+                    vectors[(i, first + it * components + axis)] *= -1.0;
+                }
+            }
+        }
+    }
 }
 
 /// Columns of a matrix, some at a time.
@@ -522,12 +548,24 @@ fn blocks(columns: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
 
 /// Makes the vectors along each row unit vectors, or zero.
 fn normalise(vectors: &mut Mat<f64>, components: usize) {
+    if components == 1 {
+        let sign = |value: f64| if value == 0.0 { 0.0 } else { 1.0_f64.copysign(value) };
+        for c in 0..vectors.ncols() {
+            vectors.col_as_slice_mut(c).iter_mut().for_each(|value| *value = sign(*value));
+        }
+        return;
+    }
     for first in (0..vectors.ncols()).step_by(components) {
-        for i in 0..vectors.nrows() {
-            let norm = (first..first + components).map(|c| vectors[(i, c)].powi(2)).sum::<f64>().sqrt();
-            for c in first..first + components {
-                vectors[(i, c)] = if norm > 0.0 { vectors[(i, c)] / norm } else { 0.0 };
-            }
+        let mut squares = vec![0.0; vectors.nrows()];
+        for c in first..first + components {
+            let values = vectors.col_as_slice(c).iter();
+            squares.iter_mut().zip(values).for_each(|(sum, value)| *sum += value * value);
+        }
+        for c in first..first + components {
+            let values = vectors.col_as_slice_mut(c).iter_mut().zip(&squares);
+            values.for_each(|(value, square)| {
+                *value = if *square > 0.0 { *value / square.sqrt() } else { 0.0 }
+            });
         }
     }
 }

@@ -24,7 +24,9 @@ pub(super) struct Motion {
     pub free: Vec<f64>,
     /// One where all slip along a line, else two.
     pub components: usize,
-    /// Whether steps come in pairs, the nodes of [`Steps`], of which one alone may be of either sign.
+    /// Which way all springs slip in each step along a line, 1 or -1, and 0 where they do not; none where that is not known.
+    pub ways: Vec<f64>,
+    /// Whether steps come in pairs, the two nodes of one, of which one alone may go against the other.
     pub paired: bool,
     /// What presses in each step, m: the mean compression, or what resists slip where wear goes by energy; shape
     /// `(springs - 1, steps)`, or one column if it is the same in all.
@@ -129,6 +131,7 @@ impl Model {
             slip: Mat::from_fn(inner, 1, |j, _| 4.0 * slip[j].0),
             free: vec![4.0 * amplitude],
             components: 1,
+            ways: vec![],
             paired: false,
             load: Mat::from_fn(inner, 1, |j, _| bearing.of(compression[j], loading.lift)),
             energies: lifted.iter().zip(&slip).map(energies).collect(),
@@ -149,9 +152,11 @@ impl Model {
         slopes: bool,
     ) -> Motion {
         let components = if path.is_straight() { 1 } else { 2 };
-        let ways = path.ways();
-        let steps = ways.iter().max().map_or(0, |last| last + 1);
-        let (inner, columns) = (compression.len(), steps * components);
+        let table = loading.response.as_deref();
+        let ways = if table.is_some() { vec![] } else { path.ways() };
+        let counted = || components * ways.iter().max().map_or(0, |last| last + 1);
+        let (inner, columns) = (compression.len(), table.map_or_else(counted, Response::columns));
+        let steps = columns / components;
         let mut springs = PathSprings {
             loading,
             path,
@@ -169,7 +174,8 @@ impl Model {
             slip: Mat::zeros(inner, columns),
             free: values.clone(),
             components,
-            paired: false,
+            ways: vec![],
+            paired: table.is_some_and(Response::is_paired),
             load: Mat::zeros(0, 0),
             energies: Vec::with_capacity(inner),
             slip_slope: Mat::zeros(if slopes { inner } else { 0 }, columns),
@@ -207,13 +213,13 @@ impl Model {
     ) -> Motion {
         let (inner, columns) = (compression.len(), steps.columns());
         let ratio = self.contact.half_space().stiffness_ratio();
-        let difference = DIFFERENCE * self.contact.slip_compression();
         let rows = if slopes { inner } else { 0 };
         let mut motion = Motion {
             amplitude: loading.amplitude,
             slip: Mat::zeros(inner, columns),
             free: vec![0.0; columns],
             components: 1,
+            ways: steps.ways(),
             paired: true,
             load: Mat::zeros(inner, columns),
             energies: Vec::with_capacity(inner),
@@ -221,27 +227,18 @@ impl Model {
             load_slope: Mat::zeros(rows, columns),
             amplitude_slope: None,
         };
-        let mut cycle = SpringCycle::default();
-        let mut passed = |compression: f64, slip: &mut [f64]| {
-            let (law, shakedown) = (&*loading.friction, Shakedown::default());
-            steady_cycle(steps.path(), law, ratio, compression, &shakedown, &mut cycle);
-            steps.slip(&cycle, compression, slip);
-            Energies { dissipation: cycle.dissipation, jump_loss: cycle.jump_loss, work: cycle.work }
-        };
         // Springs without compression are never loaded.
-        let (mut values, mut after) = (vec![0.0; columns], vec![0.0; columns]);
+        let (mut values, mut changes) = (vec![0.0; columns], vec![0.0; if slopes { columns } else { 0 }]);
         let per_compression = Bearing::new(loading).of(1.0, 0.0);
         for (j, q) in compression.iter().enumerate() {
-            let pressed = q.max(0.0);
-            motion.energies.push(passed(pressed, &mut values));
+            let passed = steps.pass(q.max(0.0), &mut values, &mut changes);
+            let dissipation = ratio * passed.dissipation;
+            motion.energies.push(Energies { dissipation, jump_loss: 0.0, work: dissipation });
             for (m, value) in values.iter().enumerate() {
                 motion.slip[(j, m)] = *value;
             }
-            if slopes {
-                passed(pressed + difference, &mut after);
-                for (m, (after, value)) in after.iter().zip(&values).enumerate() {
-                    motion.slip_slope[(j, m)] = (after - value) / difference;
-                }
+            for (m, change) in changes.iter().enumerate() {
+                motion.slip_slope[(j, m)] = *change;
             }
             steps.load(*q, |m, load, slope| {
                 motion.load[(j, m)] = per_compression * load;

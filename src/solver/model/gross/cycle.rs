@@ -212,9 +212,15 @@ impl Model {
         let sticks = |spring: &usize| (0..motion.free.len()).all(|m| motion.slip[(*spring, m)] == 0.0);
         let last = (0..mesh.inner()).rev().find(sticks);
         let slip: Vec<Vec<f64>> = (0..motion.free.len()).map(column).collect();
+        let along = |i: usize, one: usize, other: usize| -> f64 {
+            (0..components)
+                .map(|axis| slip[components * one + axis][i] * slip[components * other + axis][i])
+                .sum()
+        };
         let path = Mat::from_fn(mesh.inner(), motion.steps(), |i, step| {
-            let columns = slip[components * step..components * (step + 1)].iter();
-            columns.map(|column| column[i].powi(2)).sum::<f64>().sqrt()
+            let path = along(i, step, step).sqrt();
+            let against = motion.paired && along(i, step, step) + along(i, step, step ^ 1) < 0.0;
+            if against { -path } else { path }
         });
         let pressure = self.pressed(gross, whole, &motion.load);
         let stiffness = self.contact.half_space().normal_stiffness() * whole.area.powf(1.0 - self.mu());
