@@ -103,6 +103,17 @@ fn whole_scene(criterion: &mut Criterion) {
     }
 }
 
+/// The main scene in memory by the accuracy that is asked for: set-up, companion, run and snapshots.
+fn by_accuracy(criterion: &mut Criterion) {
+    for accuracy in ["1e-2", "1e-3", "1e-4"] {
+        let text = format!("{SCENE}\n[numerics]\naccuracy = {accuracy}\n");
+        let scene = Scene::from_toml(&text, "paraboloid.toml").expect("the scene is valid");
+        criterion.bench_function(&format!("main scene in memory/{accuracy}"), |bench| {
+            bench.iter(|| black_box(&scene).simulate().expect("reaches its end"));
+        });
+    }
+}
+
 fn closed_form(criterion: &mut Criterion) {
     let contact = contact();
     criterion.bench_function("closed-form limit", |bench| {
@@ -210,6 +221,6 @@ fn settings() -> Criterion {
 criterion_group! {
     name = costs;
     config = settings();
-    targets = closed_form, springs, resolved_cycles, maps, parts, whole_scene
+    targets = closed_form, springs, resolved_cycles, maps, parts, whole_scene, by_accuracy
 }
 criterion_main!(costs);

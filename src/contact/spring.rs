@@ -540,19 +540,24 @@ fn turned(deflection: [f64; 2], moved: [f64; 2], limits: [f64; 2]) -> [f64; 2] {
     if size == 0.0 {
         return scaled(limits[1], along);
     }
-    let across = [-along[1], along[0]];
-    let (p, w) = (dot(deflection, along), dot(deflection, across));
     let growth = limits[1] - limits[0];
     let inverse_mean = if growth == 0.0 { limits[1].recip() } else { (growth / limits[0]).ln_1p() / growth };
-    let decay = (-way * inverse_mean).exp();
+    turned_by(deflection, size, along, (-way * inverse_mean).exp(), limits[1])
+}
+
+/// The same of a deflection of some size, by the direction of the motion, what is left of `tan(φ/2)`, and the limit at the end.
+#[inline]
+fn turned_by(deflection: [f64; 2], size: f64, along: [f64; 2], decay: f64, limit: f64) -> [f64; 2] {
+    let across = [-along[1], along[0]];
+    let (p, w) = (dot(deflection, along), dot(deflection, across));
     // tan(φ/2) = b/a, from whichever of its two forms does not cancel
     let (a, b) = if p >= 0.0 { (size + p, decay * w) } else { (w, decay * (size - p)) };
     let norm = a * a + b * b;
     if norm == 0.0 {
-        return scaled(limits[1] / size, deflection);
+        return scaled(limit / size, deflection);
     }
     let (cosine, sine) = ((a * a - b * b) / norm, 2.0 * a * b / norm);
-    sum(scaled(limits[1] * cosine, along), scaled(limits[1] * sine, across))
+    sum(scaled(limit * cosine, along), scaled(limit * sine, across))
 }
 
 fn sum(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

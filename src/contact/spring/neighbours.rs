@@ -1,7 +1,9 @@
 //! Springs that slip for ever on a path at constant indentation, one after the other.
 
 use super::enclosing::{Circle, smallest_enclosing};
-use super::{Shakedown, Spring, SpringCycle, difference, dot, general_period, length, periodic, scaled, sum};
+use super::{
+    Passed, Shakedown, SpringCycle, difference, dot, length, onset, periodic, scaled, square, sum, turned_by,
+};
 use crate::laws::friction::Coulomb;
 use crate::laws::path::Path;
 
@@ -25,13 +27,22 @@ const SAME: f64 = 1e-13;
 #[derive(Debug)]
 pub struct Neighbours {
     path: Path,
-    limits: Vec<f64>,
+    /// Of its substeps, or of those in the first half of a mirrored one.
+    motions: Vec<Motion>,
     mirrored: bool,
     sticking: f64,
     /// What the last three repeat at the first point, over their limits, each with its limit.
     before: [Option<(f64, [f64; 2])>; 3],
     /// Part of a change of the deflection that the one a period later is.
     part: f64,
+}
+
+/// The motion of a substep, m: as it is, its length and its direction.
+#[derive(Debug)]
+struct Motion {
+    moved: [f64; 2],
+    length: f64,
+    along: [f64; 2],
 }
 
 impl Neighbours {
@@ -45,9 +56,17 @@ impl Neighbours {
         path.points.iter_mut().for_each(|point| point.lift = 0.0);
         let circles: Vec<Circle> =
             path.points.iter().map(|point| Circle { centre: point.tangential, radius: 0.0 }).collect();
+        let mirrored = goes_back(&path);
+        let count = path.points.len();
+        let motion = |m: usize| {
+            let moved = difference(path.points[(m + 1) % count].tangential, path.points[m].tangential);
+            let length = length(moved);
+            let along = if length > 0.0 { scaled(length.recip(), moved) } else { [1.0, 0.0] };
+            Motion { moved, length, along }
+        };
         Some(Self {
-            limits: vec![0.0; path.points.len()],
-            mirrored: goes_back(&path),
+            motions: (0..if mirrored { count / 2 } else { count }).map(motion).collect(),
+            mirrored,
             sticking: smallest_enclosing(&circles).radius,
             before: [None; 3],
             part: 0.0,
@@ -97,7 +116,6 @@ impl Neighbours {
 
     /// The motion that a spring repeats, from a deflection nearby; the deflection at the first point, or none where it is not found.
     fn from(&mut self, start: [f64; 2], limit: f64, out: &mut SpringCycle) -> Option<[f64; 2]> {
-        self.limits.fill(limit);
         let mut deflection = start;
         let mut last: Option<([f64; 2], [f64; 2])> = None;
         for _ in 0..ROUNDS {
@@ -123,13 +141,32 @@ impl Neighbours {
     }
 
     /// The deflection a period after this one, or its opposite half a period after.
-    fn after(&self, deflection: [f64; 2], limit: f64, out: &mut SpringCycle) -> [f64; 2] {
-        let points = self.path.points.len();
-        let (count, sign) = if self.mirrored { (points / 2, -1.0) } else { (points, 1.0) };
+    fn after(&self, start: [f64; 2], limit: f64, out: &mut SpringCycle) -> [f64; 2] {
         out.clear();
-        let mut spring = Spring { deflection, sliding: false };
-        (out.slip_path, _) = general_period(&self.path, &self.limits, count, limit, &mut spring, 1.0, out);
-        scaled(sign, spring.deflection)
+        let mut deflection = start;
+        let mut slides = false;
+        for Motion { moved, length: way, along } in &self.motions {
+            let trial = sum(deflection, *moved);
+            if square(trial) <= limit * limit {
+                let work = 0.5 * dot(sum(deflection, trial), *moved);
+                out.push(trial, &Passed { work, ..Default::default() });
+                (deflection, slides) = (trial, false);
+                continue;
+            }
+            // On the limit, and pushed out of it, a spring slides at once.
+            let at_once = slides && dot(deflection, *moved) > 0.0;
+            let stuck = if at_once { 0.0 } else { onset(deflection, *moved, [limit; 2]) };
+            let held = if at_once { deflection } else { sum(deflection, scaled(stuck, *moved)) };
+            let decay = (-(1.0 - stuck) * way / limit).exp();
+            let end = turned_by(held, limit, *along, decay, limit);
+            let slip = difference(*moved, difference(end, deflection));
+            let dissipation = 0.5 * dot(sum(held, end), slip);
+            let work = dissipation + 0.5 * dot(difference(end, deflection), sum(end, deflection));
+            out.push(end, &Passed { slip, dissipation, jump_loss: 0.0, work });
+            out.slip_path += length(slip);
+            (deflection, slides) = (end, true);
+        }
+        if self.mirrored { scaled(-1.0, deflection) } else { deflection }
     }
 }
 

@@ -106,7 +106,7 @@ pub struct Rubbing {
 }
 
 /// Depth worn per slipped distance.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Rate {
     /// The depth over the distance.
     pub depth: f64,

@@ -11,7 +11,7 @@ use faer::{Accum, Mat, MatRef, Par};
 use super::motion::{Energies, Motion};
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
-use crate::laws::wear::Rubbing;
+use crate::laws::wear::{Rate, Rubbing};
 use crate::numerics::linear::dot;
 
 /// Change of the edge, relative, by which slopes are found.
@@ -219,7 +219,7 @@ impl Model {
         }
         let plain = self.slip_per_depth(loading, fields);
         let mut slip = Mat::zeros(n, columns);
-        let mut direction = Mat::from_fn(n, columns, |_, _| 1.0);
+        let mut direction = Mat::full(n, columns, 1.0);
         if let Some(factor) = plain {
             slip = Mat::from_fn(n, 1, |i, _| 4.0 * factor * fields.slip_depth[i]);
         } else {
@@ -244,17 +244,8 @@ impl Model {
             for m in 0..columns {
                 (0..stuck).for_each(|i| slip[(i, m)] = 0.0);
             }
-            let known = motion.ways.iter().all(|way| *way != 0.0) && !motion.ways.is_empty();
-            if known {
-                direction = Mat::from_fn(n, columns, |_, m| motion.ways[m]);
-            } else if loading.path.is_some() {
-                let slipped =
-                    Mat::from_fn(inner, columns, |j, m| motion.slip[(j, m)] * fields.density_factor[j]);
-                product_without_signs(&mut direction, self.operators.abel.profile(), slipped.as_ref());
-                if motion.paired {
-                    turn_to_pairs(&mut direction, components);
-                }
-                normalise(&mut direction, components);
+            if loading.path.is_some() {
+                direction = self.directions(motion, fields);
             }
         }
         let mut path = Mat::<f64>::zeros(n, steps);
@@ -277,6 +268,30 @@ impl Model {
         Surface { pressure, direction, path }
     }
 
+    /// Direction of the slip in each step, `(springs, steps · components)`: where not all springs slip one way, that of their slips by the sizes of their weights.
+    fn directions(&self, motion: &Motion, fields: &Fields) -> Mat<f64> {
+        let (n, inner, columns) = (self.springs(), self.springs() - 1, motion.free.len());
+        let way = |m: usize| motion.ways.get(m).copied().unwrap_or_default();
+        let unknown: Vec<usize> = (0..columns).filter(|m| way(*m) == 0.0).collect();
+        let slipped = Mat::from_fn(inner, unknown.len(), |j, m| {
+            motion.slip[(j, unknown[m])] * fields.density_factor[j]
+        });
+        let mut found = Mat::zeros(n, unknown.len());
+        product_without_signs(&mut found, self.operators.abel.profile(), slipped.as_ref());
+        if motion.paired {
+            turn_to_pairs(&mut found, motion.components);
+        }
+        normalise(&mut found, motion.components);
+        if unknown.len() == columns {
+            return found;
+        }
+        let mut direction = Mat::from_fn(n, columns, |_, m| way(m));
+        for (m, column) in unknown.into_iter().enumerate() {
+            direction.col_as_slice_mut(column).copy_from_slice(found.col_as_slice(m));
+        }
+        direction
+    }
+
     /// Depth worn in a period.
     pub(super) fn worn(&self, loading: &CycleLoading, surface: &Surface, slopes: bool) -> Worn {
         let law = &*loading.wear;
@@ -288,21 +303,31 @@ impl Model {
             by_path: Mat::zeros(size, steps),
         };
         let mean_pressure = self.contact.mean_pressure();
-        for i in 0..n {
-            let total: f64 = (0..steps).map(|m| surface.path[(i, m)]).sum();
-            let rate_in = |m: usize| {
-                law.rate(&Rubbing { pressure: surface.pressure[(i, m)], path: total, mean_pressure })
-            };
-            let first = rate_in(0);
-            for m in 0..steps {
-                let path = surface.path[(i, m)];
-                let rate = if m == 0 || surface.pressure.ncols() == 1 { first } else { rate_in(m) };
-                worn.depth[i] += rate.depth * path;
-                if slopes {
-                    worn.by_pressure[(i, m)] = rate.by_pressure * path;
-                    worn.by_path[(i, m)] = rate.depth;
+        let mut total = vec![0.0; n];
+        for m in 0..steps {
+            total.iter_mut().zip(surface.path.col_as_slice(m)).for_each(|(sum, path)| *sum += path);
+        }
+        let different = surface.pressure.ncols();
+        let mut rates = vec![Rate::default(); n];
+        for m in 0..steps {
+            if m < different {
+                let pressed = surface.pressure.col_as_slice(m).iter().zip(&total);
+                for (rate, (pressure, path)) in rates.iter_mut().zip(pressed) {
+                    *rate = law.rate(&Rubbing { pressure: *pressure, path: *path, mean_pressure });
                 }
             }
+            let path = surface.path.col_as_slice(m);
+            for (depth, (rate, path)) in worn.depth.iter_mut().zip(rates.iter().zip(path)) {
+                *depth += rate.depth * path;
+            }
+            if slopes {
+                let to = worn.by_pressure.col_as_slice_mut(m).iter_mut();
+                to.zip(rates.iter().zip(path)).for_each(|(to, (rate, path))| *to = rate.by_pressure * path);
+                let to = worn.by_path.col_as_slice_mut(m).iter_mut();
+                to.zip(&rates).for_each(|(to, rate)| *to = rate.depth);
+            }
+        }
+        for (i, total) in total.into_iter().enumerate() {
             if slopes && total > 0.0 {
                 let shared = law.path_exponent() * worn.depth[i] / total;
                 for m in 0..steps {
