@@ -41,21 +41,22 @@ const MOST_WORK_OF_LAST: f64 = 1.2e10;
 const FEWER: f64 = 0.6;
 const FEWEST: usize = 12;
 
-/// Evaluations of a step that is tried: where the edge of stick rests, where it moves, and in gross slip beside one for every spring, for Newton's matrix is
-/// found by differences.
-const EVALUATIONS: [f64; 3] = [30.0, 60.0, 15.0];
+/// Evaluations of a step that is tried: where the edge of stick rests, where it moves, and in gross slip by backward differentiation, whose matrix by
+/// differences serves many steps, and by stages beside one for every spring, for theirs is found in each.
+const EVALUATIONS: [f64; 2] = [30.0, 60.0];
+const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
-/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves; by pair of springs and step of a period; by pair of springs
-/// over which wear spreads; of the factors, by triple of springs; and of a step in any case.
+/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves; by pair of springs and column of the slip in a period; by
+/// pair of springs over which wear spreads; of the factors, by triple of springs; and of a step in any case, in gross slip and elsewhere.
 const BY_SPRING: [f64; 2] = [150.0, 500.0];
-const BY_PAIR: f64 = 0.05;
+const BY_PAIR: f64 = 0.03;
 const BY_SPREADING: f64 = 30.0;
 const BY_TRIPLE: f64 = 0.05;
-const OVERHEAD: f64 = 2e4;
+const OVERHEAD: [f64; 2] = [4e3, 2e4];
 
-/// The same by spring and step of a period: from a table, along a line, where springs pass period after period, and where they do so until they come to rest
+/// The same by spring and column: from a table, along a line, where springs pass period after period, and where they do so until they come to rest
 /// on a path that presses and lifts.
-const BY_STEP: [f64; 4] = [5.0, 10.0, 100.0, 5000.0];
+const BY_COLUMN: [f64; 4] = [2.0, 12.0, 50.0, 5000.0];
 
 /// How much longer it takes where a profile is a table.
 const OF_TABLE: f64 = 4.0;
@@ -63,14 +64,16 @@ const OF_TABLE: f64 = 4.0;
 /// Work of a step that is tried, nanoseconds of one core, about. The same on every machine, so that a run and one that was interrupted take the same way.
 pub(super) fn work_of_step(model: &Model) -> f64 {
     let (springs, schedule) = (model.springs() as f64, model.schedule());
-    let [resting, moving, beside_springs] = EVALUATIONS;
     let moves = usize::from(model.moving().is_some());
-    let evaluations = match model.gross() {
-        Some(_) => springs + beside_springs,
-        None => [resting, moving][moves],
+    let [once, beside_springs] = EVALUATIONS_IN_GROSS_SLIP;
+    let [in_gross_slip, elsewhere] = OVERHEAD;
+    let (evaluations, overhead) = match model.gross() {
+        Some(_) if schedule.is_smooth_in_gross_slip() => (once, in_gross_slip),
+        Some(_) => (springs + beside_springs, in_gross_slip),
+        None => (EVALUATIONS[moves], elsewhere),
     };
-    let steps = if schedule.resolves() { schedule.loop_steps(1) as f64 } else { 1.0 };
-    let [from_table, along_line, by_periods, to_rest] = BY_STEP;
+    let columns = schedule.columns() as f64;
+    let [from_table, along_line, by_periods, to_rest] = BY_COLUMN;
     let passed = match schedule.resolves() {
         false => 0.0,
         true if schedule.is_tabulated() => from_table,
@@ -80,8 +83,8 @@ pub(super) fn work_of_step(model: &Model) -> f64 {
     };
     let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
-    let by_spring = table * BY_SPRING[moves] + steps * (BY_PAIR * springs + passed) + spread;
-    OVERHEAD + evaluations * springs * by_spring + BY_TRIPLE * springs.powi(3)
+    let by_spring = table * BY_SPRING[moves] + columns * (BY_PAIR * springs + passed) + spread;
+    overhead + evaluations * springs * by_spring + BY_TRIPLE * springs.powi(3)
 }
 
 /// Steps to try that cost as much as a look at what so many times the substeps would wear.

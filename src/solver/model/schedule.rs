@@ -375,6 +375,21 @@ impl Schedule {
         self.loadings.iter().filter_map(followed).max().unwrap_or(plain)
     }
 
+    /// Numbers for the slip of a spring in a period, the most of all blocks; one where a cycle has a closed form.
+    pub fn columns(&self) -> usize {
+        let of_path = |path: &Path| {
+            let components = if path.is_straight() { 1 } else { 2 };
+            components * path.ways().iter().max().map_or(0, |last| last + 1)
+        };
+        let columns = |loading: &CycleLoading| match (&loading.response, &loading.steps, &loading.path) {
+            (Some(table), ..) => table.columns(),
+            (None, Some(steps), _) => steps.columns(),
+            (None, None, Some(path)) => of_path(path),
+            (None, None, None) => 1,
+        };
+        self.loadings.iter().map(columns).max().unwrap_or(1)
+    }
+
     /// Whether the indenter leaves the x axis in some block.
     pub fn leaves_axis(&self) -> bool {
         let mut paths = self.loadings.iter().filter_map(|loading| loading.path.as_ref());
