@@ -49,14 +49,14 @@ const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 /// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves; by pair of springs and column of the slip in a period; by
 /// pair of springs over which wear spreads; of the factors, by triple of springs; and of a step in any case, in gross slip and elsewhere.
 const BY_SPRING: [f64; 2] = [150.0, 500.0];
-const BY_PAIR: f64 = 0.03;
+const BY_PAIR: f64 = 0.02;
 const BY_SPREADING: f64 = 30.0;
 const BY_TRIPLE: f64 = 0.05;
 const OVERHEAD: [f64; 2] = [4e3, 2e4];
 
-/// The same by spring and column: from a table, along a line, where springs pass period after period, and where they do so until they come to rest
-/// on a path that presses and lifts.
-const BY_COLUMN: [f64; 4] = [2.0, 12.0, 50.0, 5000.0];
+/// The same by spring and column: from a table, in gross slip, along a line, where springs pass period after period, and where they do so until they come to
+/// rest on a path that presses and lifts.
+const BY_COLUMN: [f64; 5] = [1.0, 20.0, 6.0, 50.0, 5000.0];
 
 /// How much longer it takes where a profile is a table.
 const OF_TABLE: f64 = 4.0;
@@ -66,16 +66,17 @@ pub(super) fn work_of_step(model: &Model) -> f64 {
     let (springs, schedule) = (model.springs() as f64, model.schedule());
     let moves = usize::from(model.moving().is_some());
     let [once, beside_springs] = EVALUATIONS_IN_GROSS_SLIP;
-    let [in_gross_slip, elsewhere] = OVERHEAD;
+    let [of_whole, elsewhere] = OVERHEAD;
     let (evaluations, overhead) = match model.gross() {
-        Some(_) if schedule.is_smooth_in_gross_slip() => (once, in_gross_slip),
-        Some(_) => (springs + beside_springs, in_gross_slip),
+        Some(_) if schedule.is_smooth_in_gross_slip() => (once, of_whole),
+        Some(_) => (springs + beside_springs, of_whole),
         None => (EVALUATIONS[moves], elsewhere),
     };
     let columns = schedule.columns() as f64;
-    let [from_table, along_line, by_periods, to_rest] = BY_COLUMN;
+    let [from_table, in_gross_slip, along_line, by_periods, to_rest] = BY_COLUMN;
     let passed = match schedule.resolves() {
         false => 0.0,
+        true if schedule.is_tabulated() && model.gross().is_some() => in_gross_slip,
         true if schedule.is_tabulated() => from_table,
         true if !schedule.leaves_axis() && !schedule.conditions().friction.remembers_slip() => along_line,
         true if schedule.lifts() => to_rest,
