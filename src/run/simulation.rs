@@ -1,7 +1,5 @@
 //! A scene simulated in memory: no file, no signal, nothing printed.
 
-use std::sync::Once;
-
 use super::budget;
 use super::cost::{self, Expected};
 use super::limit::header;
@@ -87,7 +85,6 @@ impl<'a> Simulation<'a> {
         shared: &Shared,
         writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
     ) -> Result<Self> {
-        keep_freed_memory();
         let Ready { simulation: stepping, limit } = Ready::new(scene, &shared.operators)?;
         if scene.numerics().stepper == Stepper::Implicit {
             stepping.model().release_factors();
@@ -211,16 +208,6 @@ struct End {
     limit: Option<LimitingShape>,
     outcome: Result<Outcome>,
     checkpoint: Checkpoint,
-}
-
-/// Has the allocator keep up to 32 MB of what is freed.
-///
-/// That of glibc gives what is free at the end of a heap back to the system beyond 128 kB, and takes it again, page by page, for the matrices of the next
-/// evaluation, which cost a quarter of a normal oscillation. Its bound is twice the largest block that it has mapped and seen freed.
-fn keep_freed_memory() {
-    static ONCE: Once = Once::new();
-    const BYTES: usize = 1 << 24;
-    ONCE.call_once(|| drop(std::hint::black_box(Vec::<u8>::with_capacity(BYTES))));
 }
 
 /// Runs to the end, and anew on more springs as long as the error is larger than was asked for.
