@@ -10,6 +10,7 @@
 //!
 //! Compressions and edge are what is stored ([`State`]); everything else is recomputed from them ([`Fields`]).
 
+mod construction;
 mod cycle;
 mod derivatives;
 mod envelope;
@@ -17,7 +18,6 @@ mod first_force;
 mod gross;
 mod jacobian;
 mod loops;
-mod mesh;
 mod motion;
 mod moving;
 mod operators;
@@ -28,6 +28,7 @@ mod spreading;
 mod stage;
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use crate::contact::InitialContact;
 use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
@@ -35,19 +36,23 @@ use crate::error::Result;
 use crate::numerics::abel::{AbelOperators, Backend};
 use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
+pub use construction::FEWEST_SPRINGS;
 pub use cycle::CycleFields;
 pub use gross::{Gross, GrossRates};
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
-pub use mesh::FEWEST_SPRINGS;
-use mesh::SpringMesh;
 pub use moving::{MovingStick, StickEdge, StickStage, StickTarget, StickTrial};
 pub use operators::OperatorStore;
+use operators::Operators;
 use output::OutputRadii;
 pub use output::RadialFields;
 pub use past::{Linearised, Past, PastPoint};
 pub use schedule::{AmplitudeControl, CycleLoading, Resolution, Schedule};
 pub use stage::{Target, Unknowns};
+
+/// Part of the annulus, next to the edge of stick, whose springs the output of a mesh that [`Clustering::follows_front`] leaves out. Wear proceeds towards the
+/// edge in a front, which is followed well as long as some springs are left before it.
+const HIDDEN: f64 = 3e-5;
 
 /// What a restart needs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -131,7 +136,36 @@ pub struct Model {
     slides: bool,
 }
 
+/// Where the springs are.
+#[derive(Debug, Clone)]
+enum SpringMesh {
+    /// From the edge of stick to the contact edge.
+    Annulus(Box<AnnulusMesh>),
+    /// From the axis to the contact edge, in gross slip.
+    Whole(Box<Gross>),
+}
+
+/// The slip annulus around a stick zone, or around a core that is left unworn where gross slip comes and goes.
+#[derive(Debug, Clone)]
+struct AnnulusMesh {
+    unworn: UnwornSlip,
+    operators: Arc<Operators>,
+    /// The unworn slip on the springs of the limit.
+    radial_unworn: Vec<UnwornValues>,
+    /// Springs next to the edge of stick that the output does not show.
+    hidden: usize,
+    moving: Option<MovingStick>,
+}
+
 impl Model {
+    /// The mesh of the slip annulus, which a contact in gross slip does not have.
+    fn annulus(&self) -> &AnnulusMesh {
+        match &self.mesh {
+            SpringMesh::Annulus(annulus) => annulus,
+            SpringMesh::Whole(_) => unreachable!("gross slip is stepped and read off over the whole contact"),
+        }
+    }
+
     /// The unworn contact.
     pub fn contact(&self) -> &InitialContact {
         &self.contact

@@ -2,8 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::mesh::HIDDEN;
-use super::{CycleFields, Fields, Model, State, StickEdge};
+use super::{CycleFields, Fields, HIDDEN, Model, State, StickEdge};
 use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::{Local, Mesh};

@@ -1,11 +1,11 @@
-//! How a contact is put on springs: over the slip annulus, or over the whole contact in gross slip.
-
-use std::sync::Arc;
+//! How a contact is put on springs.
 
 use super::envelope::Envelope;
-use super::operators::Operators;
 use super::output::OutputRadii;
-use super::{Gross, Model, MovingStick, OperatorStore, Resolution, Schedule, StickZone};
+use super::{
+    AnnulusMesh, Gross, HIDDEN, Model, MovingStick, OperatorStore, Resolution, Schedule, SpringMesh,
+    StickZone,
+};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
@@ -14,10 +14,6 @@ use crate::error::{Error, Result};
 use crate::laws::conditions::Conditions;
 use crate::numerics::abel::Backend;
 use crate::numerics::grid::Clustering;
-
-/// Part of the annulus, next to the edge of stick, whose springs the output of a mesh that [`Clustering::follows_front`] leaves out. Wear proceeds towards the
-/// edge in a front, which is followed well as long as some springs are left before it.
-pub(super) const HIDDEN: f64 = 3e-5;
 
 /// Largest stretch of the mesh of an edge of stick that creeps outwards: from a small stick zone it soon comes to a larger one, and next to finer cells
 /// errors grow.
@@ -34,27 +30,6 @@ pub const FEWEST_SPRINGS: usize = 8;
 
 /// Most springs in gross slip: polynomials over the whole contact have no use for more.
 const MOST_IN_GROSS_SLIP: usize = 160;
-
-/// Where the springs are.
-#[derive(Debug, Clone)]
-pub(super) enum SpringMesh {
-    /// From the edge of stick to the contact edge.
-    Annulus(Box<AnnulusMesh>),
-    /// From the axis to the contact edge, in gross slip.
-    Whole(Box<Gross>),
-}
-
-/// The slip annulus around a stick zone, or around a core that is left unworn where gross slip comes and goes.
-#[derive(Debug, Clone)]
-pub(super) struct AnnulusMesh {
-    pub(super) unworn: UnwornSlip,
-    pub(super) operators: Arc<Operators>,
-    /// The unworn slip on the springs of the limit.
-    pub(super) radial_unworn: Vec<UnwornValues>,
-    /// Springs next to the edge of stick that the output does not show.
-    pub(super) hidden: usize,
-    pub(super) moving: Option<MovingStick>,
-}
 
 impl Model {
     /// Puts a contact on springs under the laws, mode, blocks and control of its scene.
@@ -200,14 +175,6 @@ impl Model {
         };
         let offsets = model.gross_offsets(contact.contact_radius());
         Ok(model.shown_at(offsets))
-    }
-
-    /// The mesh of the slip annulus, which a contact in gross slip does not have.
-    pub(super) fn annulus(&self) -> &AnnulusMesh {
-        match &self.mesh {
-            SpringMesh::Annulus(annulus) => annulus,
-            SpringMesh::Whole(_) => unreachable!("gross slip is stepped and read off over the whole contact"),
-        }
     }
 
     /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
