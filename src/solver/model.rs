@@ -10,6 +10,7 @@
 //!
 //! Compressions and edge are what is stored ([`State`]); everything else is recomputed from them ([`Fields`]).
 
+mod construction;
 mod cycle;
 mod derivatives;
 mod envelope;
@@ -30,17 +31,13 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::contact::InitialContact;
-use crate::contact::closed_form::LimitingShape;
 use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
-use crate::contact::stick_slip::Regime;
-use crate::error::{Error, Result};
-use crate::laws::conditions::Conditions;
+use crate::error::Result;
 use crate::numerics::abel::{AbelOperators, Backend};
-use crate::numerics::grid::Clustering;
 use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
+pub use construction::FEWEST_SPRINGS;
 pub use cycle::CycleFields;
-use envelope::Envelope;
 pub use gross::{Gross, GrossRates};
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
@@ -56,22 +53,6 @@ pub use stage::{Target, Unknowns};
 /// Part of the annulus, next to the edge of stick, whose springs the output of a mesh that [`Clustering::follows_front`] leaves out. Wear proceeds towards the
 /// edge in a front, which is followed well as long as some springs are left before it.
 const HIDDEN: f64 = 3e-5;
-
-/// Largest stretch of the mesh of an edge of stick that creeps outwards: from a small stick zone it soon comes to a larger one, and next to finer cells
-/// errors grow.
-const MOST_STRETCHED: f64 = 3.0;
-
-/// Fewest springs for which operators are hierarchical where wear has no kinks: more than a run takes by itself, whose results are so those of dense
-/// ones. They take less time from 300 springs on, but there stencils may reach farther than a block of the mesh, and held tangential forces lose
-/// half of their steps (docs/many_springs.md). Where a small stick zone, from the last number of `ln(a0/c)` on, stretches the mesh, fewer are not smooth in it.
-const HIERARCHICAL: [usize; 2] = [601, 1000];
-const UNSTRETCHED: f64 = 3.5;
-
-/// Fewest springs on which the local polynomials fit.
-pub const FEWEST_SPRINGS: usize = 8;
-
-/// Most springs in gross slip: polynomials over the whole contact have no use for more.
-const MOST_IN_GROSS_SLIP: usize = 160;
 
 /// What a restart needs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -146,180 +127,43 @@ impl Fields {
 pub struct Model {
     contact: InitialContact,
     schedule: Schedule,
+    mesh: SpringMesh,
+    /// Where the output shows the fields.
+    output: OutputRadii,
+    /// The stick zone; the smallest one where its edge moves.
+    stick_zone: StickZone,
+    depth_scale: f64,
+    slides: bool,
+}
+
+/// Where the springs are.
+#[derive(Debug, Clone)]
+enum SpringMesh {
+    /// From the edge of stick to the contact edge.
+    Annulus(Box<AnnulusMesh>),
+    /// From the axis to the contact edge, in gross slip.
+    Whole(Box<Gross>),
+}
+
+/// The slip annulus around a stick zone, or around a core that is left unworn where gross slip comes and goes.
+#[derive(Debug, Clone)]
+struct AnnulusMesh {
     unworn: UnwornSlip,
     operators: Arc<Operators>,
     /// The unworn slip on the springs of the limit.
     radial_unworn: Vec<UnwornValues>,
     /// Springs next to the edge of stick that the output does not show.
     hidden: usize,
-    /// Where the output shows the fields.
-    output: OutputRadii,
-    /// The stick zone; the smallest one where its edge moves.
-    stick_zone: StickZone,
     moving: Option<MovingStick>,
-    depth_scale: f64,
-    slides: bool,
-    gross: Option<Gross>,
 }
 
 impl Model {
-    /// Puts a contact on springs under the laws, mode, blocks and control of its scene.
-    ///
-    /// # Arguments
-    /// * `contact` -- the contact of the first cycle
-    /// * `conditions` -- those of its scene, whose laws replace the ones in the contact
-    ///
-    /// # Errors
-    /// [`Error::Inconsistent`] if nothing slips or the conditions do not go together; [`Error::OutOfRange`] for too few springs; those of the transforms.
-    pub fn new(
-        contact: &InitialContact,
-        conditions: &Conditions,
-        springs: usize,
-        clustering: Clustering,
-    ) -> Result<Self> {
-        let schedule = Schedule::new(contact, conditions, Resolution::default())?;
-        Self::under(contact, schedule, springs, clustering, &OperatorStore::default())
-    }
-
-    /// Puts a contact on springs for what a schedule does to it, with operators from a store that other models share.
-    ///
-    /// # Arguments
-    /// * `contact` -- the contact of the first cycle
-    ///
-    /// # Errors
-    /// As [`Model::new`].
-    pub fn under(
-        contact: &InitialContact,
-        schedule: Schedule,
-        springs: usize,
-        clustering: Clustering,
-        store: &OperatorStore,
-    ) -> Result<Self> {
-        if Gross::follows(contact, &schedule)? {
-            return Self::in_gross_slip(contact, schedule, springs, store);
+    /// The mesh of the slip annulus, which a contact in gross slip does not have.
+    fn annulus(&self) -> &AnnulusMesh {
+        match &self.mesh {
+            SpringMesh::Annulus(annulus) => annulus,
+            SpringMesh::Whole(_) => unreachable!("gross slip is stepped and read off over the whole contact"),
         }
-        let backend = Self::backend(contact, &schedule, springs);
-        let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
-        let Envelope { contact, slides, surplus } = if uniform {
-            Envelope { contact: contact.clone(), slides: false, surplus: 0.0 }
-        } else {
-            schedule.envelope(contact)?
-        };
-        let contact = &contact;
-        let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
-        let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
-            what: "loading.amplitude",
-            why: format!(
-                "at an amplitude of {:e} m no spring slips in any cycle, so that nothing wears; ask for a larger one",
-                contact.amplitude()
-            ),
-        })?;
-        check_springs(springs)?;
-        let profile = contact.equivalent_profile();
-        let grading = profile.grading();
-        let moving = MovingStick::new(&schedule, contact, slides)?;
-        let farthest = match &moving {
-            Some(moving) => moving.farthest(contact)?,
-            None => contact.clone(),
-        };
-        if moving.is_some() && profile.end_of_table().is_some() {
-            // The closed form refuses profiles that lose contact in rings.
-            LimitingShape::from_contact(&farthest)?;
-        }
-        let unworn = UnwornSlip::new(
-            profile,
-            stick_radius,
-            farthest.slip_compression(),
-            surplus,
-            farthest.slip_area_offset(),
-        )?;
-        let stick_radius_squared = stick_radius * stick_radius;
-        let first = contact.contact_radius().powi(2);
-        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
-        let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
-        // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
-        let rests = matches!(clustering, Clustering::Cubic | Clustering::Even | Clustering::Front);
-        let clustering = if rests && surplus > 0.0 { Clustering::CreepingStick } else { clustering };
-        let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
-        let natural = match &moving {
-            Some(moving) if moving.creeps() => natural.min(MOST_STRETCHED),
-            _ => natural,
-        };
-        let stretch = clustering.stretch(natural, grading);
-        let operators = store.get(grading, stretch, springs, clustering, backend)?;
-        let radial_unworn: Vec<_> =
-            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_slip_area() * x)).collect();
-        let compression = contact.slip_compression();
-        let stick_load = 0.5 * profile.load_integral(stick_radius)
-            + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
-        let depth_scale = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
-        let hidden = match clustering {
-            clustering if clustering.follows_front() => {
-                operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN)
-            }
-            _ => 0,
-        };
-        Ok(Self {
-            contact: contact.clone(),
-            schedule,
-            output: OutputRadii::new(&unworn, operators.abel.mesh(), hidden),
-            unworn,
-            operators,
-            radial_unworn,
-            hidden,
-            stick_zone: StickZone {
-                stick_area: stick_radius_squared,
-                slip_compression: compression + surplus,
-                stick_load,
-            },
-            moving,
-            depth_scale,
-            slides,
-            gross: None,
-        })
-    }
-
-    /// A contact in gross slip, on a mesh of its own.
-    ///
-    /// That of the slip annulus is the smallest there is, for a contact in partial slip; nothing uses it.
-    fn in_gross_slip(
-        contact: &InitialContact,
-        schedule: Schedule,
-        springs: usize,
-        store: &OperatorStore,
-    ) -> Result<Self> {
-        check_springs(springs)?;
-        if springs > MOST_IN_GROSS_SLIP {
-            let why = format!(
-                "{springs} springs are more than the {MOST_IN_GROSS_SLIP} that gross slip is followed with; 17 are its default"
-            );
-            return Err(Error::Inconsistent { what: "numerics.springs", why });
-        }
-        let deepest = schedule.largest_indentation();
-        let contact = &match deepest == contact.indentation() {
-            true => contact.clone(),
-            false => contact.at(deepest, contact.slip_compression().max(deepest))?,
-        };
-        let gross = Gross::new(contact, &schedule, springs)?;
-        let half = contact.equivalent_profile().value(0.5 * contact.contact_radius());
-        let unused = contact.at(contact.indentation(), contact.indentation() - half)?;
-        let plain = Conditions::plain(*contact.friction(), *contact.wear());
-        let unused_schedule = Schedule::new(&unused, &plain, Resolution::default())?;
-        let mut model = Self::under(&unused, unused_schedule, FEWEST_SPRINGS, Clustering::Cubic, store)?;
-        let zone = StickZone { slip_compression: contact.slip_compression(), ..StickZone::default() };
-        (model.contact, model.schedule, model.stick_zone) = (contact.clone(), schedule, zone);
-        (model.slides, model.depth_scale, model.gross) = (true, contact.indentation(), Some(gross));
-        let offsets = model.gross_offsets(contact.contact_radius());
-        Ok(model.shown_at(offsets))
-    }
-
-    /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
-    pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
-        let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
-        let stretched = contact.stick_logarithm().is_none_or(|logarithm| logarithm > UNSTRETCHED);
-        let from = HIERARCHICAL[usize::from(stretched)];
-        let serve = springs >= from && schedule.is_plain() && stays;
-        if serve { Backend::Hierarchical } else { Backend::Dense }
     }
 
     /// The unworn contact.
@@ -339,18 +183,17 @@ impl Model {
 
     /// Whether every cycle is the same, with weak kinks at most, and the edge of stick rests, so that wear is nearly smooth in time.
     pub fn wears_steadily(&self) -> bool {
-        self.schedule.wears_nearly_smoothly() && self.moving.is_none() && !self.slides
+        self.schedule.wears_nearly_smoothly() && self.moving().is_none() && !self.slides
     }
 
     /// Whether wear goes on as long as the contact is moved: in gross slip under a held normal force.
     pub fn wears_without_end(&self) -> bool {
-        self.moving.as_ref().is_some_and(MovingStick::slides)
-            || self.gross.as_ref().is_some_and(Gross::holds_force)
+        self.moving().is_some_and(MovingStick::slides) || self.gross().is_some_and(Gross::holds_force)
     }
 
     /// Relative uncertainty of the worn volume by the core that stays unworn in gross slip; zero where a stick zone is left.
     pub fn core_uncertainty(&self) -> f64 {
-        let core = self.gross.is_none() && self.moving.as_ref().is_none_or(MovingStick::slides);
+        let core = self.gross().is_none() && self.moving().is_none_or(MovingStick::slides);
         if self.slides && core { envelope::core_share(self.contact.half_space().grading()) } else { 0.0 }
     }
 
@@ -366,22 +209,24 @@ impl Model {
 
     /// The transforms.
     pub fn operators(&self) -> &AbelOperators {
-        &self.operators.abel
+        &self.annulus().operators.abel
     }
 
     /// The unworn slip.
     pub fn unworn(&self) -> &UnwornSlip {
-        &self.unworn
+        &self.annulus().unworn
     }
 
     /// Frees memory that only explicit steps and the search for a state need, where it is much.
     pub fn release_factors(&self) {
-        self.operators.release_factors();
+        if let SpringMesh::Annulus(annulus) = &self.mesh {
+            annulus.operators.release_factors();
+        }
     }
 
     /// Number of springs, the contact edge included.
     pub fn springs(&self) -> usize {
-        self.gross.as_ref().map_or(self.operators.abel.len(), Gross::springs)
+        self.gross().map_or_else(|| self.annulus().operators.abel.len(), Gross::springs)
     }
 
     /// Largest depth of the limit on the springs, m: what tolerances are relative to.
@@ -404,16 +249,17 @@ impl Model {
     /// # Errors
     /// [`Error::NotConverged`] if no edge is found.
     pub fn initial_state(&self) -> Result<State> {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return Ok(self.gross_initial_state(gross));
         }
-        let stick = self.moving.as_ref().map(|moving| moving.start(self)).transpose()?;
+        let stick = self.moving().map(|moving| moving.start(self)).transpose()?;
         let stick_zone = self.stick_zone_in(stick.as_ref(), &self.schedule.loading(0.0, 0.0));
         let guess = self.contact.contact_radius().powi(2) - stick_zone.stick_area;
         let guess = if stick.is_some() { guess } else { self.contact.slip_area_offset() };
-        let limit = self.unworn.limit_slip_area() + self.stick_zone.stick_area - stick_zone.stick_area;
+        let limit =
+            self.annulus().unworn.limit_slip_area() + self.stick_zone.stick_area - stick_zone.stick_area;
         let mismatch = |slip_area: f64| self.mismatch_at(&stick_zone, slip_area, |_, values| values.slip);
-        let slip_area = match self.operators.abel.backend() {
+        let slip_area = match self.annulus().operators.abel.backend() {
             Backend::Dense => {
                 let (mut low, mut high) = (0.98 * guess, (1.02 * guess).min(limit));
                 while mismatch(low) < 0.0 && low > 0.5 * guess {
@@ -457,7 +303,8 @@ impl Model {
         let inner = self.springs() - 1;
         let values: Vec<_> = self.unworn_on_springs(stick_zone, slip_area).collect();
         let elastic = |(i, values): (usize, &UnwornValues)| values.limit_slip - slip(i, values);
-        let carried = self.operators.depth_at_edge(values.iter().take(inner).enumerate().map(elastic));
+        let carried =
+            self.annulus().operators.depth_at_edge(values.iter().take(inner).enumerate().map(elastic));
         values[inner].limit_slip - values[inner].slip - carried
     }
 
@@ -476,7 +323,7 @@ impl Model {
         let values: Vec<_> = self.unworn_on_springs(stick_zone, slip_area).collect();
         let depth = |(i, v): (usize, &UnwornValues)| v.limit_slip - slip(i, v);
         let mut solution: Vec<f64> = values.iter().take(inner).enumerate().map(depth).collect();
-        self.operators.solve_profile(&mut solution);
+        self.annulus().operators.solve_profile(&mut solution);
         let (scale, at_stick) = (slip_area.powf(-self.mu()), self.density_factor_at_stick(stick_zone));
         for (q, v) in solution.iter_mut().zip(&values) {
             *q *= scale / (at_stick * self.density_ratio(v));
@@ -511,7 +358,7 @@ impl Model {
         ] {
             part.resize(n, 0.0);
         }
-        let nodes = &self.operators.abel.nodes()[1..];
+        let nodes = &self.annulus().operators.abel.nodes()[1..];
         fields.unworn.resize(n, UnwornValues::default());
         self.on_springs(&mut fields.unworn, |i| self.unworn_at(stick_zone, slip_area * nodes[i]));
         let at_stick = self.density_factor_at_stick(stick_zone);
@@ -519,7 +366,7 @@ impl Model {
         self.on_springs(&mut fields.density_factor, |i| at_stick * self.density_ratio(&unworn[i]));
         fields.density.clear();
         fields.density.extend(compression.iter().zip(&fields.density_factor).map(|(q, factor)| q * factor));
-        let [profile, pressure] = self.operators.abel.transforms();
+        let [profile, pressure] = self.annulus().operators.abel.transforms();
         profile.apply(&fields.density, &mut fields.elastic_depth);
         pressure.apply(compression, &mut fields.pressure);
         let (profile_scale, pressure_scale) = (slip_area.powf(mu), stiffness / PI * slip_area.powf(-mu));
@@ -538,7 +385,7 @@ impl Model {
         let fill = |first: usize, part: &mut [T]| {
             part.iter_mut().enumerate().for_each(|(i, to)| *to = value(first + i));
         };
-        match self.operators.abel.backend() {
+        match self.annulus().operators.abel.backend() {
             Backend::Dense => fill(0, values),
             Backend::Hierarchical => in_parallel(values, 1, fill),
         }
@@ -546,7 +393,7 @@ impl Model {
 
     /// The fields of a state.
     pub fn fields(&self, state: &State) -> Fields {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return self.gross_fields(gross, state);
         }
         let mut fields = Fields::default();
@@ -574,14 +421,16 @@ impl Model {
         slip_area: f64,
     ) -> impl Iterator<Item = UnwornValues> {
         let stick_zone = *stick_zone;
-        self.operators.abel.nodes()[1..].iter().map(move |x| self.unworn_at(&stick_zone, slip_area * x))
+        self.annulus().operators.abel.nodes()[1..]
+            .iter()
+            .map(move |x| self.unworn_at(&stick_zone, slip_area * x))
     }
 
     /// The unworn slip at `z = r² - c²`, m², of the edge of a stick zone.
     fn unworn_at(&self, stick_zone: &StickZone, z: f64) -> UnwornValues {
-        match &self.moving {
-            None => self.unworn.at(z),
-            Some(_) => self.unworn.at_stick(stick_zone.stick_area, stick_zone.slip_compression, z),
+        match self.moving() {
+            None => self.annulus().unworn.at(z),
+            Some(_) => self.annulus().unworn.at_stick(stick_zone.stick_area, stick_zone.slip_compression, z),
         }
     }
 
@@ -599,9 +448,4 @@ impl Model {
     fn density_ratio(&self, values: &UnwornValues) -> f64 {
         (-self.mu() * values.logarithm).exp()
     }
-}
-
-fn check_springs(springs: usize) -> Result<()> {
-    let (name, value, range) = ("numerics.springs", springs as f64, "[8, inf)");
-    if springs < FEWEST_SPRINGS { Err(Error::OutOfRange { name, value, range }) } else { Ok(()) }
 }

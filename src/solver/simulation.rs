@@ -494,27 +494,7 @@ impl Simulation {
         target: Option<f64>,
     ) -> Result<bool> {
         let depth = self.model.depth_on_springs(&state, &fields);
-        let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
-        let interpolation = match self.model.operators().mesh().clustering() {
-            Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
-            Clustering::Even => KINKED_INTERPOLATION,
-            _ if self.model.schedule().is_uniform() => INTERPOLATION,
-            _ => KINKED_INTERPOLATION,
-        };
-        let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
-        let gross = self.model.gross().is_some();
-        let mut pairs = depth.iter().zip(&self.depth);
-        let grew = pairs.all(|(now, before)| *now >= before - allowed);
-        let possible = gross || (fields.are_physical() && self.compressions_are_possible(&state));
-        if !(grew && possible) {
-            self.healed_at =
-                depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed).map(|at| {
-                    let stick = self.model.contact().stick_radius().unwrap_or_default();
-                    let nodes = self.model.operators().nodes();
-                    (stick * stick
-                        + self.model.unworn().limit_slip_area() * nodes[(at + 1).min(nodes.len() - 1)])
-                    .sqrt()
-                });
+        if self.model.gross().is_none() && !self.is_possible(&state, &fields, &depth) {
             return Ok(false);
         }
         self.healed_at = None;
@@ -565,6 +545,29 @@ impl Simulation {
         } else {
             best.clamp(SMALLEST_FACTOR * step, 0.5 * step)
         };
+    }
+
+    /// Whether a state is one of a contact in which wear became deeper everywhere; notes the radius where it did not.
+    fn is_possible(&mut self, state: &State, fields: &Fields, depth: &[f64]) -> bool {
+        let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
+        let interpolation = match self.model.operators().mesh().clustering() {
+            Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
+            Clustering::Even => KINKED_INTERPOLATION,
+            _ if self.model.schedule().is_uniform() => INTERPOLATION,
+            _ => KINKED_INTERPOLATION,
+        };
+        let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
+        let healed = depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed);
+        if healed.is_none() && fields.are_physical() && self.compressions_are_possible(state) {
+            return true;
+        }
+        self.healed_at = healed.map(|at| {
+            let stick = self.model.contact().stick_radius().unwrap_or_default();
+            let nodes = self.model.operators().nodes();
+            let x = nodes[(at + 1).min(nodes.len() - 1)];
+            (stick * stick + self.model.unworn().limit_slip_area() * x).sqrt()
+        });
+        false
     }
 }
 

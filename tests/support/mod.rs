@@ -89,13 +89,16 @@ pub struct Seen {
     pub state: State,
     pub wear_volume: f64,
     pub wear_depth: Vec<f64>,
-    /// Wear depth, m, at fixed parts of the annulus of the limit, whatever the springs.
+    /// Wear depth, m, at fixed parts of the annulus of the limit, whatever the springs; none in gross slip, which has no such annulus.
     pub depth_at_parts: Vec<f64>,
     pub steps: u64,
 }
 
 fn depth_at_parts(simulation: &Simulation) -> Vec<f64> {
     let model = simulation.model();
+    if model.gross().is_some() {
+        return vec![];
+    }
     let limit = model.unworn().limit_slip_area();
     let near = (0..40).map(|i| 10f64.powf(-4.0 + 0.1 * f64::from(i)));
     let parts = near.chain((1..100).map(|i| 0.01 * f64::from(i)));

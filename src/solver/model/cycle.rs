@@ -89,7 +89,7 @@ impl CycleFields {
 impl Model {
     /// What a cycle does to the contact whose fields are given.
     pub fn cycle(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> CycleFields {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return self.gross_cycle(gross, loading, compression);
         }
         let mut cycle = self.local_cycle(loading, compression, fields);
@@ -230,7 +230,7 @@ impl Model {
             // Without compression, at the contact edge, springs are free.
             let slip_of = |j: usize, m: usize| if j < inner { motion.slip[(j, m)] } else { motion.free[m] };
             let moved = Mat::from_fn(n, columns, |j, m| (slip_of(j, m) - free[m]) * fields.density_factor[j]);
-            product(&mut slip, self.operators.abel.profile().as_ref(), moved.as_ref(), scale);
+            product(&mut slip, self.annulus().operators.abel.profile().as_ref(), moved.as_ref(), scale);
             for i in 0..n {
                 let uniform = self.uniform_slip(fields, i);
                 for m in 0..columns {
@@ -277,7 +277,7 @@ impl Model {
             motion.slip[(j, unknown[m])] * fields.density_factor[j]
         });
         let mut found = Mat::zeros(n, unknown.len());
-        product_without_signs(&mut found, self.operators.abel.profile(), slipped.as_ref());
+        product_without_signs(&mut found, self.annulus().operators.abel.profile(), slipped.as_ref());
         if motion.paired {
             turn_to_pairs(&mut found, motion.components);
         }
@@ -385,7 +385,7 @@ impl Model {
         {
             for j in 0..inner {
                 for i in 0..n {
-                    matrix[(i, j)] += by_pressure * self.operators.abel.pressure(i, j);
+                    matrix[(i, j)] += by_pressure * self.annulus().operators.abel.pressure(i, j);
                 }
             }
             for (i, by_slip_area) in by_slip_area.into_iter().enumerate() {
@@ -406,12 +406,12 @@ impl Model {
         let spread = spreading.map(|it| self.spread_pressure(loading, &motion, compression, fields, it));
         let pressure = |i: usize, j: usize| match &spread {
             Some(spread) => spread[(i, j)],
-            None => self.operators.abel.pressure(i, j),
+            None => self.annulus().operators.abel.pressure(i, j),
         };
         let at_contact = self.share_at_contact(loading, fields, cycle);
         let per_cycle = at_contact * factor / loading.cycles_per_period;
         let scale = fields.slip_area.powf(self.mu());
-        let profile = self.operators.abel.profile();
+        let profile = self.annulus().operators.abel.profile();
         let total: Vec<f64> = (0..n).map(|i| worn.by_pressure.row(i).iter().sum()).collect();
         for columns in blocks(inner) {
             let (first, count) = (columns.start, columns.len());
@@ -473,7 +473,7 @@ impl Model {
         let inner = load.nrows();
         let next = |j: usize, m: usize| if j + 1 < inner { load[(j + 1, m)] } else { 0.0 };
         let differences = Mat::from_fn(inner, load.ncols(), |j, m| next(j, m) - load[(j, m)]);
-        let weights = self.operators.abel.pressure_by_differences().subcols(0, inner);
+        let weights = self.annulus().operators.abel.pressure_by_differences().subcols(0, inner);
         product(to, weights, differences.as_ref(), scale);
     }
 
@@ -493,7 +493,7 @@ impl Model {
         let density: Vec<f64> =
             values.zip(&fields.density_factor).map(|(value, factor)| value * factor).collect();
         let mut depth = vec![0.0; self.springs()];
-        self.operators.abel.transforms()[0].apply(&density, &mut depth);
+        self.annulus().operators.abel.transforms()[0].apply(&density, &mut depth);
         let scale = fields.slip_area.powf(self.mu());
         depth.iter_mut().for_each(|value| *value *= scale);
         depth
@@ -505,13 +505,13 @@ impl Model {
             energies.zip(&fields.density_factor).map(|(e, factor)| e * factor).collect();
         self.contact.half_space().normal_stiffness()
             * fields.slip_area
-            * dot(self.operators.abel.spring_sum(), &densities)
+            * dot(self.annulus().operators.abel.spring_sum(), &densities)
     }
 
     /// Radii of the springs, m.
     pub(super) fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
         let squared = |x: &f64| fields.stick_zone.stick_area + fields.slip_area * x;
-        self.operators.abel.nodes()[1..].iter().map(|x| squared(x).sqrt()).collect()
+        self.annulus().operators.abel.nodes()[1..].iter().map(|x| squared(x).sqrt()).collect()
     }
 
     /// Radius of the innermost spring that slips; the mesh begins where the first one does.
@@ -519,9 +519,9 @@ impl Model {
         let slips = |j: &usize| (0..motion.slip.ncols()).any(|m| motion.slip[(*j, m)] != 0.0);
         match (0..motion.slip.nrows()).find(slips) {
             Some(0) => fields.stick_zone.stick_area.sqrt(),
-            Some(j) => {
-                (fields.stick_zone.stick_area + fields.slip_area * self.operators.abel.nodes()[j]).sqrt()
-            }
+            Some(j) => (fields.stick_zone.stick_area
+                + fields.slip_area * self.annulus().operators.abel.nodes()[j])
+                .sqrt(),
             None => (fields.stick_zone.stick_area + fields.slip_area).sqrt(),
         }
     }

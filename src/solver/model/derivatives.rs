@@ -52,13 +52,13 @@ pub(super) fn derivative_stencils(mesh: &Mesh, back: usize) -> Vec<Stencil> {
 impl Model {
     /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
     pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
-        self.operators.derivative.iter().map(|stencil| stencil.apply(values)).collect()
+        self.annulus().operators.derivative.iter().map(|stencil| stencil.apply(values)).collect()
     }
 
     /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.
     pub fn elastic_depth_by_slip_area(&self, fields: &Fields) -> Vec<f64> {
         let mu = self.mu();
-        let nodes = &self.operators.abel.nodes()[1..];
+        let nodes = &self.annulus().operators.abel.nodes()[1..];
         let moved: Vec<f64> = fields
             .density
             .iter()
@@ -66,7 +66,7 @@ impl Model {
             .map(|(u, x)| -mu * u * x / (fields.stick_zone.stick_area + fields.slip_area * x))
             .collect();
         let mut change = vec![0.0; self.springs()];
-        self.operators.abel.transforms()[0].apply(&moved, &mut change);
+        self.annulus().operators.abel.transforms()[0].apply(&moved, &mut change);
         let scale = fields.slip_area.powf(mu);
         change
             .iter()
@@ -78,9 +78,9 @@ impl Model {
     /// Derivative of `λ` by the edge at constant compressions, 1/m², shape `(springs,)`.
     pub fn log_slip_by_slip_area(&self, fields: &Fields) -> Vec<f64> {
         let elastic = self.elastic_depth_by_slip_area(fields);
-        let nodes = &self.operators.abel.nodes()[1..];
+        let nodes = &self.annulus().operators.abel.nodes()[1..];
         let rate = |i: usize| {
-            let slopes = self.unworn.slopes(&fields.unworn[i]);
+            let slopes = self.annulus().unworn.slopes(&fields.unworn[i]);
             (nodes[i] * slopes.limit_slip - elastic[i]) / fields.slip_depth[i] - nodes[i] * slopes.log_slip
         };
         let mut by_slip_area = vec![0.0; nodes.len()];
@@ -90,7 +90,7 @@ impl Model {
 
     /// Derivative of the elastic depth at spring `i` by the compression of spring `j`, over `Z^(1-ν)`: `F_ij x_j^(k-1)`.
     pub fn elastic_depth_by_compression(&self, fields: &Fields, i: usize, j: usize) -> f64 {
-        self.operators.abel.profile()[(i, j)] * fields.density_factor[j]
+        self.annulus().operators.abel.profile()[(i, j)] * fields.density_factor[j]
     }
 
     /// Rates per cycle of the edge, m², and of the compressions, m, that follow from a cycle: wear as an explicit differential
@@ -105,7 +105,7 @@ impl Model {
             (0..inner).map(|i| slip[i] * (by_slip_area[i] - along[i] / fields.slip_area)).collect();
         // At the edge, where wear is zero: F q' = ∂(F q_0 - F q)/∂Z Z'.
         let edge_slope = slip[inner] * by_slip_area[inner];
-        let at_edge = [&mut worn, &mut moved].map(|depth| self.operators.solve_profile(depth));
+        let at_edge = [&mut worn, &mut moved].map(|depth| self.annulus().operators.solve_profile(depth));
         let slip_area_rate = -at_edge[0] / (at_edge[1] - edge_slope);
         let scale = fields.slip_area.powf(-self.mu());
         let rate = |i: usize| scale / fields.density_factor[i] * (worn[i] + moved[i] * slip_area_rate);
@@ -119,7 +119,7 @@ impl Model {
         let mut fields = Fields::default();
         for _ in 0..20 {
             self.evaluate(slip_area, compression, &mut fields);
-            let slopes = self.unworn.slopes(&fields.unworn[last]);
+            let slopes = self.annulus().unworn.slopes(&fields.unworn[last]);
             let slope = slopes.limit_slip
                 - fields.unworn[last].slip * slopes.log_slip
                 - self.elastic_depth_by_slip_area(&fields)[last];
@@ -128,7 +128,7 @@ impl Model {
             if change.abs() <= 1e-15 * slip_area {
                 return Ok(slip_area);
             }
-            if !(slip_area > 0.0 && slip_area < self.unworn.largest_slip_area()) {
+            if !(slip_area > 0.0 && slip_area < self.annulus().unworn.largest_slip_area()) {
                 break;
             }
         }
@@ -148,11 +148,11 @@ impl Model {
             // Cells inside a radius add nothing to it but through the stencils that reach one node back and two ahead.
             let first = j.saturating_sub(MOST_POINTS);
             let factor = fields.density_factor[j];
-            let column = self.operators.abel.profile().col_as_slice(j);
+            let column = self.annulus().operators.abel.profile().col_as_slice(j);
             for ((change, column), slip) in changed.iter_mut().zip(column).zip(&per_slip).skip(first) {
                 *change = factor * column * slip;
             }
-            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.operators.derivative);
+            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.annulus().operators.derivative);
             for (i, (entry, stencil)) in rows.enumerate().take(n - 1).skip(first) {
                 let along = stencil.apply(&changed);
                 *entry += changed[i] - theta * along;

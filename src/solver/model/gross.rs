@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 
 use super::first_force::first_force;
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::{CycleFields, Fields, Model, RadialFields, State, StickZone};
+use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
@@ -140,7 +140,10 @@ fn unworn_compression(contact: &InitialContact, mesh: &WholeContact) -> Vec<f64>
 impl Model {
     /// The mesh of gross slip, where the contact is in gross slip and that is followed on a mesh of its own.
     pub fn gross(&self) -> Option<&Gross> {
-        self.gross.as_ref()
+        match &self.mesh {
+            SpringMesh::Annulus(_) => None,
+            SpringMesh::Whole(gross) => Some(gross),
+        }
     }
 
     /// Radii of the output, m², squared, of a contact that grows to a radius, m.
@@ -309,13 +312,13 @@ impl Model {
 
     /// Weights of such a sum over the springs of the mesh.
     pub(super) fn spring_weights(&self, fields: &Fields) -> Vec<f64> {
-        match &self.gross {
+        match self.gross() {
             Some(gross) => {
                 let scale = fields.slip_area.powf(1.0 - self.mu());
                 gross.mesh.load_weights().iter().map(|weight| scale * weight).collect()
             }
             None => {
-                let springs = self.operators.abel.spring_sum().iter().zip(&fields.density_factor);
+                let springs = self.annulus().operators.abel.spring_sum().iter().zip(&fields.density_factor);
                 springs.map(|(weight, factor)| fields.slip_area * weight * factor).collect()
             }
         }

@@ -136,13 +136,13 @@ impl Model {
         by_slip_area: &[f64],
         memory: Option<StageFactors>,
     ) -> Option<StageFactors> {
-        let compressed = self.operators.compressed()?;
+        let compressed = self.annulus().operators.compressed()?;
         let scale = fields.slip_area.powf(self.mu());
         let row_factor: Vec<f64> = fields.slip_depth.iter().map(|slip| -scale / slip).collect();
         let inner = self.springs() - 1;
         let jacobian = Jacobian {
-            abel: &self.operators.abel,
-            stencils: &self.operators.derivative,
+            abel: &self.annulus().operators.abel,
+            stencils: &self.annulus().operators.derivative,
             row_factor: &row_factor,
             column_factor: &fields.density_factor[..inner],
             along: theta,

@@ -275,6 +275,7 @@ impl Model {
         let grading = half_space.grading();
         let slips: Vec<f64> = slip.iter().map(|(value, _)| f64::from(u8::from(*value > 0.0))).collect();
         let weights: Vec<f64> = self
+            .annulus()
             .operators
             .abel
             .spring_sum()
@@ -310,7 +311,9 @@ impl Model {
             .map(|(q, factor)| factor * (ratio * amplitude).min(resistance(loading, grading, *q)))
             .collect();
         self.stuck_force(fields, amplitude)
-            + half_space.normal_stiffness() * fields.slip_area * dot(self.operators.abel.spring_sum(), &borne)
+            + half_space.normal_stiffness()
+                * fields.slip_area
+                * dot(self.annulus().operators.abel.spring_sum(), &borne)
     }
 
     /// Tangential force, N, of the springs within the last stick radius.

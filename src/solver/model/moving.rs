@@ -26,7 +26,7 @@ mod stage;
 use std::f64::consts::PI;
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::{Fields, Model, State, StickZone};
+use super::{Fields, Model, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::indenter::EquivalentProfile;
 use crate::error::{Error, Result};
@@ -346,12 +346,15 @@ fn unworn_load(profile: &EquivalentProfile, radius: f64, slip_compression: f64) 
 impl Model {
     /// How the edge of stick moves, if it does.
     pub fn moving(&self) -> Option<&MovingStick> {
-        self.moving.as_ref()
+        match &self.mesh {
+            SpringMesh::Annulus(annulus) => annulus.moving.as_ref(),
+            SpringMesh::Whole(_) => None,
+        }
     }
 
     /// Whether a stick zone that shrinks has come to the core of the mesh, or breaks away before.
     pub fn loses_stick(&self, state: &State) -> bool {
-        let tangential = self.moving.as_ref().is_some_and(|moving| moving.cause == Cause::Tangential);
+        let tangential = self.moving().is_some_and(|moving| moving.cause == Cause::Tangential);
         let core = self.stick_zone.stick_area;
         let shrunk = state.stick.as_ref().is_some_and(|stick| stick.area < LOST * core);
         self.slides && tangential && shrunk || self.breaks_away(state)
@@ -359,7 +362,7 @@ impl Model {
 
     /// Where the mesh begins, with the edge of stick of a state.
     pub(super) fn stick_zone_in(&self, stick: Option<&StickEdge>, loading: &CycleLoading) -> StickZone {
-        let (Some(moving), Some(stick)) = (&self.moving, stick) else { return self.stick_zone };
+        let (Some(moving), Some(stick)) = (self.moving(), stick) else { return self.stick_zone };
         let slip_compression = match moving.cause {
             Cause::Tangential | Cause::Friction => self.contact.indentation() - stick.depth,
             _ if moving.keeps => stick.slip_compression,
@@ -373,7 +376,7 @@ impl Model {
     /// Indentation, m, from which the compressions of the core within a stick zone are seen: unworn ground there sticks, and comes to lie deeper
     /// where a normal force is held.
     pub(super) fn depth_over_core(&self, stick_zone: &StickZone) -> f64 {
-        match self.moving.as_ref().map(|moving| moving.cause) {
+        match self.moving().map(|moving| moving.cause) {
             Some(
                 Cause::NormalForce(_)
                 | Cause::BothForces(_)
@@ -389,7 +392,7 @@ impl Model {
 
     /// Adds the part of a held force that the quadrature over the springs misses in the first cycle to the load of the stick zone.
     pub(super) fn close_force(&self, mut state: State) -> State {
-        let cause = self.moving.as_ref().map(|moving| moving.cause);
+        let cause = self.moving().map(|moving| moving.cause);
         let held = cause.and_then(Cause::normal_force);
         let Some(force) = held else { return state };
         let left = force - self.normal_force(&self.fields(&state));
@@ -402,7 +405,7 @@ impl Model {
     /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
         let loading = self.after_energy(loading, state.dissipated_energy);
-        match (self.moving.as_ref().map(|moving| moving.cause), &state.stick) {
+        match (self.moving().map(|moving| moving.cause), &state.stick) {
             (Some(Cause::Tangential), Some(stick)) => {
                 self.displaced(loading, self.contact.indentation() - stick.depth)
             }
@@ -435,10 +438,10 @@ impl Model {
 
     /// Indentation in a state, m.
     pub fn indentation(&self, state: &State) -> f64 {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return self.gross_indentation(gross, state);
         }
-        match (&self.moving, &state.stick) {
+        match (self.moving(), &state.stick) {
             (Some(MovingStick { cause: Cause::NormalForce(_), .. }), Some(stick)) => {
                 let loading = self.schedule.loading(state.cycles, state.cycles);
                 let loading = self.after_energy(loading, state.dissipated_energy);
@@ -461,7 +464,7 @@ impl Model {
     ///
     /// By the rates of the steps it would be off there, for wear sets in where the contact edge comes past a radius within a step.
     pub fn settle_depth(&self, state: &mut State, fields: &Fields) {
-        let (Some(moving), Some(stick)) = (&self.moving, &mut state.stick) else { return };
+        let (Some(moving), Some(stick)) = (self.moving(), &mut state.stick) else { return };
         let first = moving.span[0].exp();
         for (offset, depth) in self.output.offsets().iter().zip(&mut stick.wear_depth) {
             let squared = self.stick_zone.stick_area + offset;
@@ -471,7 +474,8 @@ impl Model {
             }
             let x = z / fields.slip_area;
             *depth = if x < 1.0 {
-                let unworn = self.unworn.at_stick(stick.area, fields.stick_zone.slip_compression, z).slip;
+                let unworn =
+                    self.annulus().unworn.at_stick(stick.area, fields.stick_zone.slip_compression, z).slip;
                 let grown = unworn * self.between_springs(&fields.log_slip, x).exp_m1();
                 (grown - moving.left_behind(&stick.left_behind, squared)).max(0.0)
             } else {
@@ -482,7 +486,7 @@ impl Model {
 
     /// Value between the springs of a quantity given at all of them.
     pub(super) fn between_springs(&self, values: &[f64], x: f64) -> f64 {
-        let mesh = self.operators.abel.mesh();
+        let mesh = self.annulus().operators.abel.mesh();
         mesh.interpolate(values, mesh.place(x))
     }
 }

@@ -40,18 +40,20 @@ pub struct RadialFields {
 impl Model {
     /// The same contact on the same springs, with the radii of the output at `r² - c²`, m², increasing, instead of its own.
     pub(crate) fn shown_at(mut self, offsets: Vec<f64>) -> Self {
-        if self.gross.is_some() {
+        if self.gross().is_some() {
             self.output = OutputRadii { unworn: vec![], offsets };
             return self;
         }
-        self.output =
-            OutputRadii { unworn: offsets.iter().map(|offset| self.unworn.at(*offset)).collect(), offsets };
+        self.output = OutputRadii {
+            unworn: offsets.iter().map(|offset| self.annulus().unworn.at(*offset)).collect(),
+            offsets,
+        };
         self
     }
 
     /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
     pub fn wear_volume(&self, fields: &Fields) -> f64 {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return self.gross_volume(gross, fields);
         }
         self.volume(fields.slip_area, &fields.wear_depth)
@@ -67,22 +69,22 @@ impl Model {
 
     /// Worn volume of the limit by the program's own quadrature, m³.
     pub fn limit_volume(&self) -> f64 {
-        let depth: Vec<f64> = self.radial_unworn.iter().map(UnwornValues::limit_depth).collect();
-        self.volume(self.unworn.limit_slip_area(), &depth)
+        let depth: Vec<f64> = self.annulus().radial_unworn.iter().map(UnwornValues::limit_depth).collect();
+        self.volume(self.annulus().unworn.limit_slip_area(), &depth)
     }
 
     /// Depth that the mesh does not resolve in the unworn slip, over the limit's largest: waves of a table that are too short for it. None where the
     /// indenter is not a table, or the edge of stick moves.
     pub fn unseen_depth(&self) -> Option<f64> {
         self.contact.equivalent_profile().end_of_table()?;
-        if self.moving.is_some() || self.gross.is_some() {
+        if self.moving().is_some() || self.gross().is_some() {
             return None;
         }
-        let (mesh, count) = (self.operators.abel.mesh(), self.springs());
+        let (mesh, count) = (self.annulus().operators.abel.mesh(), self.springs());
         let smooth = |unworn: &UnwornValues| unworn.slip.ln() - (1.0 + self.mu()) * unworn.logarithm.ln();
-        let springs: Vec<f64> = self.radial_unworn.iter().map(smooth).collect();
+        let springs: Vec<f64> = self.annulus().radial_unworn.iter().map(smooth).collect();
         let missed = |y: f64| {
-            let unworn = self.unworn.at(self.unworn.limit_slip_area() * mesh.at(y).value);
+            let unworn = self.annulus().unworn.at(self.annulus().unworn.limit_slip_area() * mesh.at(y).value);
             unworn.slip * (mesh.local(y, count).sum(&springs) - smooth(&unworn)).abs()
         };
         let between = (1..count).flat_map(|i| [0.25, 0.5, 0.75].map(|part| i as f64 + part));
@@ -90,16 +92,16 @@ impl Model {
     }
 
     pub(super) fn volume(&self, slip_area: f64, wear_depth: &[f64]) -> f64 {
-        PI * slip_area * dot(self.operators.abel.depth_sum(), wear_depth)
+        PI * slip_area * dot(self.annulus().operators.abel.depth_sum(), wear_depth)
     }
 
     /// Normal force, N [S, Eq. (22)].
     pub fn normal_force(&self, fields: &Fields) -> f64 {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return self.gross_normal_force(gross, fields);
         }
         let slipping = fields.slip_area
-            * dot(&self.operators.abel.spring_sum()[..fields.density.len()], &fields.density);
+            * dot(&self.annulus().operators.abel.spring_sum()[..fields.density.len()], &fields.density);
         self.contact.half_space().normal_stiffness() * (2.0 * fields.stick_zone.stick_load + slipping)
     }
 
@@ -115,7 +117,7 @@ impl Model {
         let sum: f64 = compression
             .iter()
             .zip(&fields.density)
-            .zip(self.operators.abel.spring_sum())
+            .zip(self.annulus().operators.abel.spring_sum())
             .map(|((q, u), weight)| weight * u * (slipping - q))
             .sum();
         4.0 * friction * friction / half_space.stiffness_ratio()
@@ -133,14 +135,15 @@ impl Model {
         let half_space = self.contact.half_space();
         let q = 1.0 + half_space.grading();
         let limit = self.contact.friction().coefficient / half_space.stiffness_ratio();
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             let moved: Vec<f64> = compression.iter().map(|q| displacement.min(limit * q)).collect();
             return half_space.stiffness_ratio()
                 * half_space.normal_stiffness()
                 * self.gross_sum(gross, fields, &moved);
         }
         let stuck = 2.0 * displacement * fields.stick_zone.stick_area.powf(0.5 * q) / q;
-        let springs = compression.iter().zip(&fields.density_factor).zip(self.operators.abel.spring_sum());
+        let springs =
+            compression.iter().zip(&fields.density_factor).zip(self.annulus().operators.abel.spring_sum());
         let moved: f64 =
             springs.map(|((q, factor), weight)| weight * factor * displacement.min(limit * q)).sum();
         half_space.stiffness_ratio() * half_space.normal_stiffness() * (stuck + fields.slip_area * moved)
@@ -182,23 +185,23 @@ impl Model {
     }
 
     fn reaches_the_middle(&self, stick_radius: f64) -> bool {
-        self.gross.is_some() && stick_radius == 0.0
+        self.gross().is_some() && stick_radius == 0.0
             || self.slides && stick_radius < MIDDLE * self.stick_zone.stick_area.sqrt()
     }
 
     /// Wear depth, m, at any `offset = r² - c²`, m², where the edge of stick left no worn ground behind.
     pub fn wear_depth_at(&self, state: &State, fields: &Fields, offset: f64) -> f64 {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return self.gross_depth_at(gross, fields, offset);
         }
         let annulus = Annulus::new(self, state, fields);
-        annulus.point(offset, &self.unworn.at(offset)).map_or(0.0, |point| point.grown)
+        annulus.point(offset, &self.annulus().unworn.at(offset)).map_or(0.0, |point| point.grown)
     }
 
     /// Wear depth, m, by which a step is accepted: at the output where the edge of stick leaves worn ground behind, else at the springs of the limit
     /// that are not hidden, or at one in several where they are many; at least zero.
     pub fn depth_on_springs(&self, state: &State, fields: &Fields) -> Vec<f64> {
-        if self.gross.is_some() {
+        if self.gross().is_some() {
             return vec![];
         }
         if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
@@ -206,9 +209,12 @@ impl Model {
         }
         let annulus = Annulus::new(self, state, fields);
         let every = self.springs().div_ceil(MOST_JUDGED);
-        let springs = self.operators.abel.nodes()[1..].iter().zip(&self.radial_unworn).skip(self.hidden);
+        let springs = self.annulus().operators.abel.nodes()[1..]
+            .iter()
+            .zip(&self.annulus().radial_unworn)
+            .skip(self.annulus().hidden);
         let depth = |(x, unworn): (&f64, &UnwornValues)| {
-            let point = annulus.point(self.unworn.limit_slip_area() * x, unworn);
+            let point = annulus.point(self.annulus().unworn.limit_slip_area() * x, unworn);
             point.map_or(0.0, |point| point.wear_depth())
         };
         springs.step_by(every).map(depth).collect()
@@ -216,7 +222,7 @@ impl Model {
 
     /// Wear depth at [`Model::radii`], m.
     pub fn radial_wear_depth(&self, state: &State, fields: &Fields) -> Vec<f64> {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return self.gross_radial_fields(gross, state).wear_depth;
         }
         let annulus = Annulus::new(self, state, fields);
@@ -227,10 +233,10 @@ impl Model {
 
     /// The fields at [`Model::radii`], by the local polynomials between the springs.
     pub fn radial_fields(&self, state: &State, fields: &Fields, cycle: &CycleFields) -> RadialFields {
-        if let Some(gross) = &self.gross {
+        if let Some(gross) = self.gross() {
             return self.gross_radial_fields(gross, state);
         }
-        let mesh = self.operators.abel.mesh();
+        let mesh = self.annulus().operators.abel.mesh();
         let nu = 1.0 - self.mu();
         // Slip over slip depth is smooth along the annulus.
         let per_depth: Vec<f64> =
@@ -289,8 +295,8 @@ impl<'a> Annulus<'a> {
         if x <= 0.0 || x >= 1.0 - AT_EDGE {
             return None;
         }
-        let y = model.operators.abel.mesh().place(x);
-        let local = model.operators.abel.mesh().local(y, model.springs());
+        let y = model.annulus().operators.abel.mesh().place(x);
+        let local = model.annulus().operators.abel.mesh().local(y, model.springs());
         let log_slip = self.log_slip(&local, &unworn);
         Some(AnnulusPoint { x, y, unworn: unworn.slip, grown: unworn.slip * log_slip.exp_m1(), local })
     }
@@ -300,7 +306,7 @@ impl<'a> Annulus<'a> {
     /// On a smooth mesh the local polynomial is corrected by its error for the limit's `λ_∞`, which is known everywhere, in the proportion in
     /// which wear has come to the limit: so the limit is met between the springs as it is at them.
     fn log_slip(&self, local: &Local, unworn: &UnwornValues) -> f64 {
-        let mesh = self.model.operators.abel.mesh();
+        let mesh = self.model.annulus().operators.abel.mesh();
         let log_slip = local.sum(&self.fields.log_slip);
         if !mesh.clustering().follows_front() {
             return log_slip;
@@ -327,7 +333,7 @@ impl<'a> Annulus<'a> {
     /// ```
     fn depth_beyond(&self, stick: &StickEdge, offset: f64, point: Option<&AnnulusPoint>, worn: f64) -> f64 {
         let squared = self.model.stick_zone.stick_area + offset;
-        let behind = self.model.moving.as_ref().and_then(|it| it.left_behind_outside(stick, squared));
+        let behind = self.model.moving().and_then(|it| it.left_behind_outside(stick, squared));
         match behind {
             Some(behind) => point.map_or(0.0, |point| (point.grown - behind).max(0.0)),
             None => worn,
@@ -363,7 +369,7 @@ impl AnnulusPoint {
 }
 
 /// Where fields are shown.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct OutputRadii {
     /// `r² - c²`, m², increasing.
     offsets: Vec<f64>,

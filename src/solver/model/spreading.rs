@@ -38,7 +38,8 @@ impl Model {
         let scale = self.contact.mean_pressure();
         let mean = |i: usize| pressed.row(i).iter().sum::<f64>() / steps as f64;
         let slopes: Vec<f64> = (0..n).map(|i| spreading.passed_on(mean(i), scale).1).collect();
-        let touching = Mat::from_fn(n, inner, |i, j| slopes[i] * self.operators.abel.pressure(i, j));
+        let touching =
+            Mat::from_fn(n, inner, |i, j| slopes[i] * self.annulus().operators.abel.pressure(i, j));
         let mut spread = Mat::zeros(n, inner);
         product(&mut spread, self.averages(fields, spreading).as_ref(), touching.as_ref(), 1.0);
         for i in 0..n {

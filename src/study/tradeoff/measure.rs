@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::run::{Simulation, Stop, hash_of, is_of, operator_bytes};
 use crate::scene::Scene;
 use crate::scene::input::{self, Pipes};
+use crate::solver::model::Model;
 use crate::solver::simulation::{self as stepping, Flow, Observer};
 use crate::study::batch::alone;
 
@@ -221,7 +222,8 @@ impl<'a> Runs<'a> {
         // Each forms its own operators, as a user's run does.
         let simulation = Simulation::new(scene)?.stopped_by(self.stop);
         let (model, tolerance) = (simulation.stepping().model(), simulation.stepping().tolerance());
-        let (springs, backend) = (model.springs(), model.operators().backend());
+        let springs = model.springs();
+        let backend = Model::backend(model.contact(), model.schedule(), springs);
         let results = simulation.run_with(Some(&mut Deadline { started, most_seconds }))?;
         let wall_seconds = started.elapsed().as_secs_f64();
         if self.stop.is_stopped() {

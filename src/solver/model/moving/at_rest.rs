@@ -40,12 +40,12 @@ impl StickEdge {
 impl Model {
     /// Whether the edge of stick may turn.
     pub fn turns(&self) -> bool {
-        self.moving.as_ref().is_some_and(|moving| moving.turns)
+        self.moving().is_some_and(|moving| moving.turns)
     }
 
     /// Whether the edge of stick is to be taken as moving outwards: where it may turn, as it did last.
     pub fn goes_outwards(&self, stick: &StickEdge) -> bool {
-        let Some(MovingStick { turns, outwards, .. }) = &self.moving else { return false };
+        let Some(MovingStick { turns, outwards, .. }) = self.moving() else { return false };
         match stick.rates[0] {
             rate if *turns && rate != 0.0 => rate > 0.0,
             _ => *outwards,
@@ -70,7 +70,7 @@ impl Model {
     /// # Arguments
     /// * `before` -- squared radius of the edge before the step, m²
     pub fn with_ground_at_rest(&self, mut stick: StickEdge, before: f64) -> StickEdge {
-        if !self.moving.as_ref().is_some_and(|moving| moving.turns || moving.in_blocks) {
+        if !self.moving().is_some_and(|moving| moving.turns || moving.in_blocks) {
             return stick;
         }
         let (places, raised) = (&mut stick.places_at_rest, &mut stick.raised_at_rest);
@@ -90,7 +90,7 @@ impl Model {
 
     /// See [`Model::bearing`]; zero where nothing asks for it.
     pub(super) fn bearing_under(&self, loading: &CycleLoading, slip_compression: f64) -> f64 {
-        match &self.moving {
+        match self.moving() {
             Some(MovingStick { cause: Cause::TwoBalances(force), .. }) => {
                 self.bearing_of(loading, *force, slip_compression)
             }

@@ -101,7 +101,7 @@ pub(super) fn check_memory(schedule: &Schedule, contact: &InitialContact, follow
 impl Model {
     /// See [`firmness`], in a state with some area of stick, m²; none where springs do not remember their slip.
     fn firmness_at(&self, state: &State, area: f64) -> Option<f64> {
-        let cause = self.moving.as_ref().map(|moving| moving.cause);
+        let cause = self.moving().map(|moving| moving.cause);
         let loading = self.schedule.loading(state.cycles, state.cycles);
         if cause != Some(Cause::Tangential) || !loading.friction.remembers_slip() {
             return None;
@@ -132,7 +132,7 @@ impl Model {
     /// What acts under both forces, or a rig beside a normal one, where the edge of stick rests: the amplitude at which springs there begin to slip, or
     /// the one of the balance where they go on to at less.
     pub(super) fn deepened(&self, loading: CycleLoading, zone: &StickZone) -> CycleLoading {
-        let cause = self.moving.as_ref().map(|moving| moving.cause);
+        let cause = self.moving().map(|moving| moving.cause);
         let Some(force) = cause.and_then(Cause::normal_force).filter(|_| loading.friction.remembers_slip())
         else {
             return self.displaced(loading, zone.slip_compression);
@@ -151,7 +151,7 @@ impl Model {
 
     /// Whether springs on the mesh, all of which have slipped, go on to slip down to the mean of the static and the kinetic limit.
     pub(in crate::solver::model) fn keeps_slipping(&self, loading: &CycleLoading) -> bool {
-        let rests = self.moving.as_ref().is_some_and(|moving| matches!(moving.cause, Cause::BothForces(_)));
+        let rests = self.moving().is_some_and(|moving| matches!(moving.cause, Cause::BothForces(_)));
         rests && loading.friction.remembers_slip()
     }
 }

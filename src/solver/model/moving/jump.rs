@@ -35,14 +35,14 @@ impl Ground<'_> {
     /// By how much wear has raised the equivalent profile at a squared radius, m.
     fn raised(&self, squared: f64) -> f64 {
         if squared < self.stick_area {
-            let jumps = self.model.moving.as_ref().is_some_and(|moving| moving.jumps);
+            let jumps = self.model.moving().is_some_and(|moving| moving.jumps);
             return if jumps {
                 self.stick.raised_at_rest(squared)
             } else {
                 self.stick.ground_at_rest(squared)[0]
             };
         }
-        let (nodes, model) = (&self.model.operators.abel.nodes()[1..], self.model);
+        let (nodes, model) = (&self.model.annulus().operators.abel.nodes()[1..], self.model);
         let compression = match (squared - self.stick_area) / self.slip_area {
             // Next to the old edge, where springs may have lost their load within the first cell, the first spring's.
             x if x < nodes[0] => {
@@ -84,7 +84,7 @@ impl Model {
     /// # Errors
     /// [`Error::NotConverged`](crate::Error::NotConverged) if no spring has the compression at which stick would end.
     pub fn begin_block(&self, state: State) -> Result<State> {
-        let (Some(moving), Some(stick)) = (&self.moving, &state.stick) else { return Ok(state) };
+        let (Some(moving), Some(stick)) = (self.moving(), &state.stick) else { return Ok(state) };
         if !moving.jumps && !moving.in_blocks {
             return Ok(state);
         }
@@ -145,7 +145,7 @@ impl Model {
             let rise = sign * (heights[1] - heights[0]);
             if rise != 0.0 {
                 for (value, squared) in left_behind.iter_mut().zip(moving.stations()) {
-                    *value -= rise * self.unworn.at_stick(middle, 1.0, squared - middle).limit_slip;
+                    *value -= rise * self.annulus().unworn.at_stick(middle, 1.0, squared - middle).limit_slip;
                 }
             }
             let borne = ground.compression(middle) * middle.powf(0.5 * (exponent - 2.0));
@@ -175,7 +175,7 @@ impl Model {
         let slip_area = slip_area - (new - old);
         let mut fields = self.fields(&state);
         self.evaluate_at(&next, slip_area, &state.compression, &mut fields);
-        let nodes = &self.operators.abel.nodes()[1..];
+        let nodes = &self.annulus().operators.abel.nodes()[1..];
         let (radius, at_edge) = (new.sqrt(), ground.raised(new));
         let slipping = nodes.iter().map(|x| {
             let rise = profile.rise(radius, slip_area * x) + ground.raised(new + slip_area * x) - at_edge;

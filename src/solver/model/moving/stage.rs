@@ -67,7 +67,7 @@ struct Passed {
 impl Model {
     /// The equations of a stage; none where the edge of stick rests.
     pub fn stick_stage(&self, target: StickTarget) -> Option<StickStage<'_>> {
-        self.moving.as_ref().map(|moving| StickStage { model: self, moving, target })
+        self.moving().map(|moving| StickStage { model: self, moving, target })
     }
 }
 
@@ -96,7 +96,7 @@ impl StickStage<'_> {
     /// Rounding of an edge of stick that recedes, over the distance of the first spring from it: slip there is known no better.
     pub fn rounding(&self) -> f64 {
         let target = &self.target;
-        let first = target.springs.slip_area * self.model.operators.abel.nodes()[1];
+        let first = target.springs.slip_area * self.model.annulus().operators.abel.nodes()[1];
         if self.recedes() { f64::EPSILON * target.stick.area / first } else { 0.0 }
     }
 
@@ -179,7 +179,8 @@ impl StickStage<'_> {
         let (area, q) = (at.stick_area, trial.stick_zone.slip_compression);
         let (mut left_behind, mut wear_depth) = (vec![], vec![]);
         if self.moving.leaves_ground() {
-            let uniform = |squared: f64| model.unworn.at_stick(area, q, squared - area).limit_slip / q;
+            let uniform =
+                |squared: f64| model.annulus().unworn.at_stick(area, q, squared - area).limit_slip / q;
             let kept = |squared| -per_step * (passed.risen - passed.unworn_rise) * uniform(squared);
             left_behind = self.moving.stations().map(kept).collect();
             let growth = trial.cycle.growth.iter().zip(&trial.fields.log_slip);
@@ -191,7 +192,7 @@ impl StickStage<'_> {
                     return 0.0;
                 }
                 // Nothing grows back where the polynomial swings below zero, next to an edge at which slip jumps.
-                (model.between_springs(&worn, x) * model.unworn.at_stick(area, q, z).slip).max(0.0)
+                (model.between_springs(&worn, x) * model.annulus().unworn.at_stick(area, q, z).slip).max(0.0)
             };
             wear_depth = model.output.offsets().iter().map(depth).collect();
         }
@@ -209,7 +210,7 @@ impl StickStage<'_> {
         let least = self.model.stick_zone.stick_area;
         at.slip_area > 0.0
             && at.stick_area > 0.99 * least
-            && at.stick_area + at.slip_area < least + self.model.unworn.largest_slip_area()
+            && at.stick_area + at.slip_area < least + self.model.annulus().unworn.largest_slip_area()
     }
 
     /// `q_c`, m.
@@ -311,14 +312,14 @@ impl StickStage<'_> {
 
     /// What the motion of spring `i` makes of a quantity whose `ξ ∂/∂ξ` is given.
     fn carried(&self, at: &Unknowns, motion: &[f64], along: &[f64], i: usize) -> f64 {
-        let node = self.model.operators.abel.nodes()[i + 1];
+        let node = self.model.annulus().operators.abel.nodes()[i + 1];
         along[i] / node * motion[i] / at.slip_area
     }
 
     /// By how much ground has passed the inner springs inwards in the stage, m².
     fn motion(&self, at: &Unknowns, passed: &Passed) -> Vec<f64> {
         let grown = at.slip_area - self.target.springs.slip_area;
-        let inner = &self.model.operators.abel.nodes()[1..=at.compression.len()];
+        let inner = &self.model.annulus().operators.abel.nodes()[1..=at.compression.len()];
         inner.iter().map(|node| passed.area + node * grown).collect()
     }
 
@@ -327,7 +328,7 @@ impl StickStage<'_> {
         if !self.recedes() {
             return self.model.along_annulus(values);
         }
-        let operators = &self.model.operators;
+        let operators = &self.model.annulus().operators;
         let stencil = |(i, motion): (usize, &f64)| {
             let leaning = if *motion < 0.0 { &operators.derivative_inwards } else { &operators.derivative };
             leaning[i].apply(values)
@@ -348,7 +349,7 @@ impl StickStage<'_> {
             return 0.0;
         }
         let q = stick_zone.slip_compression;
-        let uniform = self.model.unworn.at_stick(at.stick_area, q, at.slip_area).limit_slip / q;
+        let uniform = self.model.annulus().unworn.at_stick(at.stick_area, q, at.slip_area).limit_slip / q;
         self.moving.left_behind(&self.target.stick.left_behind, at.stick_area + at.slip_area)
             - (passed.risen - passed.unworn_rise) * uniform
     }
@@ -416,7 +417,7 @@ impl StickStage<'_> {
     /// By the first spring alone, what the springs next to it are off by would grow in time on meshes as fine as these.
     fn extrapolated(&self, value: impl Fn(usize) -> f64) -> f64 {
         let mut weights = [0.0; 3];
-        lagrange(&self.model.operators.abel.nodes()[1..4], 0.0, &mut weights);
+        lagrange(&self.model.annulus().operators.abel.nodes()[1..4], 0.0, &mut weights);
         weights.iter().enumerate().map(|(i, weight)| weight * value(i)).sum()
     }
 
@@ -461,7 +462,7 @@ impl StickStage<'_> {
     fn weight(&self, spring: usize, trial: &StickTrial) -> f64 {
         self.model.contact.half_space().normal_stiffness()
             * trial.fields.slip_area
-            * self.model.operators.abel.spring_sum()[spring]
+            * self.model.annulus().operators.abel.spring_sum()[spring]
             * trial.fields.density_factor[spring]
     }
 
@@ -505,7 +506,7 @@ impl StickStage<'_> {
 
     fn difference(&self) -> f64 {
         let most = if self.recedes() { OF_FIRST_SPRING } else { f64::INFINITY };
-        DIFFERENCE.min(most * self.model.operators.abel.nodes()[1])
+        DIFFERENCE.min(most * self.model.annulus().operators.abel.nodes()[1])
     }
 
     fn fill_by_difference(

@@ -1,0 +1,193 @@
+//! How a contact is put on springs.
+
+use super::envelope::Envelope;
+use super::output::OutputRadii;
+use super::{
+    AnnulusMesh, Gross, HIDDEN, Model, MovingStick, OperatorStore, Resolution, Schedule, SpringMesh,
+    StickZone,
+};
+use crate::contact::InitialContact;
+use crate::contact::closed_form::LimitingShape;
+use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
+use crate::contact::stick_slip::Regime;
+use crate::error::{Error, Result};
+use crate::laws::conditions::Conditions;
+use crate::numerics::abel::Backend;
+use crate::numerics::grid::Clustering;
+
+/// Largest stretch of the mesh of an edge of stick that creeps outwards: from a small stick zone it soon comes to a larger one, and next to finer cells
+/// errors grow.
+const MOST_STRETCHED: f64 = 3.0;
+
+/// Fewest springs for which operators are hierarchical where wear has no kinks: more than a run takes by itself, whose results are so those of dense
+/// ones. They take less time from 300 springs on, but there stencils may reach farther than a block of the mesh, and held tangential forces lose
+/// half of their steps (docs/many_springs.md). Where a small stick zone, from the last number of `ln(a0/c)` on, stretches the mesh, fewer are not smooth in it.
+const HIERARCHICAL: [usize; 2] = [601, 1000];
+const UNSTRETCHED: f64 = 3.5;
+
+/// Fewest springs on which the local polynomials fit.
+pub const FEWEST_SPRINGS: usize = 8;
+
+/// Most springs in gross slip: polynomials over the whole contact have no use for more.
+const MOST_IN_GROSS_SLIP: usize = 160;
+
+impl Model {
+    /// Puts a contact on springs under the laws, mode, blocks and control of its scene.
+    ///
+    /// # Arguments
+    /// * `contact` -- the contact of the first cycle
+    /// * `conditions` -- those of its scene, whose laws replace the ones in the contact
+    ///
+    /// # Errors
+    /// [`Error::Inconsistent`] if nothing slips or the conditions do not go together; [`Error::OutOfRange`] for too few springs; those of the transforms.
+    pub fn new(
+        contact: &InitialContact,
+        conditions: &Conditions,
+        springs: usize,
+        clustering: Clustering,
+    ) -> Result<Self> {
+        let schedule = Schedule::new(contact, conditions, Resolution::default())?;
+        Self::under(contact, schedule, springs, clustering, &OperatorStore::default())
+    }
+
+    /// Puts a contact on springs for what a schedule does to it, with operators from a store that other models share.
+    ///
+    /// # Arguments
+    /// * `contact` -- the contact of the first cycle
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn under(
+        contact: &InitialContact,
+        schedule: Schedule,
+        springs: usize,
+        clustering: Clustering,
+        store: &OperatorStore,
+    ) -> Result<Self> {
+        if Gross::follows(contact, &schedule)? {
+            return Self::in_gross_slip(contact, schedule, springs);
+        }
+        let backend = Self::backend(contact, &schedule, springs);
+        let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
+        let Envelope { contact, slides, surplus } = if uniform {
+            Envelope { contact: contact.clone(), slides: false, surplus: 0.0 }
+        } else {
+            schedule.envelope(contact)?
+        };
+        let contact = &contact;
+        let stick_radius = contact.stick_radius().filter(|_| contact.slip_compression() > 0.0);
+        let stick_radius = stick_radius.ok_or_else(|| Error::Inconsistent {
+            what: "loading.amplitude",
+            why: format!(
+                "at an amplitude of {:e} m no spring slips in any cycle, so that nothing wears; ask for a larger one",
+                contact.amplitude()
+            ),
+        })?;
+        check_springs(springs)?;
+        let profile = contact.equivalent_profile();
+        let grading = profile.grading();
+        let moving = MovingStick::new(&schedule, contact, slides)?;
+        let farthest = match &moving {
+            Some(moving) => moving.farthest(contact)?,
+            None => contact.clone(),
+        };
+        if moving.is_some() && profile.end_of_table().is_some() {
+            // The closed form refuses profiles that lose contact in rings.
+            LimitingShape::from_contact(&farthest)?;
+        }
+        let unworn = UnwornSlip::new(
+            profile,
+            stick_radius,
+            farthest.slip_compression(),
+            surplus,
+            farthest.slip_area_offset(),
+        )?;
+        let stick_radius_squared = stick_radius * stick_radius;
+        let first = contact.contact_radius().powi(2);
+        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
+        let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
+        // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
+        let rests = matches!(clustering, Clustering::Cubic | Clustering::Even | Clustering::Front);
+        let clustering = if rests && surplus > 0.0 { Clustering::CreepingStick } else { clustering };
+        let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
+        let natural = match &moving {
+            Some(moving) if moving.creeps() => natural.min(MOST_STRETCHED),
+            _ => natural,
+        };
+        let stretch = clustering.stretch(natural, grading);
+        let operators = store.get(grading, stretch, springs, clustering, backend)?;
+        let radial_unworn: Vec<_> =
+            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_slip_area() * x)).collect();
+        let compression = contact.slip_compression();
+        let stick_load = 0.5 * profile.load_integral(stick_radius)
+            + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
+        let depth_scale = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
+        let hidden = match clustering {
+            clustering if clustering.follows_front() => {
+                operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN)
+            }
+            _ => 0,
+        };
+        Ok(Self {
+            contact: contact.clone(),
+            schedule,
+            output: OutputRadii::new(&unworn, operators.abel.mesh(), hidden),
+            mesh: SpringMesh::Annulus(Box::new(AnnulusMesh {
+                unworn,
+                operators,
+                radial_unworn,
+                hidden,
+                moving,
+            })),
+            stick_zone: StickZone {
+                stick_area: stick_radius_squared,
+                slip_compression: compression + surplus,
+                stick_load,
+            },
+            depth_scale,
+            slides,
+        })
+    }
+
+    /// A contact in gross slip.
+    fn in_gross_slip(contact: &InitialContact, schedule: Schedule, springs: usize) -> Result<Self> {
+        check_springs(springs)?;
+        if springs > MOST_IN_GROSS_SLIP {
+            let why = format!(
+                "{springs} springs are more than the {MOST_IN_GROSS_SLIP} that gross slip is followed with; 17 are its default"
+            );
+            return Err(Error::Inconsistent { what: "numerics.springs", why });
+        }
+        let deepest = schedule.largest_indentation();
+        let contact = &match deepest == contact.indentation() {
+            true => contact.clone(),
+            false => contact.at(deepest, contact.slip_compression().max(deepest))?,
+        };
+        let gross = Gross::new(contact, &schedule, springs)?;
+        let model = Self {
+            contact: contact.clone(),
+            schedule,
+            mesh: SpringMesh::Whole(Box::new(gross)),
+            output: OutputRadii::default(),
+            stick_zone: StickZone { slip_compression: contact.slip_compression(), ..StickZone::default() },
+            depth_scale: contact.indentation(),
+            slides: true,
+        };
+        let offsets = model.gross_offsets(contact.contact_radius());
+        Ok(model.shown_at(offsets))
+    }
+
+    /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
+    pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
+        let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
+        let stretched = contact.stick_logarithm().is_none_or(|logarithm| logarithm > UNSTRETCHED);
+        let from = HIERARCHICAL[usize::from(stretched)];
+        let serve = springs >= from && schedule.is_plain() && stays;
+        if serve { Backend::Hierarchical } else { Backend::Dense }
+    }
+}
+
+fn check_springs(springs: usize) -> Result<()> {
+    let (name, value, range) = ("numerics.springs", springs as f64, "[8, inf)");
+    if springs < FEWEST_SPRINGS { Err(Error::OutOfRange { name, value, range }) } else { Ok(()) }
+}
