@@ -67,6 +67,12 @@ impl Path {
         ways
     }
 
+    /// The path with all tangential displacements times `factor`.
+    pub fn stretched(&self, factor: f64) -> Self {
+        let stretched = |point: &PathPoint| PathPoint { tangential: point.tangential.map(|u| factor * u), ..*point };
+        Self { points: self.points.iter().map(stretched).collect() }
+    }
+
     /// Largest lift, m: springs of smaller compression at the largest indentation lift off in each period.
     pub fn largest_lift(&self) -> f64 {
         self.points.iter().fold(0.0, |largest, point| largest.max(point.lift))

@@ -456,7 +456,7 @@ impl Model {
         let slip_area = fields.slip_area * (1.0 + DIFFERENCE);
         let mut moved = Fields::default();
         self.evaluate_at(&fields.stick_zone, slip_area, compression, &mut moved);
-        let after = if loading.path.is_some() {
+        let after = if loading.path.is_some() && loading.control == AmplitudeControl::Displacement {
             // What springs do is a matter of their compressions alone.
             let worn = self.worn(loading, &self.surface(loading, &motion, compression, &moved), false);
             growth(loading, &worn, &moved).into_iter().map(|growth| at_contact * growth).collect()

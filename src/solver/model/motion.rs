@@ -79,7 +79,10 @@ impl Model {
             return self.stepped_motion(loading, steps, compression, slopes);
         }
         match &loading.path {
-            Some(path) => self.resolved_motion(loading, path, compression, slopes),
+            Some(path) if loading.control == AmplitudeControl::Displacement => {
+                self.resolved_motion(loading, path, compression, slopes)
+            }
+            Some(path) => self.balanced_motion(loading, path, compression, fields, slopes),
             None => self.closed_form_motion(loading, compression, fields, slopes),
         }
     }
@@ -201,6 +204,33 @@ impl Model {
             self.slope(|q| mean(q, m), compression[j])
         });
         motion
+    }
+
+    /// Springs to and fro along a path by the amplitude that the balance of forces decides.
+    fn balanced_motion(
+        &self,
+        loading: &CycleLoading,
+        path: &Path,
+        compression: &[f64],
+        fields: &Fields,
+        slopes: bool,
+    ) -> Motion {
+        let lift = path.points[0].lift;
+        let lifted: Vec<f64> = compression.iter().map(|q| q - lift).collect();
+        let amplitude = self.amplitude(loading, &lifted, fields);
+        let path = path.stretched(amplitude / loading.amplitude);
+        let motion = self.resolved_motion(loading, &path, compression, slopes);
+        let amplitude_slope = slopes.then(|| {
+            let slip: Vec<(f64, f64)> = lifted
+                .iter()
+                .map(|q| {
+                    let ratio = self.contact.half_space().stiffness_ratio();
+                    slip_amplitude_of_spring(&*loading.friction, ratio, amplitude, *q)
+                })
+                .collect();
+            self.amplitude_slope(loading, &lifted, &slip, fields)
+        });
+        Motion { amplitude, amplitude_slope, ..motion }
     }
 
     /// Springs through the steps of a path along which the indenter moves up and down.

@@ -433,7 +433,7 @@ impl Model {
     pub(super) fn displaced(&self, loading: CycleLoading, slip_compression: f64) -> CycleLoading {
         let amplitude =
             loading.friction.static_strength(slip_compression) / self.contact.half_space().stiffness_ratio();
-        CycleLoading { amplitude, control: AmplitudeControl::Displacement, ..loading }
+        loading.displaced(amplitude)
     }
 
     /// Indentation in a state, m.

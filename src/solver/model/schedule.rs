@@ -82,6 +82,13 @@ impl CycleLoading {
         }
     }
 
+    /// The same to and fro by an amplitude of the contact, m, that a balance of forces has decided.
+    pub fn displaced(self, amplitude: f64) -> Self {
+        let factor = amplitude / self.amplitude;
+        let path = self.path.as_ref().map(|path| Arc::new(path.stretched(factor)));
+        Self { amplitude, control: AmplitudeControl::Displacement, path, ..self }
+    }
+
     /// By how much the contact, at an amplitude of force, N, and displacement, m, exceeds what is asked.
     pub fn excess(&self, force: f64, displacement: f64) -> f64 {
         let [by_force, by_displacement] = self.control.factors();

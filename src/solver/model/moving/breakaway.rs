@@ -14,7 +14,7 @@ use super::{Cause, first_slip_compression};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
-use crate::solver::model::schedule::{AmplitudeControl, CycleLoading, Schedule};
+use crate::solver::model::schedule::{CycleLoading, Schedule};
 use crate::solver::model::{Model, State, StickZone};
 
 /// Part of the stiffness left at which a contact counts as broken away: the edge of stick then comes to that moment within some 1e-4 of the time.
@@ -146,7 +146,7 @@ impl Model {
         let [by_force, by_displacement] = loading.control.factors();
         let amplitude =
             (loading.asked() - by_force * slipping) / (by_force * per_amplitude + by_displacement);
-        CycleLoading { amplitude, control: AmplitudeControl::Displacement, ..loading }
+        loading.displaced(amplitude)
     }
 
     /// Whether springs on the mesh, all of which have slipped, go on to slip down to the mean of the static and the kinetic limit.
