@@ -121,8 +121,8 @@ const FACTORS: [(&str, &[Level]); 6] = [
     ("wear from", &STARTS),
 ];
 
-/// The scene of two levels, the rest plain.
-fn text(levels: [&Level; 2], accuracy: f64) -> String {
+/// The scene of some levels, the rest plain.
+fn text(levels: &[&Level], accuracy: f64, by_hand: &str) -> String {
     let mut lines = BTreeMap::from([
         ("load", "indentation = 1e-6"),
         ("amplitude", "stick_ratio = 0.7"),
@@ -133,7 +133,7 @@ fn text(levels: [&Level; 2], accuracy: f64) -> String {
     let line = |name: &str| lines.get(name).copied().unwrap_or_default();
     format!(
         "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = 0\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666667\n\
-         {}\n{}\n{}\n{}\n[loading]\n{}\n{}\n{}\n{}\n{}\n{}\ntau = 1\n{}\n[numerics]\naccuracy = {accuracy}\n[output]\nsnapshots = 4\n",
+         {}\n{}\n{}\n{}\n[loading]\n{}\n{}\n{}\n{}\n{}\n{}\ntau = 1\n{}\n[numerics]\naccuracy = {accuracy}\n{by_hand}\n[output]\nsnapshots = 4\n",
         line("friction"),
         line("friction history"),
         line("wear"),
@@ -161,7 +161,7 @@ enum Cell {
 fn cell(levels: [&Level; 2]) -> Cell {
     let place = format!("{} + {}", levels[0].name, levels[1].name);
     let run = |accuracy: f64| {
-        let scene = Scene::from_str(&text(levels, accuracy))?;
+        let scene = Scene::from_str(&text(&levels, accuracy, ""))?;
         let checked = Simulation::check(&scene).map(drop);
         let simulation = Simulation::new(&scene);
         assert_eq!(checked.is_ok(), simulation.is_ok(), "{place}: check and run disagree");
@@ -290,4 +290,55 @@ fn page(cells: &BTreeMap<[(usize, usize); 2], Cell>) -> String {
         let _ = writeln!(page, "{}. {reason}", i + 1);
     }
     page
+}
+
+/// What a scene with numerics by hand comes to beside the same left to the program: the difference of the worn volumes over the larger, and what both are asked.
+fn beside_by_hand(levels: &[&Level], by_hand: &str) -> Result<Option<f64>, String> {
+    let run = |by_hand: &str| Scene::from_str(&text(levels, ACCURACY[0], by_hand))?.simulate();
+    let key = format!("numerics.{}", by_hand.split(' ').next().unwrap());
+    let other = match run(by_hand) {
+        Ok(results) if results.accuracy_met() == Some(true) => Ok(results),
+        Ok(_) => return Ok(None),
+        Err(Error::Inconsistent { what, .. }) if what == key => return Ok(None),
+        Err(error) => Err(error.to_string()),
+    };
+    let plain = match run("") {
+        Ok(results) if results.accuracy_met() == Some(true) => results,
+        // Told or refused whatever is set by hand.
+        _ => return Ok(None),
+    };
+    let other = other?;
+    let volumes = [&plain, &other].map(|it| it.last().wear_volume);
+    Ok(Some((volumes[0] - volumes[1]).abs() / volumes[0].max(volumes[1])))
+}
+
+#[test]
+fn resolved_cycles_wear_as_settled_ones_under_every_control_and_law() {
+    let levels: Vec<[&Level; 4]> = CONTROLS
+        .iter()
+        .flat_map(|control| FRICTION.iter().map(move |friction| [control, friction]))
+        .flat_map(|[control, friction]| WEAR.iter().map(move |wear| [control, friction, wear]))
+        .flat_map(|[control, friction, wear]| {
+            REGIMES.iter().map(move |regime| [control, friction, wear, regime])
+        })
+        .collect();
+    let found: Vec<_> =
+        levels.par_iter().map(|levels| beside_by_hand(levels, "cycle = \"resolved\"")).collect();
+    let (mut worst, mut compared, mut wrong) = (0.0_f64, 0, vec![]);
+    for (levels, found) in levels.iter().zip(found) {
+        let names = levels.map(|level| level.name).join(" + ");
+        match found {
+            Ok(None) => {}
+            Ok(Some(off)) => {
+                (worst, compared) = (worst.max(off), compared + 1);
+                if off > 2.0 * ACCURACY[0] {
+                    wrong.push(format!("{names}: off by {off:e}"));
+                }
+            }
+            Err(why) => wrong.push(format!("{names}: {why}")),
+        }
+    }
+    println!("{compared} of {} compared, farthest apart {worst:.1e}", levels.len());
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(compared > 300, "only {compared} of {} ran by both ways", levels.len());
 }

@@ -73,22 +73,20 @@ impl Gross {
     /// Whether a contact is in gross slip in every cycle: each is so on the unworn contact, at the largest indentation of the run.
     ///
     /// # Errors
-    /// Those of the force of the first cycle.
+    /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
         let conditions = schedule.conditions();
         let along_energy = *schedule.friction_along_energy() != History::Constant;
         let both = along_energy && conditions.friction_history != History::Constant;
         // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
         let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
-        // To and fro the closed form knows where springs stick, steps of a period do not.
-        let stepped = schedule.resolves() && conditions.mode.is_tangential();
         let spreads = conditions.wear.spreading().is_some();
         // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
         let friction = &conditions.friction;
         let depth = contact.indentation();
         let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
         let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
-        if contact.regime() != Regime::FullSliding || both || lifted || stepped || spreads || uneven {
+        if contact.regime() != Regime::FullSliding || both || lifted || spreads || uneven {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
@@ -105,6 +103,16 @@ impl Gross {
             if !slides {
                 return Ok(false);
             }
+        }
+        if schedule.resolves() && conditions.mode.is_tangential() {
+            return Err(Error::Inconsistent {
+                what: "numerics.cycle",
+                why: format!(
+                    "\"resolved\" has nothing to find at an amplitude of {:e} m: the whole contact slides to and fro, and a spring of compression q \
+                     slips by U - μ_f q/M each way, which the formula has exactly; leave it out",
+                    contact.amplitude()
+                ),
+            });
         }
         Ok(true)
     }
