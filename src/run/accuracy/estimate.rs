@@ -187,6 +187,10 @@ impl Companions {
             false => ORDER,
         };
         let unseen = || model.unseen_depth().unwrap_or(0.0);
+        // Companions of a run with a coarse tolerance by hand step no more coarsely than it does.
+        let numerics = scene.numerics();
+        let by_hand = numerics.tolerance.filter(|_| numerics.stepper != Stepper::EveryCycle);
+        let of_time = LEAST_OF_TIME * by_hand.unwrap_or(0.0);
         Self {
             springs: model.springs(),
             smooth,
@@ -197,7 +201,7 @@ impl Companions {
             limit: (limited || smooth)
                 .then(|| [model.limit_volume(), model.depth_scale()])
                 .filter(|limit| limit.iter().all(|it| *it > 0.0)),
-            left_out: if smooth { 0.0 } else { model.core_uncertainty().max(unseen()) },
+            left_out: if smooth { 0.0 } else { model.core_uncertainty().max(unseen()).max(of_time) },
             first: None,
             second: None,
         }
@@ -238,17 +242,18 @@ impl Companions {
         if self.smooth {
             return by_known_order(simulation, ratio, nearest);
         }
+        let substeps = finite(first.unsampled.as_ref().map_or(0.0, |it| it.error(scale)));
         if self.gross {
-            return Some(in_gross_slip(simulation, snapshots, nearest, ratio, scale));
+            let shares = in_gross_slip(simulation, snapshots, nearest, ratio, scale);
+            return Some(Shares { substeps, ..shares });
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
-        let substeps = first.unsampled.as_ref().map_or(0.0, |it| it.error(scale));
         // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
         let tells = ratio >= LEAST_RATIO;
         Some(Shares {
             springs: if tells { finite(difference / (ratio.powf(order) - 1.0)) } else { UNKNOWN },
             order,
-            substeps: finite(substeps),
+            substeps,
             left_out: finite(self.left_out),
         })
     }

@@ -76,8 +76,10 @@ impl Unsampled {
         let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
         let loading = model.loading_in(state, self.finer.loading(state.cycles, state.cycles));
         let (fine, coarse) = (model.cycle(&loading, &state.compression, fields), simulation.cycle());
-        let depths = fine.growth.iter().zip(&coarse.growth).zip(&fields.slip_depth);
-        let depths = depths.map(|((fine, coarse), slip)| (fine - coarse) * slip);
+        // In gross slip growth is over the indentation.
+        let scale = |i: usize| fields.slip_depth.get(i).copied().unwrap_or(model.contact().indentation());
+        let depths = fine.growth.iter().zip(&coarse.growth).enumerate();
+        let depths = depths.map(|(i, (fine, coarse))| (fine - coarse) * scale(i));
         let rates: Vec<f64> = std::iter::once(fine.volume - coarse.volume).chain(depths).collect();
         let elapsed = state.cycles - self.cycles;
         self.cycles = state.cycles;
