@@ -495,7 +495,7 @@ fn bad_loading_and_what_does_not_go_together_are_refused_at_their_line() {
         (numerics("substeps = 1", ""), "substeps", &["numerics.substeps = 1 is outside 2 to 100000"]),
         (numerics("substeps = 100001", ""), "substeps", &["is outside 2 to 100000"]),
         ("wear_from = \"shakedown\"\n".into(), "wear_from", &["settled", "first-cycle"]),
-        (format!("wear_from = \"first-cycle\"\n{orbit}"), "orbit", &["slips in ways of its own", "loading.wear_from"]),
+        (format!("wear_from = \"first-cycle\"\n{orbit}"), "orbit", &["settles in the course of many cycles", "loading.wear_from"]),
     ];
     for (loading, shown, words) in &cases {
         refused(&scene(FRICTION, WEAR, &format!("{LOADING}{loading}")), shown, words);

@@ -9,6 +9,7 @@ use fretwear::contact::InitialContact;
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::WearDependent;
 use fretwear::laws::history::History;
+use fretwear::laws::motion::NormalOscillation;
 use fretwear::laws::wear::DissipatedEnergy;
 use fretwear::numerics::grid::Clustering;
 use fretwear::scene::Scene;
@@ -19,9 +20,10 @@ use support::{Case, laws};
 
 const TOLERANCE: f64 = 1e-6;
 
-/// At the outputs: cycles, volume worn within the annulus that slips, dissipated energy per area of the first contact, volume worn everywhere.
+/// At the outputs: cycles, volume worn within the annulus that slips, dissipated energy per area of the first contact, volume worn everywhere,
+/// dissipated energy.
 #[derive(Default)]
-struct Seen(Vec<[f64; 4]>);
+struct Seen(Vec<[f64; 5]>);
 
 impl Observer for Seen {
     fn output(&mut self, simulation: &Simulation) -> fretwear::Result<()> {
@@ -32,12 +34,13 @@ impl Observer for Seen {
         let depths = simulation.wear_depth();
         let sum: f64 = model.operators().depth_sum().iter().zip(&depths).map(|(w, depth)| w * depth).sum();
         let volume = PI * model.unworn().limit_slip_area() * sum;
-        self.0.push([state.cycles, within, state.dissipated_energy / area, volume]);
+        let energy = state.dissipated_energy;
+        self.0.push([state.cycles, within, energy / area, volume, energy]);
         Ok(())
     }
 }
 
-fn seen(contact: &InitialContact, springs: usize, conditions: &Conditions, outputs: &[f64]) -> Vec<[f64; 4]> {
+fn seen(contact: &InitialContact, springs: usize, conditions: &Conditions, outputs: &[f64]) -> Vec<[f64; 5]> {
     let schedule = Schedule::new(contact, conditions, Resolution::default()).unwrap();
     let model =
         Model::under(contact, schedule, springs, Clustering::Cubic, &OperatorStore::default()).unwrap();
@@ -69,7 +72,7 @@ fn it_is_the_history_that_its_energy_makes_of_it() {
             let by_energy = Conditions { friction: Arc::new(law), ..plain.clone() };
             let found = seen(&contact, 40, &by_energy, &outputs(64));
             let misses = [8, 4, 2].map(|every| {
-                let rows: Vec<&[f64; 4]> = found.iter().step_by(every).collect();
+                let rows: Vec<&[f64; 5]> = found.iter().step_by(every).collect();
                 let factors = rows.iter().map(|row| last + (1.0 - last) * (-row[2] / e_0).exp()).collect();
                 let times = rows.iter().map(|row| row[0]).collect();
                 let friction_history = History::Table { times, factors };
@@ -88,19 +91,35 @@ fn it_is_the_history_that_its_energy_makes_of_it() {
 #[test]
 fn what_energy_wears_is_in_proportion_to_it_however_friction_changes() {
     let coefficient = 0.3;
-    for last in [0.8, 1.2] {
+    // Along the cycles beside a normal oscillation, and along the energy where friction rises.
+    for (last, oscillates, by_energy) in
+        [(0.8, false, true), (1.2, false, true), (1.2, true, true), (0.8, true, false), (1.2, true, false)]
+    {
         let misses = [40, 80].map(|springs| {
             let contact = Case::new(2.0, 0.0, 0.7, springs).contact();
-            let plain = laws::plain(&contact);
-            let law = WearDependent { first: 1.0, last, energy: 0.5 * energy(&contact, &plain) };
+            let mut conditions = laws::plain(&contact);
+            let law = WearDependent { first: 1.0, last, energy: 0.5 * energy(&contact, &conditions) };
+            if by_energy {
+                conditions.friction = Arc::new(law);
+            } else {
+                conditions.friction_history = History::Exponential { last, time: 1.0 };
+            }
+            if oscillates {
+                conditions.mode = Arc::new(NormalOscillation {
+                    amplitude: 0.1 * contact.indentation(),
+                    frequency_ratio: [1, 1],
+                    phase: 1.0,
+                });
+            }
             let wear = Arc::new(DissipatedEnergy { coefficient });
-            let conditions = Conditions { friction: Arc::new(law), wear, ..plain };
+            let conditions = Conditions { wear, ..conditions };
             let end = seen(&contact, springs, &conditions, &[3.0])[1];
-            let area = PI * contact.contact_radius().powi(2);
-            (end[3] / (coefficient * end[2] * area) - 1.0).abs()
+            (end[3] / (coefficient * end[4]) - 1.0).abs()
         });
-        println!("energy, last {last}: {misses:?}");
-        assert!(misses[0] < 1e-2 && misses[1] < misses[0], "{misses:?}");
+        println!("energy, last {last}, oscillates {oscillates}, by energy {by_energy}: {misses:?}");
+        // The substeps of a normal oscillation leave as much whatever the springs: 1.3e-4 and 1.7e-4 are measured.
+        let left = if oscillates { 5e-4 } else { misses[0] };
+        assert!(misses[0] < 1e-2 && misses[1] < left, "{misses:?}");
     }
 }
 
@@ -130,7 +149,8 @@ fn what_is_not_followed_is_refused_with_the_cure() {
         ),
         (
             format!(
-                "{pressed}stick_ratio = 0.7\n[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1"
+                "{pressed}stick_ratio = 0.7\n[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\n\
+                 [[loading.blocks]]\ncycles = 5e3\n[[loading.blocks]]\ncycles = 5e3\namplitude_factor = 1.2"
             ),
             "",
             "normal oscillation",

@@ -69,7 +69,8 @@ impl Path {
 
     /// The path with all tangential displacements times `factor`.
     pub fn stretched(&self, factor: f64) -> Self {
-        let stretched = |point: &PathPoint| PathPoint { tangential: point.tangential.map(|u| factor * u), ..*point };
+        let stretched =
+            |point: &PathPoint| PathPoint { tangential: point.tangential.map(|u| factor * u), ..*point };
         Self { points: self.points.iter().map(stretched).collect() }
     }
 

@@ -175,8 +175,9 @@ pub(super) fn check(
     let of_mode = mode.entry().and_then(|mode| section.optional(mode.name));
     if let (true, Some(entry)) = (motion.wears_from_rest, &of_mode) {
         return Err(entry.misplaced(
-            "slips in ways of its own in the first cycles, which loading.wear_from = \"first-cycle\" would have to follow one by one; leave that \
-             out (tangential oscillation at constant indentation is settled from its first reversal on)",
+            "settles in the course of many cycles, in each of which springs slip by other amounts (frictional shakedown): there is no one first cycle \
+             for loading.wear_from = \"first-cycle\" to begin with; leave that out (tangential oscillation at constant indentation is settled from \
+             its first reversal on)",
         ));
     }
     if motion.holds_normal_force() {
@@ -204,15 +205,26 @@ pub(super) fn check(
     let control = control_given(section).or(force);
     let held = control.filter(|_| motion.control != TangentialControl::Displacement);
     let (Some(control), Some(entry)) = (held, of_mode) else { return Ok(()) };
-    let name = match motion.control {
-        TangentialControl::Force => "a held tangential force",
-        _ => "a rig",
-    };
     // An amplitude of force stands for the displacement of a whole period only where that goes to and fro between two reversals.
-    let why = if mode.changes_indentation() {
-        "what the contact bears changes with the indentation within a period, and with it, at every instant, the displacement that a force asks for"
-    } else {
-        "it gives the displacement at every instant, which a force would decide, and one amplitude does not say which component of the force that is"
+    let (name, why) = match (motion.control, mode.changes_indentation()) {
+        (TangentialControl::Force, true) => (
+            "a held tangential force",
+            "an amplitude tells the force at its two turning points alone, and while the indentation changes springs slip by how it goes between them",
+        ),
+        (TangentialControl::Force, false) => (
+            "a held tangential force",
+            "one amplitude says neither which component of the force that is nor how both go in between, by which springs slip",
+        ),
+        (_, true) => (
+            "a rig",
+            "what the contact bears changes with the indentation within a period, and so does how far the spring of the rig is stretched: the contact \
+             would move on a path that is another in every cycle as it wears",
+        ),
+        (_, false) => (
+            "a rig",
+            "the spring of the rig is stretched along the force, which turns otherwise than the displacement: the contact would move on a path that is \
+             another in every cycle as it wears",
+        ),
     };
     Err(entry.misplaced(format_args!(
         "does not go together with {name}: {why}; remove {}, or oscillate tangentially at one indentation",

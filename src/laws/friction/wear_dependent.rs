@@ -34,7 +34,7 @@ const KEYS: [Key; 3] = [
     .example("5 J/mm^2"),
 ];
 
-/// `μ_f = μ_last + (μ_first - μ_last) e^(-ΣE/(A e_0))`, with the area `A = π a0²` of the first contact.
+/// `μ_f = μ_last + (μ_first - μ_last) e^(-ΣE/(A e_0))`, with the area `A = π a0²` of the first contact, at its largest indentation.
 #[derive(Debug, Clone, Copy)]
 pub struct WearDependent {
     /// `μ_first`, the coefficient that holds until [`FrictionLaw::along_energy`] says otherwise.

@@ -19,7 +19,7 @@ impl MovingStick {
     /// * `slides` -- whether no stick is left in some cycle
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] for friction that changes under normal oscillation; for blocks of other indentations of which the last slips less far than
+    /// [`Error::Inconsistent`] for friction that falls and rises under normal oscillation; for blocks of other indentations of which the last slips less far than
     /// others before; for pauses under a held normal force.
     pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
         let conditions = schedule.conditions();
@@ -95,12 +95,19 @@ impl MovingStick {
         let amplitudes = || blocks.iter().map(|block| block.amplitude_factor);
         let by = Self::by(Cause::Friction);
         if blocks.is_empty() && changes && schedule.lifts() {
-            return Err(Error::Inconsistent {
-                what: "friction.history",
-                why: "is not followed where the indentation changes within a period: springs that are loaded for a part of it would be \
-                      worn too deep at an edge of stick that moves; leave out the history, or the normal oscillation"
-                    .into(),
-            });
+            if falls && rises {
+                return Err(Error::Inconsistent {
+                    what: "friction.history",
+                    why: "falls and rises: springs come to rest on worn ground and slip there anew, and where the indentation changes within a period \
+                          it is how deep each was worn while it was lifted or pressed that decides when, which is not followed to any accuracy; let \
+                          the factors only fall or only rise, or leave out the normal oscillation"
+                        .into(),
+                });
+            }
+            // The mesh from where the edge is innermost serves, as long as friction is known beforehand.
+            if falls && *schedule.friction_along_energy() == History::Constant {
+                return Ok(None);
+            }
         }
         let level =
             at_one_indentation(conditions) && amplitudes().all(|factor| factor > 0.0) && !schedule.lifts();
@@ -195,6 +202,7 @@ fn check_blocks_under_force(conditions: &Conditions) -> Result<()> {
 /// Refuses what is not followed while friction changes with the energy that it dissipates.
 fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
     let conditions = schedule.conditions();
+    let [falls, _] = schedule.friction_change().directions();
     let beside = [
         (conditions.friction_history != History::Constant, "friction.history", "leave it out"),
         (
@@ -202,7 +210,17 @@ fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
             "loading.blocks of other indentations",
             "let only amplitude factors differ",
         ),
-        (schedule.lifts(), "an indentation that changes within a period", "leave out the normal oscillation"),
+        (
+            schedule.lifts() && !conditions.blocks.is_empty(),
+            "blocks where the indentation changes within a period",
+            "leave out the blocks, or the normal oscillation",
+        ),
+        (
+            schedule.lifts() && falls,
+            "an indentation that changes within a period while it falls: next to an edge of stick that recedes springs that are lifted for a part of \
+             the period are worn too deep",
+            "let it fall along the cycles (friction.history), or leave out the normal oscillation",
+        ),
         (slides, "an amplitude at which the contact slides as a whole", "reduce the amplitude"),
     ];
     match beside.iter().find(|(is_there, ..)| *is_there) {
