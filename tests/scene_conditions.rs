@@ -655,8 +655,8 @@ fn everything_at_once_runs() {
 }
 
 #[test]
-fn changing_friction_under_lifts_is_refused_with_nothing_written() {
-    let history = "[friction.coulomb]\ncoefficient = 0.6\n[friction.history]\nfinal_factor = 0.8\ntau = 3";
+fn friction_that_falls_and_rises_under_lifts_is_refused_with_nothing_written() {
+    let history = "[friction.coulomb]\ncoefficient = 0.6\n[friction.history]\nfactors = [1, 0.8, 1]\nat_tau = [0, 1, 3]";
     let lifted = format!(
         "{LOADING}[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1"
     );
@@ -666,7 +666,7 @@ fn changing_friction_under_lifts_is_refused_with_nothing_written() {
     let output = command.current_dir(folder.path()).args(["run", "scene.toml"]).output().expect("a run");
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(message.contains("is not followed"), "{message}");
+    assert!(message.contains("falls and rises") && message.contains("only fall or only rise"), "{message}");
     assert!(!folder.path().join("scene.h5").exists());
 }
 

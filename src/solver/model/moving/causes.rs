@@ -98,9 +98,9 @@ impl MovingStick {
             if falls && rises {
                 return Err(Error::Inconsistent {
                     what: "friction.history",
-                    why: "falls and rises: springs come to rest on worn ground and slip there anew, and where the indentation changes within a period \
-                          it is how deep each was worn while it was lifted or pressed that decides when, which is not followed to any accuracy; let \
-                          the factors only fall or only rise, or leave out the normal oscillation"
+                    why: "falls and rises: springs come to rest on worn ground and slip there anew, where the indentation changes within a period some \
+                          lifted and some pressed, which is not followed to any accuracy (volumes on two meshes of many springs were 2.5 % apart); \
+                          let the factors only fall or only rise, or leave out the normal oscillation"
                         .into(),
                 });
             }
