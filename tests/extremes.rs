@@ -164,6 +164,37 @@ fn amplitudes_from_nearly_nothing_to_nearly_full_sliding_end_at_the_limit() {
 }
 
 #[test]
+fn a_rig_behind_a_contact_that_hardly_slips_leaves_its_wear_as_it_is() {
+    // What slips bears next to nothing, so that the balance of forces with the rig holds the amplitude.
+    let at = |amplitude: String| {
+        let (end, numerics) = ("tau = 0.3".into(), "accuracy = 1e-2".into());
+        Extreme { amplitude, end, numerics, ..Extreme::default() }.run().expect("a run")
+    };
+    let rig = at("amplitude_ratio = 1e-4\nrig_stiffness = 1e9".into());
+    let first = &rig.snapshots()[0];
+    let held = at(format!("stick_ratio = {:?}", first.stick_radius / first.contact_radius));
+    let off = rig.last().wear_volume / held.last().wear_volume - 1.0;
+    assert_eq!(rig.accuracy_met(), Some(true), "estimate {:?}", rig.error_estimate());
+    assert!(off.abs() < 1e-2, "off by {off:e}");
+}
+
+#[test]
+fn an_annulus_narrower_than_rounding_beside_an_edge_of_stick_that_moves_is_refused() {
+    let numerics = "accuracy = 1e-2\n[friction.history]\nfinal_factor = 1.2\ntau = 0.1".into();
+    let (amplitude, end) = ("amplitude_ratio = 1e-9".into(), "tau = 0.3".into());
+    let error = Extreme { amplitude, end, numerics, ..Extreme::default() }.run().expect_err("refused");
+    assert_eq!(error.exit_code(), 2, "{error}");
+    assert!(error.to_string().contains("by less than its place is rounded to"), "{error}");
+}
+
+#[test]
+fn the_scene_of_a_dead_weight_keeps_to_its_accuracy() {
+    let scene: Scene = include_str!("../data/scenes/normal_force.toml").parse().expect("a scene");
+    let results = scene.simulate().expect("a run");
+    assert_eq!(results.accuracy_met(), Some(true), "estimate {:?}", results.error_estimate());
+}
+
+#[test]
 fn exponents_from_a_tenth_to_twenty_end_at_the_limit() {
     let exponents = [0.1, 0.5, 1.0, 4.0, 10.0, 20.0];
     let off = worst(exponents.map(|exponent| Extreme { exponent, ..Extreme::default() }));

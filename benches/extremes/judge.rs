@@ -22,7 +22,7 @@ const HANGS: f64 = 90.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     pub name: String,
-    /// `done`, `told`, `refused`, `failed`, `late` or `wrong`.
+    /// `done`, `told`, `refused`, `named`, `failed`, `late` or `wrong`.
     pub end: String,
     /// Of the processor.
     pub seconds: f64,
@@ -160,7 +160,11 @@ fn ended(name: &str, results: &Results, accuracy: f64) -> Row {
 }
 
 fn refused_or_failed(name: &str, error: &Error, before: bool) -> Row {
+    // What is physical: beyond it there is no contact to follow.
+    let named = ["stick is lost at", "the profile of the indenter ends"];
+    let is_named = named.iter().any(|words| error.to_string().contains(words));
     match (error, before) {
+        _ if is_named => Row::new(name, "named", error.to_string()),
         (Error::NotConverged { .. }, false) => Row::new(name, "failed", error.to_string()),
         // What is found to fail while it is prepared is no refusal of what was asked.
         (Error::Inconsistent { why, .. }, true) if why.starts_with("at cycle ") => {

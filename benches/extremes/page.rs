@@ -7,10 +7,14 @@ use std::path::Path;
 use super::cell::names;
 use super::judge::Row;
 
-const ENDS: [(&str, &str); 6] = [
+const ENDS: [(&str, &str); 7] = [
     ("done", "done, within the accuracy by its own estimate"),
     ("told", "done, and told that the accuracy was not reached (exit code 3)"),
     ("refused", "refused before the work (exit code 2)"),
+    (
+        "named",
+        "ended by the contact itself, at a moment that is named: no stick is left under the force that is held, or the profile of the indenter ends (exit code 1 or 2)",
+    ),
     ("failed", "failed on the way (exit code 1)"),
     ("late", "out of time"),
     ("wrong", "wrong: a panic, a number that is none, another end when resumed"),
@@ -33,7 +37,9 @@ fn rows(folder: &Path, begin: &str) -> Vec<Row> {
 /// Words with the numbers, names of keys that the scene chose and places left out, so that one reason is one.
 fn kind_of(why: &str) -> String {
     let why = why.split(" (numerics.springs").next().unwrap_or(why);
-    let place = |part: &&str| !part.starts_with("scene.toml") && !part.contains("/scene.toml");
+    let is_line = |part: &str| part.split(':').all(|it| it.parse::<usize>().is_ok());
+    let place =
+        |part: &&str| !part.starts_with("scene.toml") && !part.contains("/scene.toml") && !is_line(part);
     let why = why.split(": ").filter(place).collect::<Vec<_>>().join(": ");
     let is_number = |word: &str| word.trim_matches(|it: char| ",;:()".contains(it)).parse::<f64>().is_ok();
     let words = why.split(' ').map(|word| if is_number(word) { "…" } else { word });
@@ -75,7 +81,7 @@ pub fn write(folder: &Path) {
     let _ = writeln!(
         page,
         "\n## Every kind at every extreme\n\n`-- matrix`, an accuracy of 1e-2: the usual scene is a paraboloid at k = 0 with an amplitude of half of full sliding (amplitude 0.5) to τ = 3 in 1e5 \
-         cycles; every cell is run once more in two parts, which come to the same to the last bit. **d**: done; **t**: told; **r**: refused; **F**: failed; **L**: out of time; **W**: wrong.\n"
+         cycles; every cell is run once more in two parts, which come to the same to the last bit. **d**: done; **t**: told; **r**: refused; **n**: ended by the contact itself; **F**: failed; **L**: out of time; **W**: wrong.\n"
     );
     let [kinds, extremes] = names();
     let _ = writeln!(page, "| | {} |\n|---|{}", kinds.join(" | "), "---|".repeat(kinds.len()));
@@ -86,6 +92,7 @@ pub fn write(folder: &Path) {
                 Some("done") => "d",
                 Some("told") => "t",
                 Some("refused") => "r",
+                Some("named") => "n",
                 Some("failed") => "**F**",
                 Some("late") => "**L**",
                 Some(_) => "**W**",
@@ -97,20 +104,25 @@ pub fn write(folder: &Path) {
     page.push('\n');
     counts(&mut page, &matrix);
     let random = rows(folder, "random");
+    let seeds = || random.iter().filter_map(|row| row.name.parse::<u64>().ok());
+    let [first, last] = [seeds().min(), seeds().max()].map(Option::unwrap_or_default);
     for (title, rows) in [("the matrix", &matrix), ("the random scenes", &random)] {
         if title == "the random scenes" {
             let _ = writeln!(
                 page,
-                "\n## {} random scenes\n\n`-- random 0..{}`: every indenter, medium, law, history, control, mode and block, alone and together, with contact radii from nm to km, gradings to ±0.9999, \
+                "\n## {} random scenes\n\n`-- random`, seeds {first} to {last}: every indenter, medium, law, history, control, mode and block, alone and together, with contact radii from nm to km, gradings to ±0.9999, \
                  exponents from 0.1 to 20, amplitudes from 1e-10 to 100 times full sliding, ends from τ = 1e-6 to 1e5 in up to 1e12 cycles, at 1e-2, 1e-3 and 1e-4.\n",
-                rows.len(),
                 rows.len()
             );
             counts(&mut page, rows);
         }
-        for (end, words) in
-            [("refused", "refused"), ("failed", "failed"), ("late", "out of time"), ("wrong", "wrong")]
-        {
+        for (end, words) in [
+            ("refused", "refused"),
+            ("named", "ended by the contact itself"),
+            ("failed", "failed"),
+            ("late", "out of time"),
+            ("wrong", "wrong"),
+        ] {
             if rows.iter().any(|row| row.end == end) {
                 let _ = writeln!(page, "\n### Why of {title} are {words}\n");
                 reasons(&mut page, rows, end);

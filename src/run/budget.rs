@@ -56,6 +56,10 @@ const MOST_REFINED_LIFTING: usize = 200;
 pub(super) const CAUTIOUS_ORDER: f64 = 4.0;
 const AIM: f64 = 0.5;
 
+/// Order below which none was seen, and that of kinks and edges that is then tried for.
+const SEEN: f64 = 1.0;
+const FULL_ORDER: f64 = 2.0;
+
 /// `n ln(a0/c)`: the logarithm of the profile's height at the first contact edge over that at the edge of stick.
 pub(in crate::run) fn smallness(contact: &InitialContact) -> f64 {
     exponent(contact) * contact.stick_logarithm().unwrap_or(0.0)
@@ -245,8 +249,13 @@ pub(in crate::run) fn refined_by_order(
     if shares.error() <= SURE * accuracy || aim <= 0.0 || shares.springs >= UNKNOWN {
         return None;
     }
-    let factor = (shares.springs / aim).powf(shares.order.recip()).max(RAISES[0]);
-    let refined = (springs as f64 * factor).ceil();
-    let most = if lifts { MOST_REFINED_LIFTING } else { MOST_REFINED };
-    (refined <= most as f64).then_some(refined as usize)
+    let wanted = |order: f64| {
+        let factor = (shares.springs / aim).powf(order.recip()).max(RAISES[0]);
+        (springs as f64 * factor).ceil()
+    };
+    let most = if lifts { MOST_REFINED_LIFTING } else { MOST_RAISED } as f64;
+    // On few springs the order may not show yet; more tell whether it is there.
+    let refined = wanted(shares.order);
+    let refined = if shares.order < SEEN || refined > most { wanted(FULL_ORDER) } else { refined };
+    (refined <= most).then_some(refined as usize)
 }

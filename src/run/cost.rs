@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::method::Method;
 use crate::error::{Error, Result};
 use crate::scene::Stepper as Choice;
-use crate::solver::model::{Model, State};
+use crate::solver::model::{FEWEST_SPRINGS, Model, State};
 use crate::solver::simulation::{End, Progress, Simulation};
 
 /// Most steps of an explicit method, and most ends of blocks in a run: about a day.
@@ -37,8 +37,12 @@ pub(super) const MOST_WORK: f64 = 8e9;
 /// The same for a run on so few springs that none are left out.
 const MOST_WORK_OF_LAST: f64 = 1.2e10;
 
+/// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
+pub(super) const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];
+
 /// Springs of a run that takes too long when it is made anew over those before, and fewest with which it is.
 const FEWER: f64 = 0.6;
+const OF_WHOLE: f64 = 0.75;
 const FEWEST: usize = 12;
 
 /// Evaluations of a step that is tried: where the edge of stick rests, where it moves, and in gross slip by backward differentiation, whose matrix by
@@ -54,16 +58,22 @@ const BY_SPREADING: f64 = 30.0;
 const BY_TRIPLE: f64 = 0.05;
 const OVERHEAD: [f64; 2] = [4e3, 2e4];
 
-/// The same by spring and column: from a table, in gross slip, along a line, where springs pass period after period, and where they do so until they come to
-/// rest on a path that presses and lifts.
-const BY_COLUMN: [f64; 5] = [1.0, 20.0, 6.0, 50.0, 5000.0];
+/// The same by spring and column: from a table, in gross slip, along a line, and where springs pass period after period; and by each period that they pass until
+/// they repeat themselves on a path that presses and lifts.
+const BY_COLUMN: [f64; 4] = [1.0, 20.0, 6.0, 50.0];
+const BY_PERIOD: f64 = 12.0;
 
 /// How much longer it takes where a profile is a table.
 const OF_TABLE: f64 = 4.0;
 
 /// Work of a step that is tried, nanoseconds of one core, about. The same on every machine, so that a run and one that was interrupted take the same way.
 pub(super) fn work_of_step(model: &Model) -> f64 {
-    let (springs, schedule) = (model.springs() as f64, model.schedule());
+    work_of_step_on(model, model.springs() as f64)
+}
+
+/// The same on another number of springs.
+fn work_of_step_on(model: &Model, springs: f64) -> f64 {
+    let schedule = model.schedule();
     let moves = usize::from(model.moving().is_some());
     let [once, beside_springs] = EVALUATIONS_IN_GROSS_SLIP;
     let [of_whole, elsewhere] = OVERHEAD;
@@ -73,13 +83,13 @@ pub(super) fn work_of_step(model: &Model) -> f64 {
         None => (EVALUATIONS[moves], elsewhere),
     };
     let columns = schedule.columns() as f64;
-    let [from_table, in_gross_slip, along_line, by_periods, to_rest] = BY_COLUMN;
+    let [from_table, in_gross_slip, along_line, by_periods] = BY_COLUMN;
     let passed = match schedule.resolves() {
         false => 0.0,
         true if schedule.is_tabulated() && model.gross().is_some() => in_gross_slip,
         true if schedule.is_tabulated() => from_table,
         true if !schedule.leaves_axis() && !schedule.conditions().friction.remembers_slip() => along_line,
-        true if schedule.lifts() => to_rest,
+        true if schedule.lifts() => BY_PERIOD * model.periods_to_rest().max(1.0),
         true => by_periods,
     };
     let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
@@ -93,9 +103,27 @@ pub(super) fn tries_of_look(finer: usize) -> f64 {
     finer as f64 / EVALUATIONS[0]
 }
 
-/// Steps tried so far.
-pub(super) fn tries(progress: &Progress) -> f64 {
-    (progress.steps + progress.rejected_steps) as f64
+/// Steps tried so far, or as many as their evaluations make: one that finds no contact takes the most.
+pub(super) fn tries(progress: &Progress, model: &Model) -> f64 {
+    let tried = (progress.steps + progress.rejected_steps) as f64;
+    match model.gross() {
+        Some(_) => tried,
+        None => {
+            let of_step = EVALUATIONS[usize::from(model.moving().is_some())];
+            tried.max(progress.rate_evaluations as f64 / of_step)
+        }
+    }
+}
+
+/// Springs with which to make a run anew that found no end on these; none if they would be too few. Polynomials over the whole contact swing the more, the more
+/// there are.
+pub(super) fn fewer_for_an_end(model: &Model) -> Option<usize> {
+    let springs = model.springs();
+    if model.gross().is_none() {
+        return fewer(springs);
+    }
+    let fewer = (OF_WHOLE * springs as f64) as usize;
+    (springs > FEWEST_SPRINGS).then_some(fewer.max(FEWEST_SPRINGS))
 }
 
 /// Springs with which to make a run anew that takes too long; none if they would be too few.
@@ -112,8 +140,8 @@ pub(super) fn most_tries(model: &Model) -> f64 {
 
 /// Whether a run that came to its end can be made anew on so many springs.
 pub(super) fn allows(simulation: &Simulation, springs: usize) -> bool {
-    let factor = (springs as f64 / simulation.model().springs() as f64).powi(3);
-    factor * tries(simulation.progress()) * work_of_step(simulation.model()) <= MOST_WORK
+    let model = simulation.model();
+    tries(simulation.progress(), model) * work_of_step_on(model, springs as f64) <= MOST_WORK
 }
 
 /// How a run is computed, and what it will take.

@@ -9,12 +9,13 @@ use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
-use crate::solver::model::{Model, MovingStick, OperatorStore, Resolution, Schedule};
+use crate::solver::model::{FEWEST_SPRINGS, Model, MovingStick, OperatorStore, Resolution, Schedule};
 use crate::solver::simulation::{Plan, Simulation};
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossBdf, GrossSdirk, Sdirk, Stepper};
 
-/// Springs and tolerance of the run that tells how far a contact in gross slip comes to reach, and what is added to that.
-const COARSE: (usize, f64) = (12, 1e-3);
+/// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, and what is added to
+/// that.
+const COARSE: ([usize; 2], f64) = ([12, FEWEST_SPRINGS], 1e-3);
 const MARGIN: f64 = 1.02;
 const WITHIN_END: f64 = 1.0 - 1e-12;
 
@@ -98,18 +99,30 @@ fn limit(model: &Model) -> Result<Option<LimitingShape>> {
     if unlimited { Ok(None) } else { LimitingShape::under(model.contact(), conditions) }
 }
 
-/// Contact radius, m, to which gross slip leads, by a coarse run.
+/// Contact radius, m, to which gross slip leads, by a coarse run; where that comes to no end on any springs, the radius that bounds it at an
+/// indentation that is held, beyond which the unworn profile is as high.
 fn farthest_radius(parts: &Parts, store: &OperatorStore) -> Result<f64> {
     let (springs, tolerance) = COARSE;
-    let (contact, schedule) = (parts.model.contact(), parts.model.schedule().clone());
-    let model = Model::under(contact, schedule, springs, Clustering::Cubic, store)?;
-    let plan = Plan { outputs: vec![], end: parts.plan.end };
-    let mut coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
-    coarse.run(&mut []).map_err(|error| match error {
-        Error::NotConverged { why, .. } => Error::Inconsistent { what: "loading", why },
-        other => other,
-    })?;
-    Ok(coarse.model().contact_radius(coarse.state()))
+    let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
+    let coarse = |springs: usize| -> Result<f64> {
+        let model = Model::under(contact, schedule.clone(), springs, Clustering::Cubic, store)?;
+        let plan = Plan { outputs: vec![], end: parts.plan.end };
+        let mut coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
+        coarse.run(&mut [])?;
+        Ok(coarse.model().contact_radius(coarse.state()))
+    };
+    let [first, fewer] = springs;
+    let why = match coarse(first) {
+        Err(Error::NotConverged { why, .. }) => why,
+        found => return found,
+    };
+    match coarse(fewer) {
+        Err(Error::NotConverged { .. }) if !parts.model.wears_without_end() => {
+            Ok(contact.indenter().radius_at_height(contact.indentation()))
+        }
+        Err(Error::NotConverged { .. }) => Err(Error::Inconsistent { what: "loading", why }),
+        found => found,
+    }
 }
 
 /// Refuses contacts in which nothing slips and so nothing wears, where the first cycle tells.

@@ -9,6 +9,9 @@ use crate::scene::schema::is_key;
 use crate::solver::model::OperatorStore;
 use crate::solver::simulation::Simulation;
 
+/// Area of a slip annulus, over that of the stick zone, below which is tried whether there is a first step.
+const NARROW: f64 = 1e-3;
+
 /// A run before its first step.
 pub(super) struct Ready {
     pub simulation: Simulation,
@@ -26,8 +29,24 @@ impl Ready {
         let parts = Parts::new(scene, scene.numerics(), None, None, store)?;
         let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
         cost::check(scene.numerics().stepper, &mut simulation)?;
+        check_width(&mut simulation)?;
         Ok(Self { simulation, limit: parts.limit })
     }
+}
+
+/// Refuses a slip annulus so narrow that no first step is found where the edge of stick moves: the place of that edge is rounded to `1e-16` of its radius.
+fn check_width(simulation: &mut Simulation) -> Result<()> {
+    let width = simulation.model().width_beside_moving_edge(simulation.state());
+    let Some(width) = width.filter(|width| *width < NARROW) else { return Ok(()) };
+    if simulation.begins()? {
+        return Ok(());
+    }
+    let why = format!(
+        "at an amplitude of {:e} m the slip annulus has {width:.1e} of the area of the stick zone, and in a step its edge moves by less than its place is rounded \
+         to; ask for a larger amplitude, or leave out what moves it (a rig or force that is held, friction that changes, blocks)",
+        simulation.model().contact().amplitude()
+    );
+    Err(Error::Inconsistent { what: "loading.amplitude", why })
 }
 
 /// A refusal at the key with which the scene gives what is refused.

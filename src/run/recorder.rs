@@ -1,8 +1,9 @@
 //! What a run records: snapshots, checkpoints, and the estimate of its error.
 
+use std::cmp::Ordering;
 use std::panic::resume_unwind;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{self, AtomicBool};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -132,7 +133,7 @@ impl Recorder {
 
     /// Whether the companions of a run tell that it would take too long.
     pub(super) fn would_take_too_long(&self) -> bool {
-        self.would_take_too_long.load(Ordering::Relaxed)
+        self.would_take_too_long.load(atomic::Ordering::Relaxed)
     }
 
     /// Whether the file is written where the run ends.
@@ -159,13 +160,20 @@ impl Recorder {
         let chosen = scene.numerics().springs.is_none();
         self.companions = chosen.then(|| Companions::new(scene, simulation, limited));
         let bounded = chosen && scene.numerics().stepper == Stepper::Implicit;
-        self.most_tries = if bounded { cost::most_tries(simulation.model()) } else { f64::INFINITY };
+        let [after_long, after_no_end] = cost::OF_LAST_ATTEMPTS;
+        let part = match self.attempt.refinements.cmp(&budget::REFINEMENTS) {
+            _ if self.attempt.ended_on > 0 => 1.0,
+            Ordering::Less => 1.0,
+            Ordering::Equal => after_long,
+            Ordering::Greater => after_no_end,
+        };
+        self.most_tries = if bounded { part * cost::most_tries(simulation.model()) } else { f64::INFINITY };
         (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
-        let coarsening = chosen.then(|| Coarsening::new(scene, simulation));
+        let coarsening = chosen.then(|| Coarsening::new(scene, simulation, part));
         let (stop, too_long) = (Arc::clone(&self.stop), Arc::clone(&self.would_take_too_long));
         let run_companions = || {
             let found = coarsening.map(|it| it.run(scene, store, &stop))?;
-            too_long.store(first && found.are_dear(), Ordering::Relaxed);
+            too_long.store(first && found.are_dear(), atomic::Ordering::Relaxed);
             Some(found)
         };
         let (outcome, found) = beside(|| simulation.run(&mut [&mut *self, onlookers]), run_companions);
@@ -181,7 +189,7 @@ impl Recorder {
         simulation: &mut Simulation,
         onlookers: &mut dyn Observer,
     ) -> Result<Outcome> {
-        self.would_take_too_long.store(false, Ordering::Relaxed);
+        self.would_take_too_long.store(false, atomic::Ordering::Relaxed);
         simulation.run(&mut [&mut *self, onlookers])
     }
 
@@ -220,6 +228,11 @@ impl Recorder {
         wanted.filter(|springs| cost::allows(simulation, *springs))
     }
 
+    /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost.
+    pub(super) fn looks_for_an_end(&self, simulation: &Simulation) -> bool {
+        self.companions.is_some() && !simulation.model().loses_stick(simulation.state())
+    }
+
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
         Checkpoint {
             state: simulation.state().clone(),
@@ -239,10 +252,10 @@ impl Observer for Recorder {
     }
 
     fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
-        if self.stop.load(Ordering::Relaxed) || self.would_take_too_long() {
+        if self.stop.load(atomic::Ordering::Relaxed) || self.would_take_too_long() {
             return Ok(Flow::Stop);
         }
-        if tries(simulation.progress()) > self.most_tries {
+        if tries(simulation.progress(), simulation.model()) > self.most_tries {
             self.takes_too_long = true;
             return Ok(Flow::Stop);
         }

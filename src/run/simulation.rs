@@ -255,18 +255,30 @@ fn to_the_end(
             outcome = Err(stepping.takes_too_long());
         }
         let checkpoint = recorder.checkpoint(&stepping);
-        let springs = match &outcome {
-            // Finer ones do not end.
-            Err(Error::NotConverged { .. }) if ended_on > 0 => {
-                recorder.attempt.refinements = budget::REFINEMENTS;
-                Some(ended_on)
-            }
-            _ if recorder.attempt.refinements < budget::REFINEMENTS => {
-                recorder.more_springs(scene, &stepping, &outcome, &checkpoint)
-            }
-            _ => None,
+        let no_end = matches!(outcome, Err(Error::NotConverged { .. }));
+        let more = match recorder.attempt.refinements < budget::REFINEMENTS {
+            true => recorder.more_springs(scene, &stepping, &outcome, &checkpoint),
+            false => None,
         };
-        if let Some(found) = springs.and_then(|springs| anew(springs).ok()) {
+        let found = match more {
+            // Finer ones do not end.
+            _ if no_end && ended_on > 0 => {
+                recorder.attempt.refinements = budget::REFINEMENTS;
+                anew(ended_on).ok()
+            }
+            // Coarser ones may, and tell that nothing is known of the error.
+            None if no_end && recorder.looks_for_an_end(&stepping) => {
+                recorder.attempt.refinements = budget::REFINEMENTS;
+                let first = Parts::new(scene, scene.numerics(), None, Some(&known), store).ok();
+                let springs = stepping.model().springs();
+                let first = first.map(|parts| parts.model).filter(|it| it.springs() < springs);
+                let fewer = cost::fewer_for_an_end(first.as_ref().unwrap_or(stepping.model()));
+                // A mesh may need as many.
+                fewer.and_then(|it| anew(it).ok()).filter(|(coarser, _)| coarser.model().springs() < springs)
+            }
+            more => more.and_then(|springs| anew(springs).ok()),
+        };
+        if let Some(found) = found {
             recorder.attempt = Attempt {
                 refinements: recorder.attempt.refinements + 1,
                 ended_on: outcome.map_or(0, |_| stepping.model().springs() as u64),

@@ -301,6 +301,7 @@ impl Simulation {
                 return Err(self.slides_off());
             }
             let landed = self.advance(observers).map_err(|error| match error {
+                Error::NotConverged { .. } if self.model.is_losing_stick(&self.state) => self.slides_off(),
                 // A search within a step does not know the time.
                 Error::NotConverged { what, why } if what != STEPPING => {
                     self.stuck(&format!("{what}: {why}"))

@@ -129,7 +129,7 @@ struct Seen {
 
 impl Seen {
     fn tries(&self, simulation: &Simulation) -> f64 {
-        tries(simulation.progress()) + self.looked
+        tries(simulation.progress(), simulation.model()) + self.looked
     }
 }
 

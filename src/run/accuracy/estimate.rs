@@ -87,6 +87,8 @@ pub(in crate::run) struct Coarsening {
     smooth: bool,
     /// Whether one companion serves.
     alone: bool,
+    /// Of the work of a run that this one may take.
+    part: f64,
     /// `r² - c²`, m², of the radii compared.
     offsets: Vec<f64>,
     /// Substeps of a period where they are of a known order, so that coarser companions show what they leave out.
@@ -97,7 +99,10 @@ pub(in crate::run) struct Coarsening {
 
 impl Coarsening {
     /// That of a run.
-    pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation) -> Self {
+    ///
+    /// # Arguments
+    /// * `part` -- of the work of a run that this one may take
+    pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, part: f64) -> Self {
         let (model, numerics) = (simulation.model(), scene.numerics());
         let smooth = is_smooth(scene, model);
         let substeps = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
@@ -106,6 +111,7 @@ impl Coarsening {
             tolerance: simulation.tolerance(),
             smooth,
             alone: smooth || model.gross().is_some(),
+            part,
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
             substeps,
@@ -130,7 +136,7 @@ impl Coarsening {
                 offsets: &self.offsets,
                 schedule: self.schedule.as_ref(),
                 samples: steps == 1 && self.substeps.is_none(),
-                most_work: MOST_WORK * OF_COMPANION,
+                most_work: self.part * MOST_WORK * OF_COMPANION,
                 most_steps: MOST_STEPS[usize::from(!self.smooth)],
                 store,
                 stop,
@@ -231,7 +237,11 @@ impl Companions {
         if !(self.smooth || scale[0] > 0.0 && scale[1] > 0.0) {
             return None;
         }
-        let unknown = Shares { springs: UNKNOWN, left_out: self.left_out, ..Shares::default() };
+        // Nothing wears less than not at all.
+        let below =
+            worn.iter().flat_map(|it| &it.depth).fold(0.0, |most: f64, depth| most.max(-depth)) / scale[1];
+        let left_out = self.left_out.max(below);
+        let unknown = Shares { springs: UNKNOWN, left_out, ..Shares::default() };
         let Some(first) = &self.first else { return Some(unknown) };
         let ratio = self.springs as f64 / first.springs as f64;
         let spent = !self.smooth
@@ -254,7 +264,7 @@ impl Companions {
             springs: if tells { finite(difference / (ratio.powf(order) - 1.0)) } else { UNKNOWN },
             order,
             substeps,
-            left_out: finite(self.left_out),
+            left_out: finite(left_out),
         })
     }
 
@@ -321,8 +331,10 @@ fn in_gross_slip(
 ) -> Shares {
     let (model, state) = (simulation.model(), simulation.state());
     let balance = (model.wear_volume(simulation.fields()) - state.volume_by_rate).abs() / scale[0];
+    // A companion on about as many springs tells nothing.
+    let tells = ratio >= LEAST_RATIO;
     let error = (difference / (ratio.powf(ORDER_IN_GROSS_SLIP) - 1.0)).max(balance);
-    let error = if error.is_finite() { error } else { UNKNOWN };
+    let error = if tells && error.is_finite() { error } else { UNKNOWN };
     let shares = Shares { order: ORDER_IN_GROSS_SLIP, ..Shares::default() };
     let most = snapshots.iter().map(|it| it.stick_radius).fold(0.0, f64::max);
     if most > 0.0 {

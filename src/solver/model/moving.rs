@@ -45,8 +45,14 @@ const FARTHEST: f64 = 5.0;
 /// Steps in the search for the first balance of forces where the force may fall as the displacement grows.
 const FIRST_BALANCE: usize = 200;
 
+/// Part of what a balance of forces asks for that is rounding.
+const SAME_BALANCE: f64 = 1e-12;
+
 /// Area of stick, over that of the core of the mesh, below which it is taken for lost.
 const LOST: f64 = 4.0;
+
+/// The same below which it is lost where no step leads on.
+const NEARLY_LOST: f64 = 10.0;
 
 /// Radius, over that of the contact, of the core of a mesh that follows an edge of stick that recedes until none is left: stick is lost within 1e-3 of the time when it is as small as that.
 pub(super) const LAST_CORE: f64 = 0.02;
@@ -354,10 +360,24 @@ impl Model {
 
     /// Whether a stick zone that shrinks has come to the core of the mesh, or breaks away before.
     pub fn loses_stick(&self, state: &State) -> bool {
+        self.shrinks_below(LOST, state) || self.breaks_away(state)
+    }
+
+    /// Whether a stick zone that shrinks is so near to the core of the mesh that it is lost in the next moment.
+    pub fn is_losing_stick(&self, state: &State) -> bool {
+        self.shrinks_below(NEARLY_LOST, state)
+    }
+
+    /// Whether a stick zone that a tangential force takes away in the end has less than so many times the area of the core of the mesh.
+    fn shrinks_below(&self, times: f64, state: &State) -> bool {
         let tangential = self.moving().is_some_and(|moving| moving.cause == Cause::Tangential);
-        let core = self.stick_zone.stick_area;
-        let shrunk = state.stick.as_ref().is_some_and(|stick| stick.area < LOST * core);
-        self.slides && tangential && shrunk || self.breaks_away(state)
+        let area = times * self.stick_zone.stick_area;
+        self.slides && tangential && state.stick.as_ref().is_some_and(|stick| stick.area < area)
+    }
+
+    /// Width of the slip annulus of the first cycle, `(a² - c²)/c²`, where the edge of stick moves.
+    pub fn width_beside_moving_edge(&self, state: &State) -> Option<f64> {
+        state.stick.as_ref().map(|stick| state.slip_area / stick.area)
     }
 
     /// Where the mesh begins, with the edge of stick of a state.
@@ -509,6 +529,10 @@ pub(super) fn first_slip_compression(
         loading.excess(force, amplitude)
     };
     let least = 1e-12 * largest;
+    let left = excess(largest);
+    if left < 0.0 && left.abs() <= SAME_BALANCE * loading.asked() {
+        return Ok(largest);
+    }
     if !loading.friction.remembers_slip() {
         return bracketed(excess, least, largest, 0.0);
     }

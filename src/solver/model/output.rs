@@ -255,7 +255,9 @@ impl Model {
                 radial.pressure[i] = f64::NAN;
             }
             let Some(AnnulusPoint { x, y, unworn, grown, local }) = point else { continue };
-            radial.slip[i] = local.sum(&per_depth) * (unworn + grown);
+            let slip = local.sum(&per_depth) * (unworn + grown);
+            // A path has no sign; where slip jumps, under a static coefficient, the polynomial swings.
+            radial.slip[i] = if slip < 0.0 { 0.0 } else { slip };
             let inner = mesh.local_among(&local, y, eased.len());
             radial.pressure[i] = inner.sum(&eased) * power(1.0 - x, nu);
             if mesh.clustering().is_even() {

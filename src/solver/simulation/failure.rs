@@ -1,7 +1,7 @@
 //! Why a run cannot begin, or go on: the physical moment, and what can be done.
 
-use super::Simulation;
-use crate::error::Error;
+use super::{SMALLEST_FACTOR, SMALLEST_GROWTH, Simulation, largest};
+use crate::error::{Error, Result};
 use crate::solver::model::Model;
 
 /// What of a run does not converge.
@@ -32,6 +32,23 @@ pub(super) fn nothing_wears(model: &Model, finite: bool) -> Error {
 }
 
 impl Simulation {
+    /// Whether there is a first step, of any length above round-off, that leads to a contact.
+    ///
+    /// # Errors
+    /// Those of the stepper.
+    pub fn begins(&mut self) -> Result<bool> {
+        let (mut step, fastest) = (self.progress.next_step, largest(&self.cycle.growth));
+        while step * fastest > SMALLEST_GROWTH {
+            let found = self.stepper.step(&self.model, &self.state, step)?;
+            self.stepper.forget();
+            if found.state.is_some() && found.error.is_finite() {
+                return Ok(true);
+            }
+            step *= SMALLEST_FACTOR;
+        }
+        Ok(false)
+    }
+
     /// The moment at which no stick is left under a force that is held, which the contact then no longer bears.
     pub(super) fn slides_off(&self) -> Error {
         let (model, state) = (&self.model, &self.state);
@@ -75,23 +92,26 @@ impl Simulation {
             format!(", for at the radius {radius:.4e} m wear depth would become less")
         });
         let springs = model.springs();
-        let why = match model.contact().indenter().profile(AHEAD * edge) {
-            height if model.gross().is_some() && !height.is_finite() => {
-                "the profile of the indenter ends there"
-            }
-            _ => why,
+        let height = model.contact().indenter().profile(AHEAD * edge);
+        let ends = model.gross().is_some() && !height.is_finite();
+        let why = if ends { "the profile of the indenter ends there" } else { why };
+        let or = if ends { "" } else { "or " };
+        let cure = match cycles > 0.0 {
+            true => format!("{or}end before (loading.tau = {tau:.3e})"),
+            false => format!("{or}ask for another loading.amplitude"),
         };
-        let cure = if cycles > 0.0 {
-            format!("or end before (loading.tau = {tau:.3e})")
-        } else {
-            "or for another loading.amplitude".into()
+        let springs = match (ends, model.gross()) {
+            (true, _) => String::new(),
+            (_, gross) => {
+                let other = if gross.is_some() { 3 * springs / 4 } else { 2 * springs };
+                format!("ask for {other} springs (numerics.springs; there were {springs}), ")
+            }
         };
         Error::NotConverged {
             what: STEPPING,
             why: format!(
                 "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}; \
-                 ask for {} springs (numerics.springs; there were {springs}), {cure}",
-                if model.gross().is_some() { 3 * springs / 4 } else { 2 * springs }
+                 {springs}{cure}"
             ),
         }
     }

@@ -14,7 +14,7 @@ const STICK_ROUND_OFF: f64 = 1e-11;
 /// Roundings of an edge of stick that recedes that no correction of the springs is below.
 const ROUNDINGS: f64 = 4.0;
 
-/// What may be left of a balance of forces, relative.
+/// What may be left of a balance of forces, relative, and that is not rounding.
 const BALANCED: f64 = 1e-12;
 
 /// A stage and what was found at the unknowns tried last.
@@ -27,15 +27,21 @@ pub(super) struct MovingStage<'a> {
     round_off: f64,
     /// The same of the edge of stick.
     stick_round_off: f64,
+    /// What may be left of a balance of forces, relative.
+    balanced: f64,
     trial: &'a mut StickTrial,
 }
 
 impl<'a> MovingStage<'a> {
     pub fn new(stage: StickStage<'a>, tolerance: f64, model: &Model, trial: &'a mut StickTrial) -> Self {
         let tolerance = newton_tolerance(tolerance).min(MOST_LEFT);
-        let stick_round_off = STICK_ROUND_OFF * stage.magnified_rounding();
-        let round_off = ROUNDINGS * stage.rounding();
-        Self { stage, tolerance, held: model.contact().indentation(), round_off, stick_round_off, trial }
+        let held = model.contact().indentation();
+        // What is solved for is the height of the profile at the edge, and `q_c` what is left of the indentation above it.
+        let of_compression = ROUNDINGS * f64::EPSILON * held / stage.target().slip_compression;
+        let stick_round_off = (STICK_ROUND_OFF * stage.magnified_rounding()).max(of_compression);
+        let round_off = ROUNDINGS * stage.rounding() + of_compression;
+        let balanced = BALANCED.max(of_compression);
+        Self { stage, tolerance, held, round_off, stick_round_off, balanced, trial }
     }
 
     /// What is left of the balances, behind the equations of springs and edges.
@@ -85,7 +91,7 @@ impl Equations for MovingStage<'_> {
     fn is_last(&self, correction: &Correction) -> bool {
         correction.springs <= self.tolerance * correction.compression + 10.0 * ROUND_OFF + self.round_off
             && correction.stick <= self.stick_round_off
-            && self.balances().iter().all(|it| it.abs() <= BALANCED)
+            && self.balances().iter().all(|it| it.abs() <= self.balanced)
     }
 
     /// The edge of stick has to be found to the last digit.
