@@ -3,6 +3,7 @@
 mod support;
 
 use std::fs;
+use std::path::Path;
 
 use fretwear::Results;
 use fretwear::laws::conditions::Conditions;
@@ -194,6 +195,22 @@ fn edges_that_move_keep_to_the_references_of_another_code_or_say_that_they_do_no
             assert!(missed <= 2.0 * estimate, "{case}, τ = {tau}: missed {missed:e}, estimated {estimate:e}");
         }
     }
+}
+
+#[test]
+fn every_scene_that_is_shipped_keeps_to_its_accuracy() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut missed = vec![];
+    for path in files.filter(|path| path.extension().is_some_and(|it| it == "toml")) {
+        let results = Scene::from_path(&path).and_then(|scene| scene.simulate());
+        let results = results.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        // Where springs and tolerance stand in the scene there is an estimate, and nothing that was asked for.
+        if results.accuracy_met() == Some(false) || results.error_estimate().is_none() {
+            missed.push(format!("{}: {:?}", path.display(), results.error_estimate()));
+        }
+    }
+    assert!(missed.is_empty(), "{missed:#?}");
 }
 
 #[test]

@@ -389,7 +389,7 @@ fn the_studies_of_the_data_folder_are_valid() {
         assert_eq!(study.count(), scenes);
         for scene in 0..scenes {
             let contact = study.scene(scene).unwrap().contact().unwrap();
-            assert!(contact.stick_radius().is_some(), "scene {scene} of {file} slides as a whole");
+            assert!(contact.stick_radius().is_some(), "scene {scene} of {file} is in gross slip");
         }
     }
 }

@@ -403,7 +403,7 @@ impl Slip {
                 let borne = normal_force - force / friction_coefficient;
                 if borne <= 0.0 {
                     let why = format!(
-                        "{force} N is not below μ_f F_N = {most} N, so that the contact slides as a whole and a held force accelerates it; \
+                        "{force} N is not below μ_f F_N = {most} N, so that the contact is in gross slip and a held force accelerates it; \
                          ask for less, or give the amplitude as a length"
                     );
                     return Err(Error::Inconsistent { what: amplitude.key(), why });

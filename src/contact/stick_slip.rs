@@ -50,11 +50,11 @@ impl Regime {
 pub enum FrettingRegime {
     /// No spring has slipped.
     Stick,
-    /// No cycle has slid as a whole.
+    /// No cycle was in gross slip.
     PartialSlip,
-    /// Some cycles have slid as a whole, and some have not.
+    /// Some cycles were in gross slip, and some were not.
     Mixed,
-    /// All cycles have slid as a whole.
+    /// All cycles were in gross slip.
     FullSliding,
 }
 
@@ -67,7 +67,7 @@ impl FrettingRegime {
     /// # Arguments
     /// * `before` -- up to then; none before the first cycle
     /// * `cycle` -- what this cycle does
-    /// * `slid` -- whether a cycle so far slid as a whole
+    /// * `slid` -- whether a cycle so far was in gross slip
     pub fn after(before: Option<Self>, cycle: Regime, slid: bool) -> Self {
         match (cycle, before) {
             (Regime::FullSliding, None | Some(Self::FullSliding)) => Self::FullSliding,

@@ -27,7 +27,7 @@ pub const REGIME: Quantity = quantity("regime", "1", "what the oscillation does 
 pub const FRETTING_REGIME: Quantity = quantity(
     "fretting_regime",
     "1",
-    "fretting regime of the run so far: mixed where some cycles have slid as a whole and some have not",
+    "fretting regime of the run so far: mixed where some cycles were in gross slip and some were not",
 );
 /// Attribute of the regimes: the numbers there are.
 pub const FLAG_VALUES: &str = "flag_values";

@@ -11,7 +11,7 @@ use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Stepper};
 use crate::solver::model::{FEWEST_SPRINGS, Model, OperatorStore, Schedule};
 
-/// Fewest springs that carry a contact which slides as a whole: their mesh begins at a thousandth of its radius.
+/// Fewest springs that carry a contact which is in gross slip: their mesh begins at a thousandth of its radius.
 pub(super) const SPRINGS_TO_SLIDE: usize = 60;
 
 /// Grading below which nodes cluster as `N^-2` at the edge of stick. There the depth of the limit is nearly linear, so that finer ones resolve
@@ -115,7 +115,7 @@ pub(super) fn model(
                 springs = SPRINGS_TO_SLIDE;
                 continue 'springs;
             }
-            // Where the edge of stick moves or the contact slides as a whole, what is known beforehand belongs to another mesh.
+            // Where the edge of stick moves or the contact is in gross slip, what is known beforehand belongs to another mesh.
             if model.moving().is_some() || model.slides() {
                 return Ok(model);
             }

@@ -52,7 +52,7 @@ impl Parts {
         Ok(parts)
     }
 
-    /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that slides as a whole, and without its limit.
+    /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that is in gross slip, and without its limit.
     pub(super) fn on_any(
         scene: &Scene,
         numerics: &Numerics,

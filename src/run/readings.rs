@@ -55,7 +55,7 @@ pub const RUN: [Reading<Results>; 23] = [
     word("regime", "what the last cycle does to the contact", |it| it.last().regime.name().into()),
     word(
         "fretting_regime",
-        "fretting regime of the run: mixed where some cycles slid as a whole and some did not",
+        "fretting regime of the run: mixed where some cycles were in gross slip and some were not",
         |it| it.fretting_regime().last().map(|it| it.name()).into(),
     ),
     number("energy_ratio", "1", "energy of the last fretting loop over 4 Q* δ*", |it| {

@@ -160,10 +160,10 @@ fn warning_of_another_limit(conditions: &Conditions, slides: bool) -> Option<Str
         return None;
     }
     let says = if slides {
-        "its first cycle slides as a whole, and no stick zone is left from which there would be a limit in closed form"
+        "its first cycle is in gross slip, so that no stick zone is left from which a limit in closed form would follow"
     } else {
-        "limit takes its first cycle as plain tangential oscillation, run compares with the limit of the smallest stick radius and the \
-         largest indentation of the run; docs/universality.md tells when the final shape is another"
+        "the limit in closed form is that of plain tangential oscillation. Before a run it is formed from the first cycle, after one from the smallest \
+         stick radius and the largest indentation reached; docs/universality.md says when the final shape is another"
     };
     Some(format!("this scene has {}: {says}", departures.join(", ")))
 }

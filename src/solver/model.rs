@@ -108,7 +108,7 @@ pub struct Fields {
 pub struct StickZone {
     /// `c²`, m².
     pub stick_area: f64,
-    /// Compression `q_c` below which springs slip, m: that of the springs there, and more where the contact slides as a whole.
+    /// Compression `q_c` below which springs slip, m: that of the springs there, and more where the contact is in gross slip.
     pub slip_compression: f64,
     /// `∫_0^c x^k q dx`, m^(2+k).
     pub stick_load: f64,

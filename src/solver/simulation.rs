@@ -76,7 +76,7 @@ pub enum Outcome {
     Rate,
     /// No pressure is left, so that the rate asked for is below round-off.
     WornOut,
-    /// The rate asked for is never reached: the contact slides as a whole under a held normal force.
+    /// The rate asked for is never reached: the contact is in gross slip under a held normal force.
     Unending,
     /// An observer asked to stop.
     Interrupted,

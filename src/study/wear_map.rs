@@ -46,7 +46,7 @@ pub struct WearMap {
     pub full_sliding: Vec<f64>,
     /// `ΔV/(π a_h² d)`, shape `(grading, amplitude_ratio)`; not a number under full sliding.
     pub volume: Vec<f64>,
-    /// `ΔV(k)/ΔV(0)`, shape `(grading, amplitude_ratio)`; not a number where either slides as a whole.
+    /// `ΔV(k)/ΔV(0)`, shape `(grading, amplitude_ratio)`; not a number where either is in gross slip.
     pub ratio: Vec<f64>,
     /// The same by [`Form::SmallAmplitude`].
     pub small_amplitude_ratio: Vec<f64>,

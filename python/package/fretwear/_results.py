@@ -223,7 +223,7 @@ class Run(Results):
         sliding_ratio: Numbers
         """width of the fretting loop at no force over the stroke, shape (time,)"""
         fretting_regime: NDArray[np.int32]
-        """fretting regime of the run so far: mixed where some cycles have slid as a whole and some have not, shape (time,)"""
+        """fretting regime of the run so far: mixed where some cycles were in gross slip and some were not, shape (time,)"""
         regime: NDArray[np.int32]
         """what the oscillation does to the contact, shape (time,); ``attributes("regime")`` tells the words"""
         radius: Numbers

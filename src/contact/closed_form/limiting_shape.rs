@@ -75,7 +75,7 @@ impl LimitingShape {
             return Err(Error::Inconsistent {
                 what: "limiting shape",
                 why: format!(
-                    "the contact slides as a whole: M U/μ = {slip_compression} m is not below the indentation {indentation} m"
+                    "the contact is in gross slip: M U/μ = {slip_compression} m is not below the indentation {indentation} m"
                 ),
             });
         }

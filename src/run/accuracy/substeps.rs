@@ -26,7 +26,7 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
 #[derive(Debug)]
 pub(super) struct Unsampled {
     finer: Schedule,
-    /// The limit's volume, m³, and its change, relative; none where the contact slides as a whole.
+    /// The limit's volume, m³, and its change, relative; none where the contact is in gross slip.
     limit: Option<[f64; 2]>,
     /// Largest part of the limit's volume that was worn.
     reached: f64,

@@ -14,7 +14,7 @@ use crate::numerics::roots::bracketed;
 /// 1e-4 would take 120.
 const CORE: f64 = 1e-3;
 
-/// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact slides as a whole: the
+/// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact is in gross slip: the
 /// slip depth, of which wear is the growth, keeps its digits next to the core, however flat the profile is there.
 const LEAST_SURPLUS: f64 = 1e-2;
 
@@ -93,7 +93,7 @@ impl Schedule {
             return Err(Error::Inconsistent {
                 what: "loading.amplitude",
                 why: format!(
-                    "at an amplitude of {:e} m the contact slides as a whole, or nearly, and a tangential force that is held would accelerate it; reduce \
+                    "at an amplitude of {:e} m the contact is in gross slip, or nearly, and a tangential force that is held would accelerate it; reduce \
                      it, or hold the amplitude: leave out loading.tangential_control",
                     contact.amplitude()
                 ),
@@ -104,7 +104,7 @@ impl Schedule {
             return Err(Error::Inconsistent {
                 what: "loading.amplitude",
                 why: format!(
-                    "at an amplitude of {:e} m the contact comes to slide as a whole, and at grading {grading} the core of its mesh, a \
+                    "at an amplitude of {:e} m the contact comes to gross slip, and at grading {grading} the core of its mesh, a \
                      thousandth of its radius, would bear {:.2} of the load unworn; reduce the amplitude or the force",
                     contact.amplitude(),
                     core_share(grading)

@@ -172,7 +172,7 @@ impl MovingStick {
         }
     }
 
-    /// Whether the contact slides as a whole under a held normal force, so that wear never ends.
+    /// Whether the contact is in gross slip under a held normal force, so that wear never ends.
     pub fn slides(&self) -> bool {
         matches!(self.cause, Cause::Sliding(_))
     }

@@ -58,8 +58,8 @@ impl Simulation {
         Error::NotConverged {
             what: STEPPING,
             why: format!(
-                "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}), at last within the radius {radius:.4e} m: from there the contact slides \
-                 as a whole and no longer bears the tangential force that is asked for; end before (loading.tau), or ask for a smaller \
+                "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}), at last within the radius {radius:.4e} m: from there the contact is in \
+                 gross slip and no longer bears the tangential force that is asked for; end before (loading.tau), or ask for a smaller \
                  amplitude"
             ),
         }

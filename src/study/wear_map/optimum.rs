@@ -37,7 +37,7 @@ pub enum End {
     MinusOne,
     /// At the border to full sliding, where the stick zone vanishes.
     FullSliding,
-    /// Nowhere: every grading slides as a whole.
+    /// Nowhere: every grading is in gross slip.
     Nowhere,
 }
 
@@ -61,7 +61,7 @@ pub struct Optimum {
     pub amplitude_ratio: f64,
     /// `k*`; 1 or -1 where the least is a limit, not a number where there is none.
     pub grading: f64,
-    /// Least worn volume over that of the homogeneous contact; not a number as `k → -1`, and where that contact slides as a whole.
+    /// Least worn volume over that of the homogeneous contact; not a number as `k → -1`, and where that contact is in gross slip.
     pub volume_ratio: f64,
     /// Indentation over that of the homogeneous contact; not a number as `k → -1`, and where there is no optimum.
     pub indentation_ratio: f64,
@@ -266,7 +266,7 @@ impl<'a> Search<'a> {
         Chebyshev::fit(logarithm, high - low)
     }
 
-    /// `d ln ΔV/dk` at a grading, from a series over an interval; not a number where some of it slides as a whole.
+    /// `d ln ΔV/dk` at a grading, from a series over an interval; not a number where some of it is in gross slip.
     fn slope(&self, amplitude_ratio: f64, low: f64, high: f64, grading: f64) -> f64 {
         -self.series(amplitude_ratio, low, high).value_and_derivative(high - grading).1
     }

@@ -163,7 +163,7 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
 }
 
-/// Refuses a contact that slides as a whole in some cycles only under a held normal force, where blocks or a rig decide which.
+/// Refuses a contact that is in gross slip in some cycles only under a held normal force, where blocks or a rig decide which.
 fn check_sliding_under_force(conditions: &Conditions, contact: &InitialContact) -> Result<()> {
     let beside = match conditions.tangential_control {
         TangentialControl::Displacement if conditions.blocks.is_empty() => return Ok(()),
@@ -173,7 +173,7 @@ fn check_sliding_under_force(conditions: &Conditions, contact: &InitialContact) 
     Err(Error::Inconsistent {
         what: "loading.normal_force",
         why: format!(
-            "is held, and at an amplitude of {:e} m the contact slides as a whole in some cycles, but not in all; beside {beside} that is not followed; \
+            "is held, and at an amplitude of {:e} m the contact is in gross slip in some cycles, but not in all; beside {beside} that is not followed; \
              change the amplitude, or hold the indentation",
             contact.amplitude()
         ),
@@ -221,7 +221,7 @@ fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
              the period are worn too deep",
             "let it fall along the cycles (friction.history), or leave out the normal oscillation",
         ),
-        (slides, "an amplitude at which the contact slides as a whole", "reduce the amplitude"),
+        (slides, "an amplitude at which the contact is in gross slip", "reduce the amplitude"),
     ];
     match beside.iter().find(|(is_there, ..)| *is_there) {
         None => Ok(()),
