@@ -160,7 +160,8 @@ fn check_says_beforehand_that_a_run_takes_minutes_and_why() {
     }
     fs::write(folder.path().join("path.csv"), rows).expect("a file");
     let long = scene("", "tau = 3", "[loading.path]\nfile = \"path.csv\"\n")
-        .replace("indentation = 1e-6", "normal_force = 266.7");
+        .replace("indentation = 1e-6", "normal_force = 266.7")
+        .replace("accuracy = 1e-3", "accuracy = 1e-5");
     fs::write(folder.path().join("long.toml"), long).expect("a file");
     let output = command::run(folder.path(), &["check", "long.toml", "--json"]);
     let errors = command::text(&output.stderr);

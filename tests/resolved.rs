@@ -365,25 +365,23 @@ fn springs_through_steps_do_what_they_do_from_corner_to_corner() {
         let steps = Steps::new(path, 64, slope).unwrap();
         let law = Coulomb { coefficient: slope };
         let mut cycle = SpringCycle::default();
-        let [mut slip, mut slopes, mut before, mut after] = [(); 4].map(|()| vec![0.0; steps.columns()]);
-        let mut worst = [0.0_f64; 3];
+        let mut slip = vec![0.0; steps.columns()];
+        let mut worst = [0.0_f64; 2];
         for i in 1..400 {
-            let compression = 4.0 * 2.0 * lift.max(amplitude) * (0.618_033_988_75 * f64::from(i)).fract();
+            let part = (0.618_033_988_75 * f64::from(i)).fract();
+            // Half of them down to where springs touch for a moment only.
+            let part = if i % 2 == 0 { part } else { 1e-9_f64.powf(part) };
+            let compression = 8.0 * lift.max(amplitude) * part;
             steady_cycle(steps.path(), &law, 1.0, compression, &Shakedown::default(), &mut cycle);
-            let passed = steps.pass(compression, &mut slip, &mut slopes);
+            let passed = steps.pass(compression, &mut slip);
             let total: f64 = slip.chunks(2).map(|pair| (pair[0] + pair[1]).abs()).sum();
-            let [h, scale] = [1e-7, amplitude];
-            steps.pass(compression - h, &mut before, &mut []);
-            steps.pass(compression + h, &mut after, &mut []);
-            let slope_errors: Vec<f64> =
-                (0..slip.len()).map(|m| (after[m] - before[m]) / (2.0 * h) - slopes[m]).collect();
+            let scale = amplitude;
             worst[0] =
                 worst[0].max((total - cycle.slip_path).abs().max((passed.slip_path - total).abs()) / scale);
             worst[1] = worst[1].max((passed.dissipation - cycle.work).abs() / (scale * scale));
-            worst[2] = worst[2].max(largest(&slope_errors));
         }
         println!("{lift}, {ratio:?}: {worst:?}");
-        assert!(worst[0] < 1e-12 && worst[1] < 1e-12 && worst[2] < 1e-5, "{lift}, {ratio:?}: {worst:?}");
+        assert!(worst[0] < 1e-12 && worst[1] < 1e-12, "{lift}, {ratio:?}: {worst:?}");
     }
 }
 

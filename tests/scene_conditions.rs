@@ -577,7 +577,7 @@ fn what_is_not_plain_is_warned_about_and_shown() {
     let scene = read(&text);
     let [warning] = scene.warnings() else { panic!("{:?}", scene.warnings()) };
     for words in [
-        "run compares with the limit",
+        "the limit in closed form is that of plain tangential oscillation",
         "static and kinetic friction",
         "wear above a threshold",
         "blocks",

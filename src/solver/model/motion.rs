@@ -279,17 +279,22 @@ impl Model {
             amplitude_slope: None,
         };
         // Springs without compression are never loaded.
-        let (mut values, mut changes) = (vec![0.0; columns], vec![0.0; if slopes { columns } else { 0 }]);
+        let [mut values, mut after] = [(); 2].map(|()| vec![0.0; columns]);
+        let difference = DIFFERENCE * self.contact.slip_compression();
         let per_compression = Bearing::new(loading).of(1.0, 0.0);
         for (j, q) in compression.iter().enumerate() {
-            let passed = steps.pass(q.max(0.0), &mut values, &mut changes);
+            let passed = steps.pass(q.max(0.0), &mut values);
             let dissipation = ratio * passed.dissipation;
             motion.energies.push(Energies { dissipation, jump_loss: 0.0, work: dissipation });
             for (m, value) in values.iter().enumerate() {
                 motion.slip[(j, m)] = *value;
             }
-            for (m, change) in changes.iter().enumerate() {
-                motion.slip_slope[(j, m)] = *change;
+            if slopes {
+                // Springs that bear next to nothing touch for a moment, and their slopes hold over no more than that.
+                steps.pass(q.max(0.0) + difference, &mut after);
+                for (m, (after, value)) in after.iter().zip(&values).enumerate() {
+                    motion.slip_slope[(j, m)] = (after - value) / difference;
+                }
             }
             steps.load(*q, |m, load, slope| {
                 motion.load[(j, m)] = per_compression * load;

@@ -12,19 +12,11 @@ pub struct PassedSteps {
     pub slip_path: f64,
 }
 
-/// A place on the path: substep, part of it, and how that follows the compression, 1/m.
+/// A place on the path: substep, and part of it.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     substep: usize,
     part: f64,
-    slope: f64,
-}
-
-/// Where a spring has slipped to, m, with the derivative by its compression.
-#[derive(Debug, Clone, Copy, Default)]
-struct Slipped {
-    to: f64,
-    slope: f64,
 }
 
 /// Slip of one phase.
@@ -32,27 +24,24 @@ struct Slip {
     side: usize,
     from: Place,
     to: Place,
-    /// Derivatives of what pushes, at both, by the compression.
-    slopes: [f64; 2],
 }
 
 impl Steps {
-    /// Slip of a spring at the nodes, m, shape `(columns,)`, and its derivatives by the compression, where there is room for them; energies.
+    /// Slip of a spring at the nodes, m, shape `(columns,)`, and energies.
     ///
     /// Between its turns what pushes goes one way, so that slip begins where it reaches the place of the spring and lasts to the turn or to where the spring
     /// lifts off; a spring that touches begins there anew. From the second period on it repeats itself.
     ///
     /// # Arguments
     /// * `compression` -- at the largest indentation, m, at least 0
-    pub fn pass(&self, compression: f64, slip: &mut [f64], slopes: &mut [f64]) -> PassedSteps {
+    pub fn pass(&self, compression: f64, slip: &mut [f64]) -> PassedSteps {
         slip.fill(0.0);
-        slopes.fill(0.0);
         let first = &self.path.points[0];
         let limit = self.slope * (compression - first.lift).max(0.0);
         let (u, mut loaded) = (first.tangential[0], 0.0);
         // Pressed on without tangential displacement, and moved to the first point.
         let side = 1.0_f64.copysign(u);
-        let mut slipped = Slipped { to: side * (u.abs() - limit).max(0.0), slope: 0.0 };
+        let mut slipped = side * (u.abs() - limit).max(0.0);
         let mut passed = PassedSteps::default();
         for phase in &self.phases {
             self.through_phase(phase, compression, &mut slipped);
@@ -61,14 +50,13 @@ impl Steps {
             let Some([from, to]) = self.loaded(phase, compression) else { continue };
             loaded += (self.tangential(to) - self.tangential(from)).abs();
             if let Some(found) = self.through_phase(phase, compression, &mut slipped) {
-                self.record(&found, compression, &mut passed, slip, slopes);
+                self.record(&found, compression, &mut passed, slip);
             }
         }
         let reach = self.path.points.iter().map(|it| it.tangential[0].abs()).fold(0.0, f64::max);
         let round_off = ROUND_OFF * (reach + self.slope * compression) * self.path.points.len() as f64;
         if passed.slip_path <= Shakedown::default().threshold * loaded + round_off {
             slip.fill(0.0);
-            slopes.fill(0.0);
             return PassedSteps::default();
         }
         passed
@@ -77,15 +65,11 @@ impl Steps {
     /// The part of a phase in which a spring is loaded.
     fn loaded(&self, phase: &Phase, compression: f64) -> Option<[Place; 2]> {
         let lift = |m: usize| self.corner(m).lift;
-        let begin = Place { substep: phase.first, part: 0.0, slope: 0.0 };
-        let end = Place { substep: phase.end - 1, part: 1.0, slope: 0.0 };
+        let begin = Place { substep: phase.first, part: 0.0 };
+        let end = Place { substep: phase.end - 1, part: 1.0 };
         let crossing = |m: usize| {
             let [before, after] = [lift(m), lift(m + 1)];
-            Place {
-                substep: m,
-                part: (compression - before) / (after - before),
-                slope: (after - before).recip(),
-            }
+            Place { substep: m, part: (compression - before) / (after - before) }
         };
         match (lift(phase.first) <= compression, lift(phase.end) <= compression) {
             (true, true) => Some([begin, end]),
@@ -102,13 +86,11 @@ impl Steps {
     }
 
     /// Moves a spring through a phase; its slip, if it slips.
-    fn through_phase(&self, phase: &Phase, compression: f64, slipped: &mut Slipped) -> Option<Slip> {
+    fn through_phase(&self, phase: &Phase, compression: f64, slipped: &mut f64) -> Option<Slip> {
         let [begin, to] = self.loaded(phase, compression)?;
-        if begin.slope != 0.0 {
+        if self.corner(phase.first).lift > compression {
             // It touches.
-            let moved =
-                self.corner(begin.substep + 1).tangential[0] - self.corner(begin.substep).tangential[0];
-            *slipped = Slipped { to: self.tangential(begin), slope: moved * begin.slope };
+            *slipped = self.tangential(begin);
         }
         for side in 0..2 {
             if self.pushes[phase.first][side] == 0.0 {
@@ -116,36 +98,28 @@ impl Steps {
             }
             let sign = [1.0, -1.0][side];
             let reached = self.pushed(to, side) - self.slope * compression;
-            if reached <= sign * slipped.to {
+            if reached <= sign * *slipped {
                 continue;
             }
-            let rate = |place: Place| self.pushes[place.substep][side] * place.slope;
-            let level = sign * slipped.to + self.slope * compression;
-            let (from, onset) = if self.pushed(begin, side) >= level {
-                (begin, rate(begin))
+            let level = sign * *slipped + self.slope * compression;
+            let from = if self.pushed(begin, side) >= level {
+                begin
             } else {
-                let corner = |m: usize| self.pushed(Place { substep: m, part: 1.0, slope: 0.0 }, side);
+                let corner = |m: usize| self.pushed(Place { substep: m, part: 1.0 }, side);
                 let substep = phase.find(|m| corner(m) < level);
-                let before = self.pushed(Place { substep, part: 0.0, slope: 0.0 }, side);
+                let before = self.pushed(Place { substep, part: 0.0 }, side);
                 let part = ((level - before) / self.pushes[substep][side]).clamp(0.0, 1.0);
-                (Place { substep, part, slope: 0.0 }, sign * slipped.slope + self.slope)
+                Place { substep, part }
             };
-            *slipped = Slipped { to: sign * reached, slope: sign * (rate(to) - self.slope) };
-            return Some(Slip { side, from, to, slopes: [onset, rate(to)] });
+            *slipped = sign * reached;
+            return Some(Slip { side, from, to });
         }
         None
     }
 
     /// Adds a slip to the nodes and to the energies.
-    fn record(
-        &self,
-        slip: &Slip,
-        compression: f64,
-        passed: &mut PassedSteps,
-        nodes: &mut [f64],
-        slopes: &mut [f64],
-    ) {
-        let Slip { side, from, to, .. } = *slip;
+    fn record(&self, slip: &Slip, compression: f64, passed: &mut PassedSteps, nodes: &mut [f64]) {
+        let Slip { side, from, to } = *slip;
         let sign = [1.0, -1.0][side];
         let (Some(first), Some(last)) = (self.step_of[from.substep], self.step_of[to.substep]) else {
             return;
@@ -170,19 +144,13 @@ impl Steps {
                 add(step, self.part(m, side, [begin, end]));
             }
         }
-        if !slopes.is_empty() {
-            let [onset, end] = slip.slopes;
-            for (place, step, slope) in [(from, first, -onset), (to, last, end)] {
-                put(slopes, step, sign * slope, sign * slope * self.aside(place));
-            }
-        }
     }
 
     /// `∫ ds`, `∫ (2f - 1) ds` and `∫ lift ds` of a part of a substep, m, m and m².
     pub(super) fn part(&self, m: usize, side: usize, [begin, end]: [f64; 2]) -> [f64; 3] {
         let moved = (end - begin).max(0.0) * self.pushes[m][side];
         let part = 0.5 * (begin + end);
-        let middle = Place { substep: m, part, slope: 0.0 };
+        let middle = Place { substep: m, part };
         let lift = (1.0 - part) * self.corner(m).lift + part * self.corner(m + 1).lift;
         [moved, moved * self.aside(middle), moved * lift]
     }
@@ -193,12 +161,12 @@ impl Steps {
         2.0 * (from + place.part * (to - from)) - 1.0
     }
 
-    fn tangential(&self, Place { substep, part, .. }: Place) -> f64 {
+    fn tangential(&self, Place { substep, part }: Place) -> f64 {
         (1.0 - part) * self.corner(substep).tangential[0] + part * self.corner(substep + 1).tangential[0]
     }
 
     /// What pushes at a place, m: `u + (μ_f/M) lift`, or `-u + (μ_f/M) lift` to the other side.
-    fn pushed(&self, Place { substep, part, .. }: Place, side: usize) -> f64 {
+    fn pushed(&self, Place { substep, part }: Place, side: usize) -> f64 {
         let at = |m: usize| {
             let point = self.corner(m);
             [1.0, -1.0][side] * point.tangential[0] + self.slope * point.lift
