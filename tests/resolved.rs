@@ -385,6 +385,26 @@ fn springs_through_steps_do_what_they_do_from_corner_to_corner() {
     }
 }
 
+/// Errors of the depth worn in a period, over the largest, by the substeps, against a finer period; and their mean order where substeps double.
+fn errors_in_substeps(
+    case: &Case,
+    conditions: &Conditions,
+    substeps: [usize; 4],
+    finest: usize,
+) -> (Vec<f64>, f64) {
+    let depth = |substeps: usize| -> Vec<f64> {
+        let model = laws::model(case, conditions, Some(substeps));
+        let state = some_compression(&model);
+        let fields = model.fields(&state);
+        let cycle = model.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields);
+        cycle.growth.iter().zip(&fields.slip_depth).map(|(growth, slip)| growth * slip).collect()
+    };
+    let finest = depth(finest);
+    let errors = substeps.map(|substeps| distance(&depth(substeps), &finest) / largest(&finest)).to_vec();
+    let mean = orders(&errors).iter().sum::<f64>() / 3.0;
+    (errors, mean)
+}
+
 #[test]
 fn the_wear_of_an_orbit_is_of_second_order_in_the_substeps() {
     for (transverse, phase) in [(0.6, 0.0), (0.7, 0.5), (1.0, FRAC_PI_2)] {
@@ -393,18 +413,7 @@ fn the_wear_of_an_orbit_is_of_second_order_in_the_substeps() {
         let transverse_amplitude = transverse * contact.amplitude();
         let mode = Orbit { transverse_amplitude, phase, centre: [0.0; 2] };
         let conditions = Conditions { mode: Arc::new(mode), ..laws::plain(&contact) };
-        let depth = |substeps: usize| -> Vec<f64> {
-            let model = laws::model(&case, &conditions, Some(substeps));
-            let state = some_compression(&model);
-            let fields = model.fields(&state);
-            let cycle = model.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields);
-            cycle.growth.iter().zip(&fields.slip_depth).map(|(growth, slip)| growth * slip).collect()
-        };
-        let finest = depth(6144);
-        let errors: Vec<f64> = [96, 192, 384, 768]
-            .map(|substeps| distance(&depth(substeps), &finest) / largest(&finest))
-            .to_vec();
-        let mean = orders(&errors).iter().sum::<f64>() / 3.0;
+        let (errors, mean) = errors_in_substeps(&case, &conditions, [96, 192, 384, 768], 6144);
         println!("{transverse}, {phase}: {errors:?}, order {mean:.2}");
         // On a circle what the table leaves is more than what the substeps do.
         assert!(
@@ -422,18 +431,7 @@ fn the_wear_of_a_normal_oscillation_is_of_second_order_in_the_steps_at_least() {
         let mode =
             NormalOscillation { amplitude: 0.1 * contact.indentation(), frequency_ratio: [1, 1], phase: 1.0 };
         let conditions = Conditions { mode: Arc::new(mode), ..laws::plain(&contact) };
-        let depth = |substeps: usize| -> Vec<f64> {
-            let model = laws::model(&case, &conditions, Some(substeps));
-            let state = some_compression(&model);
-            let fields = model.fields(&state);
-            let cycle = model.cycle(&model.schedule().loading(0.0, 0.0), &state.compression, &fields);
-            cycle.growth.iter().zip(&fields.slip_depth).map(|(growth, slip)| growth * slip).collect()
-        };
-        let finest = depth(4096);
-        let errors: Vec<f64> = [64, 128, 256, 512]
-            .map(|substeps| distance(&depth(substeps), &finest) / largest(&finest))
-            .to_vec();
-        let mean = orders(&errors).iter().sum::<f64>() / 3.0;
+        let (errors, mean) = errors_in_substeps(&case, &conditions, [64, 128, 256, 512], 4096);
         println!("n = {exponent}, k = {grading}: {errors:?}, order {mean:.2}");
         assert!(mean > 1.9 && errors[1] < 1e-3, "{errors:?}: {mean}");
     }
