@@ -98,20 +98,19 @@ impl Scene {
     }
 }
 
-/// What the scene of a dictionary is called in messages.
+/// The key of a scene in a study or calibration, and what messages call one that is a dictionary.
 const SCENE: &str = "scene";
 
 /// The text of a study or calibration that is a dictionary, and that of its scene where this is one as well.
 fn texts(table: &Bound<PyDict>) -> PyResult<(String, Option<String>)> {
     let mut table = values::table(table, "")?;
-    let scene = match table.get_mut("scene") {
-        Some(scene @ Value::Table(_)) => {
-            let text = scene.to_string();
-            *scene = Value::String(SCENE.into());
-            Some(text)
-        }
+    let scene = match table.get(SCENE) {
+        Some(Value::Table(scene)) => Some(scene.to_string()),
         _ => None,
     };
+    if scene.is_some() {
+        table.insert(SCENE.into(), Value::String(SCENE.into()));
+    }
     Ok((table.to_string(), scene))
 }
 

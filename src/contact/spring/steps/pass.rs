@@ -12,9 +12,9 @@ pub struct PassedSteps {
     pub slip_path: f64,
 }
 
-/// A place on the path: substep, and part of it.
+/// A position on the path: substep, and part of it.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct Position {
     substep: usize,
     part: f64,
 }
@@ -22,8 +22,8 @@ struct Place {
 /// Slip of one phase.
 struct Slip {
     side: usize,
-    from: Place,
-    to: Place,
+    from: Position,
+    to: Position,
 }
 
 impl Steps {
@@ -63,13 +63,13 @@ impl Steps {
     }
 
     /// The part of a phase in which a spring is loaded.
-    fn loaded(&self, phase: &Phase, compression: f64) -> Option<[Place; 2]> {
+    fn loaded(&self, phase: &Phase, compression: f64) -> Option<[Position; 2]> {
         let lift = |m: usize| self.corner(m).lift;
-        let begin = Place { substep: phase.first, part: 0.0 };
-        let end = Place { substep: phase.end - 1, part: 1.0 };
+        let begin = Position { substep: phase.first, part: 0.0 };
+        let end = Position { substep: phase.end - 1, part: 1.0 };
         let crossing = |m: usize| {
             let [before, after] = [lift(m), lift(m + 1)];
-            Place { substep: m, part: (compression - before) / (after - before) }
+            Position { substep: m, part: (compression - before) / (after - before) }
         };
         match (lift(phase.first) <= compression, lift(phase.end) <= compression) {
             (true, true) => Some([begin, end]),
@@ -105,11 +105,11 @@ impl Steps {
             let from = if self.pushed(begin, side) >= level {
                 begin
             } else {
-                let corner = |m: usize| self.pushed(Place { substep: m, part: 1.0 }, side);
+                let corner = |m: usize| self.pushed(Position { substep: m, part: 1.0 }, side);
                 let substep = phase.find(|m| corner(m) < level);
-                let before = self.pushed(Place { substep, part: 0.0 }, side);
+                let before = self.pushed(Position { substep, part: 0.0 }, side);
                 let part = ((level - before) / self.pushes[substep][side]).clamp(0.0, 1.0);
-                Place { substep, part }
+                Position { substep, part }
             };
             *slipped = sign * reached;
             return Some(Slip { side, from, to });
@@ -150,23 +150,23 @@ impl Steps {
     pub(super) fn part(&self, m: usize, side: usize, [begin, end]: [f64; 2]) -> [f64; 3] {
         let moved = (end - begin).max(0.0) * self.pushes[m][side];
         let part = 0.5 * (begin + end);
-        let middle = Place { substep: m, part };
+        let middle = Position { substep: m, part };
         let lift = (1.0 - part) * self.corner(m).lift + part * self.corner(m + 1).lift;
         [moved, moved * self.aside(middle), moved * lift]
     }
 
     /// `2f - 1` at a place.
-    fn aside(&self, place: Place) -> f64 {
+    fn aside(&self, place: Position) -> f64 {
         let [from, to] = self.through[place.substep];
         2.0 * (from + place.part * (to - from)) - 1.0
     }
 
-    fn tangential(&self, Place { substep, part }: Place) -> f64 {
+    fn tangential(&self, Position { substep, part }: Position) -> f64 {
         (1.0 - part) * self.corner(substep).tangential[0] + part * self.corner(substep + 1).tangential[0]
     }
 
     /// What pushes at a place, m: `u + (μ_f/M) lift`, or `-u + (μ_f/M) lift` to the other side.
-    fn pushed(&self, Place { substep, part }: Place, side: usize) -> f64 {
+    fn pushed(&self, Position { substep, part }: Position, side: usize) -> f64 {
         let at = |m: usize| {
             let point = self.corner(m);
             [1.0, -1.0][side] * point.tangential[0] + self.slope * point.lift
