@@ -67,6 +67,19 @@ impl Path {
         ways
     }
 
+    /// Numbers for the slip of a spring in one way: one along a line, else two.
+    pub fn components(&self) -> usize {
+        if self.is_straight() { 1 } else { 2 }
+    }
+
+    /// Numbers for the slip of a spring in a period.
+    ///
+    /// # Arguments
+    /// * `ways` -- [`Path::ways`] of this path
+    pub fn columns(&self, ways: &[usize]) -> usize {
+        self.components() * ways.iter().max().map_or(0, |last| last + 1)
+    }
+
     /// The path with all tangential displacements times `factor`.
     pub fn stretched(&self, factor: f64) -> Self {
         let stretched =

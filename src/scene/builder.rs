@@ -5,6 +5,7 @@ use std::str::FromStr;
 use toml::{Table, Value};
 
 use super::Scene;
+use super::patch::table_of;
 use crate::error::{Error, Result};
 
 /// A scene that is made key by key, each by its path in the TOML of a scene.
@@ -42,14 +43,11 @@ impl SceneBuilder {
         let (tables, name) = key.rsplit_once('.').unwrap_or(("", key));
         let mut table = &mut self.document;
         for part in tables.split('.').filter(|part| !part.is_empty()) {
-            let inner = table.entry(part).or_insert_with(|| Value::Table(Table::new()));
-            match inner.as_table_mut() {
-                Some(inner) => table = inner,
-                None => {
-                    self.misplaced = Some(key.to_owned());
-                    return self;
-                }
-            }
+            let Ok(inner) = table_of(table, part) else {
+                self.misplaced = Some(key.to_owned());
+                return self;
+            };
+            table = inner;
         }
         table.insert(name.to_owned(), value.into());
         self

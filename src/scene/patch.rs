@@ -133,7 +133,11 @@ impl Scene {
     }
 }
 
-fn table_of<'a>(scene: &'a mut Table, name: &str) -> Result<&'a mut Table, String> {
+/// An inner table of a scene, which is made where there is none.
+///
+/// # Errors
+/// Its name where that is of something else.
+pub(super) fn table_of<'a>(scene: &'a mut Table, name: &str) -> Result<&'a mut Table, String> {
     let table = scene.entry(name).or_insert_with(|| Value::Table(Table::new()));
     table.as_table_mut().ok_or_else(|| format!("{name} is no table in the base scene"))
 }

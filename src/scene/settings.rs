@@ -5,6 +5,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use super::document::{Section, Source};
+use super::patch::table_of;
 use super::{Rows, Scene, base_table, keys, read_text};
 use crate::error::{Error, Result};
 use crate::units::{Key, Kind};
@@ -107,10 +108,8 @@ pub(super) fn set(scene: &mut Table, name: &str, dotted: &str, value: Value) -> 
     let (mut table, mut declared) = (scene, &keys::SCENE);
     for part in tables.split('.').filter(|it| !it.is_empty()) {
         declared.rivals(part).into_iter().for_each(|rival| drop(table.remove(rival)));
-        let inner = table.entry(part).or_insert_with(|| Value::Table(Table::new()));
-        table = inner.as_table_mut().ok_or_else(|| {
-            Error::scene(format!("{name}: {dotted}: {part} is no table in the base scene")).about(dotted)
-        })?;
+        table = table_of(table, part)
+            .map_err(|why| Error::scene(format!("{name}: {dotted}: {why}")).about(dotted))?;
         if let Some(Kind::Table(inner)) = declared.key(part).map(|key| key.kind) {
             declared = inner;
         }

@@ -38,6 +38,8 @@ pub struct Steps {
     phases: Vec<Phase>,
     /// `μ_f/M`.
     slope: f64,
+    /// Largest tangential displacement, m.
+    reach: f64,
 }
 
 /// Substeps between two turns of what pushes, or of the lift.
@@ -104,6 +106,7 @@ impl Steps {
             steps: vec![],
             phases: phases.iter().map(|(first, end, _)| Phase { first: *first, end: *end }).collect(),
             slope,
+            reach: path.points.iter().map(|it| it.tangential[0].abs()).fold(0.0, f64::max),
             pushes,
             path,
         };

@@ -157,11 +157,11 @@ impl Model {
         compression: &[f64],
         slopes: bool,
     ) -> Motion {
-        let components = if path.is_straight() { 1 } else { 2 };
+        let components = path.components();
         let table = loading.response.as_deref();
         let ways = if table.is_some() { vec![] } else { path.ways() };
-        let counted = || components * ways.iter().max().map_or(0, |last| last + 1);
-        let (inner, columns) = (compression.len(), table.map_or_else(counted, Response::columns));
+        let columns = table.map_or_else(|| path.columns(&ways), Response::columns);
+        let inner = compression.len();
         let steps = columns / components;
         let mut springs = PathSprings {
             loading,

@@ -384,14 +384,10 @@ impl Schedule {
 
     /// Numbers for the slip of a spring in a period, the most of all blocks; one where a cycle has a closed form.
     pub fn columns(&self) -> usize {
-        let of_path = |path: &Path| {
-            let components = if path.is_straight() { 1 } else { 2 };
-            components * path.ways().iter().max().map_or(0, |last| last + 1)
-        };
         let columns = |loading: &CycleLoading| match (&loading.response, &loading.steps, &loading.path) {
             (Some(table), ..) => table.columns(),
             (None, Some(steps), _) => steps.columns(),
-            (None, None, Some(path)) => of_path(path),
+            (None, None, Some(path)) => path.columns(&path.ways()),
             (None, None, None) => 1,
         };
         self.loadings.iter().map(columns).max().unwrap_or(1)

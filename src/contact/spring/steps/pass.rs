@@ -53,8 +53,7 @@ impl Steps {
                 self.record(&found, compression, &mut passed, slip);
             }
         }
-        let reach = self.path.points.iter().map(|it| it.tangential[0].abs()).fold(0.0, f64::max);
-        let round_off = ROUND_OFF * (reach + self.slope * compression) * self.path.points.len() as f64;
+        let round_off = ROUND_OFF * (self.reach + self.slope * compression) * self.path.points.len() as f64;
         if passed.slip_path <= Shakedown::default().threshold * loaded + round_off {
             slip.fill(0.0);
             return PassedSteps::default();
