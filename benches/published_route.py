@@ -296,12 +296,15 @@ def processes():
 
 
 def main():
+    global BINARY
     np.seterr(all="ignore")  # an unstable run is one of the things shown
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--processes", action="store_true")
+    parser.add_argument("--program", type=Path, default=BINARY, help="another build of fretwear, such as one with HDF5 linked in")
     parser.add_argument("--one", nargs=2, metavar=("SPRINGS", "TOLERANCE"), help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    BINARY = arguments.program.resolve()
     if arguments.one:
         cells, tolerance = arguments.one
         print(*Route(int(cells), True).bdf(float(tolerance), True))
