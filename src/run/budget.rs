@@ -82,12 +82,13 @@ pub(in crate::run) fn springs_for(
         let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
         return (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize;
     }
-    if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip {
+    let smooth = clustering == Clustering::Smooth;
+    if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip && !smooth {
         let [springs, at] = SPRINGS_UNDER_FORCE;
         return (springs * (at / accuracy).sqrt()).clamp(FEWEST_UNDER_FORCE, MOST_REFINED as f64).ceil()
             as usize;
     }
-    if clustering != Clustering::Smooth {
+    if !smooth {
         // The worn volume is of third order there (docs/numerics.md).
         return (120.0 * (1e-4 / accuracy).cbrt()).ceil() as usize;
     }

@@ -183,7 +183,8 @@ impl Model {
 
     /// Whether every cycle is the same, with weak kinks at most, and the edge of stick rests, so that wear is nearly smooth in time.
     pub fn wears_steadily(&self) -> bool {
-        self.schedule.wears_nearly_smoothly() && self.moving().is_none() && !self.slides
+        let rests = self.moving().is_none() || self.bears_both_forces();
+        self.schedule.wears_nearly_smoothly() && rests && !self.slides
     }
 
     /// Whether wear goes on as long as the contact is moved: in gross slip under a held normal force.

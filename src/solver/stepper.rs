@@ -68,8 +68,9 @@ pub trait Stepper {
     /// Order of the error estimate in the step, for the choice of the next one.
     fn estimate_order(&self) -> f64;
 
-    /// Whether it follows an edge of stick that moves.
-    fn follows_stick(&self) -> bool {
+    /// Whether it follows an edge of stick that moves, or the compression at one under forces that are held.
+    fn follows_stick(&self, model: &Model) -> bool {
+        let _ = model;
         false
     }
 
@@ -103,7 +104,7 @@ pub(crate) fn check_model(stepper: &dyn Stepper, model: &Model) -> Result<()> {
                 .into();
         return Err(Error::Inconsistent { what: "numerics.stepper", why });
     }
-    if stepper.follows_stick() || model.moving().is_none() {
+    if stepper.follows_stick(model) || model.moving().is_none() {
         return Ok(());
     }
     Err(Error::Inconsistent {

@@ -183,8 +183,8 @@ impl Companions {
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
         let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
-        let radii =
-            (model.moving().is_some() || sampled || gross).then(|| shown.map(|r| r / radius).collect());
+        let moves = model.moving().is_some() && !model.bears_both_forces();
+        let radii = (moves || sampled || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
         let recedes = model.moving().is_some_and(MovingStick::recedes);
         let order = match held || model.slides() {

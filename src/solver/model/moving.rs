@@ -18,6 +18,7 @@
 //! `K' = -(G' - G_0') Φ`, which the contact edge needs to know: there `S = S_0 + K`.
 
 mod at_rest;
+mod both_forces;
 mod breakaway;
 mod causes;
 mod jump;
@@ -450,7 +451,8 @@ impl Model {
         }
     }
 
-    pub(super) fn displaced(&self, loading: CycleLoading, slip_compression: f64) -> CycleLoading {
+    /// What acts when springs begin to slip at this compression, m: the amplitude of the contact that a balance of forces has decided.
+    pub fn displaced(&self, loading: CycleLoading, slip_compression: f64) -> CycleLoading {
         let amplitude =
             loading.friction.static_strength(slip_compression) / self.contact.half_space().stiffness_ratio();
         loading.displaced(amplitude)

@@ -426,7 +426,16 @@ impl Schedule {
 
     /// Whether cycles are the same, at a constant indentation, and wear is local, at a rate without a kink: at most resolved cycles make kinks, weak ones.
     pub fn wears_nearly_smoothly(&self) -> bool {
-        self.makes_weak_kinks() && !self.conditions.wear.has_kink()
+        (self.makes_weak_kinks() || self.rests_under_both_forces()) && !self.conditions.wear.has_kink()
+    }
+
+    /// Whether both forces are held in cycles that are the same, and wear is local: the edge of stick stays, and amplitude and indentation follow from the
+    /// springs.
+    fn rests_under_both_forces(&self) -> bool {
+        let Conditions { mode, friction, wear, blocks, .. } = &self.conditions;
+        let same = blocks.is_empty() && *self.friction_change() == History::Constant;
+        let closed = mode.is_tangential() && friction.coefficient().is_some() && !self.resolves();
+        self.conditions.holds_both_forces() && same && closed && wear.spreading().is_none()
     }
 
     /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.

@@ -80,18 +80,20 @@ impl Stepper for Bdf {
         let mut evaluations = 1;
         // First guess: the polynomial through the past, then the same with new factors, then the state itself. On fine meshes with gradings near
         // -1 the polynomial may lead too far for Newton's method.
-        let led = (past.points.len() > 1).then(|| state_of(state, times.guess(&past), now));
+        let led = (past.points.len() > 1).then(|| led(model, state, &times, &past, now));
         let again = led.clone().filter(|_| self.newton.linearised().is_some());
         let still = State { cycles: now, past: Past::default(), ..state.clone() };
         let guesses = led.into_iter().chain(again).chain([still]).enumerate();
         let (tolerance, newton) = (self.at_the_end, &mut self.newton);
-        let mut stage = RestingStage { model, target, tolerance, tried: &mut self.tried };
+        let stick = state.stick.as_ref();
+        let mut stage = RestingStage { model, target, stick, tolerance, tried: &mut self.tried };
         let found = guesses.into_iter().find_map(|(attempt, guess)| {
             if attempt > 0 {
                 newton.outdate();
             }
             let mut at = Unknowns::of(&guess);
             newton.solve(&mut stage, &mut at, &mut evaluations).then_some(State {
+                stick: stick.map(|it| model.bearing_edge(it, at.slip_area, &at.compression)),
                 slip_area: at.slip_area,
                 compression: at.compression,
                 ..guess
@@ -145,13 +147,17 @@ impl Stepper for Bdf {
         2.0
     }
 
+    fn follows_stick(&self, model: &Model) -> bool {
+        model.bears_both_forces()
+    }
+
     fn interpolates(&self) -> bool {
         true
     }
 
     fn between(&self, model: &Model, state: &State, cycles: f64) -> Option<State> {
         let past = &state.past;
-        Some(state_of(state, TimesBefore::new(model, cycles, past).guess(past), cycles))
+        Some(led(model, state, &TimesBefore::new(model, cycles, past), past, cycles))
     }
 }
 
@@ -188,7 +194,8 @@ impl Bdf {
                         loading: model.schedule().loading(left.cycles, left.cycles),
                     };
                     let (tolerance, tried) = (self.at_the_end, &mut self.tried);
-                    self.newton.recall(&mut RestingStage { model, target, tolerance, tried }, left);
+                    let stick = state.stick.as_ref();
+                    self.newton.recall(&mut RestingStage { model, target, stick, tolerance, tried }, left);
                 }
                 None => self.newton.outdate(),
             }
@@ -204,14 +211,14 @@ impl Bdf {
         if !state.past.points.is_empty() {
             return state.past.clone();
         }
-        model.evaluate(state.slip_area, &state.compression, &mut self.tried.fields);
+        self.tried.fields = model.fields(state);
         Past { order: 1, points: vec![PastPoint::new(state, &self.tried.fields.log_slip)], linearised: None }
     }
 
     /// `λ` where the rates at the start lead, from zero.
     fn first_log_slip(&mut self, model: &Model, state: &State, cycles: f64) -> Vec<f64> {
         let fields = &self.tried.fields;
-        let loading = model.schedule().loading(state.cycles, state.cycles);
+        let loading = model.loading_in(state, model.schedule().loading(state.cycles, state.cycles));
         let cycle = model.cycle(&loading, &state.compression, fields);
         fields
             .log_slip
@@ -309,8 +316,13 @@ impl TimesBefore {
 
     /// What the polynomial of one order more than the step gives.
     pub fn guess(&self, past: &Past) -> PastPoint {
+        PastPoint::sum(&self.leading_weights(past), &past.points)
+    }
+
+    /// Weights of the times before in that polynomial.
+    fn leading_weights(&self, past: &Past) -> Vec<f64> {
         let count = (past.order + 1).min(self.before.len());
-        PastPoint::sum(&lagrange(&self.before[..count]), &past.points)
+        lagrange(&self.before[..count])
     }
 
     /// Weights of the end of a step and of the times before it, the latest first, with which they sum to the error at some order; none where the past is
@@ -334,6 +346,22 @@ fn lagrange(times: &[f64]) -> Vec<f64> {
         others.map(|(_, other)| other / (other - times[j])).product()
     };
     (0..times.len()).map(weight).collect()
+}
+
+/// The state at some cycles to which the polynomial through the times before leads; under both forces with the compression at the edge of stick on that
+/// polynomial too: next to the edge slip is the small difference of both.
+fn led(model: &Model, state: &State, times: &TimesBefore, past: &Past, cycles: f64) -> State {
+    let mut at = state_of(state, times.guess(past), cycles);
+    if let Some(stick) = &state.stick {
+        let compression = |point: &PastPoint| {
+            model.bearing_zone(stick, point.slip_area, &point.compression).slip_compression
+        };
+        let weights = times.leading_weights(past);
+        let known = weights.iter().zip(&past.points).map(|(weight, point)| weight * compression(point)).sum();
+        model.scale_to_bear(stick, known, at.slip_area, &mut at.compression);
+        at.stick = Some(model.bearing_edge(stick, at.slip_area, &at.compression));
+    }
+    at
 }
 
 /// A state at some cycles as a polynomial tells it.

@@ -148,8 +148,8 @@ impl Stages for RestingContact<'_> {
         let target = target(self.model, self.state, &gathered, index, cycles);
         let step = target.step;
         self.guess(index, cycles);
-        let mut stage =
-            RestingStage { model: self.model, target, tolerance: self.tolerance, tried: self.tried };
+        let (model, tolerance) = (self.model, self.tolerance);
+        let mut stage = RestingStage { model, target, stick: None, tolerance, tried: self.tried };
         if !self.newton.solve(&mut stage, &mut self.at, evaluations) {
             return None;
         }

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use super::newton::{Correction, Equations, Factorised};
 use crate::numerics::linear::Factors;
-use crate::solver::model::{CycleFields, Fields, Model, Target, Unknowns};
+use crate::solver::model::{CycleFields, Fields, Model, StickEdge, StickZone, Target, Unknowns};
 
 /// Corrections, relative to `q_c` or the slip area, that are round-off.
 pub(super) const ROUND_OFF: f64 = 1e-14;
@@ -18,6 +18,9 @@ const OF_TOLERANCE: f64 = 1e-2;
 const BOUNDS: [f64; 2] = [1e-12, 1e-5];
 const OF_TOLERANCE_MEASURED: f64 = 0.1;
 const BOUNDS_MEASURED: [f64; 2] = [1e-13, 1e-4];
+
+/// Change of the compression at the edge of stick, relative, by which slopes of the wear by it are found.
+const DIFFERENCE: f64 = 1e-7;
 
 /// Fields and cycle of the unknowns tried last.
 #[derive(Debug, Default)]
@@ -33,6 +36,8 @@ pub(super) struct Tried {
 pub(super) struct RestingStage<'a> {
     pub model: &'a Model,
     pub target: Target,
+    /// An edge of stick at rest under both forces, of any state of the run.
+    pub stick: Option<&'a StickEdge>,
     /// Of the time stepping.
     pub tolerance: f64,
     pub tried: &'a mut Tried,
@@ -50,11 +55,21 @@ impl Equations for RestingStage<'_> {
     }
 
     fn evaluate(&mut self, at: &Unknowns) -> bool {
-        let Self { model, target, tried, .. } = self;
+        let Self { model, target, stick, tried, .. } = self;
         if !(at.slip_area > 0.0 && at.slip_area < model.unworn().largest_slip_area()) {
             return false;
         }
-        model.evaluate(at.slip_area, &at.compression, &mut tried.fields);
+        match stick {
+            None => model.evaluate(at.slip_area, &at.compression, &mut tried.fields),
+            Some(stick) => {
+                let zone = model.bearing_zone(stick, at.slip_area, &at.compression);
+                if zone.slip_compression.is_nan() || zone.slip_compression <= 0.0 {
+                    return false;
+                }
+                target.loading = model.displaced(target.loading.clone(), zone.slip_compression);
+                model.evaluate_at(&zone, at.slip_area, &at.compression, &mut tried.fields);
+            }
+        }
         if !tried.fields.are_physical() {
             return false;
         }
@@ -76,7 +91,10 @@ impl Equations for RestingStage<'_> {
     }
 
     fn scale(&self) -> f64 {
-        self.model.contact().slip_compression()
+        match self.stick {
+            None => self.model.contact().slip_compression(),
+            Some(_) => self.tried.fields.stick_zone.slip_compression,
+        }
     }
 
     fn factorise(&self, at: &Unknowns, memory: Option<Factorised>) -> Option<Factorised> {
@@ -162,5 +180,36 @@ impl RestingStage<'_> {
             matrix[(inner, j)] = -scale * model.elastic_depth_by_compression(fields, inner, j);
         }
         matrix[(inner, inner)] = by_slip_area[inner];
+        if self.stick.is_some() {
+            let by_stick = self.by_slip_compression(compression);
+            for (j, slope) in model.bearing_slopes(fields, compression).into_iter().enumerate() {
+                matrix.col_as_slice_mut(j).iter_mut().zip(&by_stick).for_each(|(to, by)| *to += by * slope);
+            }
+        }
+    }
+
+    /// Derivatives of the equations by `q_c`, which moves all slip alike, 1/m, shape `(springs,)`.
+    fn by_slip_compression(&self, compression: &[f64]) -> Vec<f64> {
+        let (model, target, Tried { fields, cycle }) = (self.model, &self.target, &*self.tried);
+        let inner = model.springs() - 1;
+        let zone = fields.stick_zone;
+        let per_slip = |i: usize| fields.unworn[i].limit_slip / zone.slip_compression / fields.slip_depth[i];
+        let slopes: Vec<f64> = (0..=inner).map(per_slip).collect();
+        let carried = model.along_annulus(&slopes);
+        let mut by_stick: Vec<f64> = (0..inner).map(|i| slopes[i] - self.theta() * carried[i]).collect();
+        by_stick.push(slopes[inner]);
+        if model.plain_growth_slopes(&target.loading, fields, cycle, 1.0).is_none() {
+            // Plain wear grows in proportion to the slip there is.
+            let step = DIFFERENCE * zone.slip_compression;
+            let moved = StickZone { slip_compression: zone.slip_compression + step, ..zone };
+            let mut nearby = Fields::default();
+            model.evaluate_at(&moved, fields.slip_area, compression, &mut nearby);
+            let loading = model.displaced(target.loading.clone(), moved.slip_compression);
+            let after = model.cycle(&loading, compression, &nearby);
+            for i in 0..inner {
+                by_stick[i] -= target.step * (after.growth[i] - cycle.growth[i]) / step;
+            }
+        }
+        by_stick
     }
 }

@@ -65,7 +65,7 @@ impl Stepper for Sdirk {
         })
     }
 
-    fn follows_stick(&self) -> bool {
+    fn follows_stick(&self, _: &Model) -> bool {
         true
     }
 
