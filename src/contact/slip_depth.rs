@@ -14,7 +14,7 @@ use std::sync::{Arc, OnceLock};
 use crate::contact::indenter::{EquivalentProfile, RiseTransform};
 use crate::error::{Error, Result};
 use crate::numerics::abel::profile_factor;
-use crate::numerics::chebyshev::{Chebyshev, PiecewiseChebyshev};
+use crate::numerics::chebyshev::{Chebyshev, LANES, PiecewiseChebyshev};
 use crate::numerics::power;
 use crate::numerics::quadrature::Rule;
 use crate::numerics::roots::bracketed;
@@ -82,6 +82,16 @@ impl SlipSeries {
         match self {
             Self::Smooth { series, growth } => series.value(logarithm) * (growth * logarithm).exp(),
             Self::Table { series, factor } => factor * series.value(logarithm),
+        }
+    }
+
+    fn values(&self, logarithms: &[f64; LANES]) -> [f64; LANES] {
+        match self {
+            Self::Smooth { series, growth } => {
+                let values = series.values(logarithms);
+                std::array::from_fn(|i| values[i] * (growth * logarithms[i]).exp())
+            }
+            Self::Table { .. } => logarithms.map(|logarithm| self.value(logarithm)),
         }
     }
 
@@ -209,10 +219,53 @@ impl UnwornSlip {
         self.values(logarithm, self.slip_compression, self.slip.value(logarithm))
     }
 
+    /// As [`UnwornSlip::at`], or with another edge of stick [`UnwornSlip::at_stick`], at many places, some of them side by side.
+    ///
+    /// # Arguments
+    /// * `stick` -- `c²`, m², and `q_c`, m, of another edge of stick
+    /// * `z` -- the places, m², by their index
+    pub fn fill(&self, stick: Option<[f64; 2]>, z: impl Fn(usize) -> f64, to: &mut [UnwornValues]) {
+        let [area, compression] = stick.unwrap_or([self.stick_radius_squared, self.slip_compression]);
+        let factor = match (stick, self.profile.exponent()) {
+            (None, _) => None,
+            (Some(_), _) if self.is_at(area) => None,
+            (Some(_), Some(exponent)) => Some(self.scaled(area, exponent)),
+            (Some(_), None) => {
+                to.iter_mut().enumerate().for_each(|(i, to)| *to = self.at_stick(area, compression, z(i)));
+                return;
+            }
+        };
+        for (chunk, to) in to.chunks_mut(LANES).enumerate() {
+            // The last ones are found more than once where they are fewer.
+            let place = |i: usize| z(chunk * LANES + i.min(to.len() - 1));
+            let logarithms: [f64; LANES] = std::array::from_fn(|i| (place(i) / area).ln_1p());
+            let (uniform, slip) = (self.uniform.values(&logarithms), self.slip.values(&logarithms));
+            for (i, to) in to.iter_mut().enumerate() {
+                let rise = factor.map_or(slip[i], |factor| factor * slip[i]);
+                *to = self.values_with(logarithms[i], compression, rise, uniform[i]);
+            }
+        }
+    }
+
+    /// Whether a stick area is that for which the slip was tabulated.
+    fn is_at(&self, stick_area: f64) -> bool {
+        (stick_area / self.stick_radius_squared - 1.0).abs() < SAME_STICK
+    }
+
+    /// Rise of a power law at another stick area over that for which the slip was tabulated.
+    fn scaled(&self, stick_area: f64, exponent: f64) -> f64 {
+        (stick_area / self.stick_radius_squared).powf(0.5 * exponent)
+    }
+
     /// With `(F(g_0 - g_0(c)))/ℓ^(1+μ)` as `rise`.
     fn values(&self, logarithm: f64, slip_compression: f64, rise: f64) -> UnwornValues {
+        self.values_with(logarithm, slip_compression, rise, self.uniform.value(logarithm))
+    }
+
+    /// With `(F 1)/ℓ^μ` as `uniform` besides.
+    fn values_with(&self, logarithm: f64, slip_compression: f64, rise: f64, uniform: f64) -> UnwornValues {
         let powered = power(logarithm, self.mu);
-        let uniform = powered * self.uniform.value(logarithm);
+        let uniform = powered * uniform;
         UnwornValues {
             logarithm,
             limit_slip: slip_compression * uniform,
@@ -230,12 +283,8 @@ impl UnwornSlip {
     pub fn at_stick(&self, stick_area: f64, slip_compression: f64, z: f64) -> UnwornValues {
         let logarithm = (z / stick_area).ln_1p();
         let slip = match self.profile.exponent() {
-            _ if (stick_area / self.stick_radius_squared - 1.0).abs() < SAME_STICK => {
-                self.slip.value(logarithm)
-            }
-            Some(exponent) => {
-                (stick_area / self.stick_radius_squared).powf(0.5 * exponent) * self.slip.value(logarithm)
-            }
+            _ if self.is_at(stick_area) => self.slip.value(logarithm),
+            Some(exponent) => self.scaled(stick_area, exponent) * self.slip.value(logarithm),
             None => match &self.table {
                 Some(table) => {
                     profile_factor(1.0 - self.mu, self.mu) * table.mean_from(stick_area, logarithm)

@@ -12,6 +12,9 @@ const MOST_TERMS: usize = 256;
 /// Coefficients below this fraction of the largest are round-off of the function; what is left out sums to a few times it.
 const ROUND_OFF: f64 = 2e-15;
 
+/// Places at which [`Chebyshev::values`] are found side by side.
+pub const LANES: usize = 8;
+
 /// A function on `[0, end]` as a Chebyshev series that resolves it to round-off.
 #[derive(Debug, Clone)]
 pub struct Chebyshev {
@@ -58,6 +61,19 @@ impl Chebyshev {
         self.coefficients[0] + y * b1 - b2
     }
 
+    /// Values at some places, side by side: the recurrences of several go on while each waits for its last term. They are those of [`Chebyshev::value`] to
+    /// the last bit.
+    pub fn values(&self, x: &[f64; LANES]) -> [f64; LANES] {
+        let y = x.map(|x| 2.0 * x / self.end - 1.0);
+        let y2 = y.map(|y| 2.0 * y);
+        let (mut b1, mut b2) = ([0.0; LANES], [0.0; LANES]);
+        for &c in self.coefficients[1..].iter().rev() {
+            let b: [f64; LANES] = std::array::from_fn(|i| c + y2[i] * b1[i] - b2[i]);
+            (b1, b2) = (b, b1);
+        }
+        std::array::from_fn(|i| self.coefficients[0] + y[i] * b1[i] - b2[i])
+    }
+
     /// Value and derivative at `x`, by Clenshaw's recurrence.
     pub fn value_and_derivative(&self, x: f64) -> (f64, f64) {
         let y = 2.0 * x / self.end - 1.0;
@@ -81,7 +97,7 @@ mod tests {
         let series = Chebyshev::fit(|x| (0.7 * x).exp(), 6.0);
         for x in [0.0, 0.1, 2.0, 5.9, 6.0f64] {
             let (value, derivative) = series.value_and_derivative(x);
-            assert_eq!(value, series.value(x));
+            assert_eq!((value, [value; LANES]), (series.value(x), series.values(&[x; LANES])));
             let exact = (0.7 * x).exp();
             assert!((value / exact - 1.0).abs() < 3e-13, "{x}: {value} {exact}");
             assert!((derivative / (0.7 * exact) - 1.0).abs() < 1e-10, "{x}: {derivative}");

@@ -45,9 +45,10 @@ const FEWER: f64 = 0.6;
 const OF_WHOLE: f64 = 0.75;
 const FEWEST: usize = 12;
 
-/// Evaluations of a step that is tried: where the edge of stick rests, where it moves, and in gross slip by backward differentiation, whose matrix by
+/// Evaluations of a step that is tried: where the edge of stick rests, where it moves, by backward differentiation where a cycle has a closed form, and in gross slip by backward differentiation, whose matrix by
 /// differences serves many steps, and by stages beside one for every spring, for theirs is found in each.
 const EVALUATIONS: [f64; 2] = [30.0, 60.0];
+const EVALUATIONS_IN_CLOSED_FORM: f64 = 3.0;
 const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
 /// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves; by pair of springs and column of the slip in a period; by
@@ -80,7 +81,7 @@ fn work_of_step_on(model: &Model, springs: f64) -> f64 {
     let (evaluations, overhead) = match model.gross() {
         Some(_) if schedule.is_smooth_in_gross_slip() => (once, of_whole),
         Some(_) => (springs + beside_springs, of_whole),
-        None => (EVALUATIONS[moves], elsewhere),
+        None => (evaluations_on_annulus(model), elsewhere),
     };
     let columns = schedule.columns() as f64;
     let [from_table, in_gross_slip, along_line, by_periods] = BY_COLUMN;
@@ -98,6 +99,14 @@ fn work_of_step_on(model: &Model, springs: f64) -> f64 {
     overhead + evaluations * springs * by_spring + BY_TRIPLE * springs.powi(3)
 }
 
+/// Evaluations of a step on the slip annulus.
+fn evaluations_on_annulus(model: &Model) -> f64 {
+    if model.wears_steadily() && !model.schedule().resolves() {
+        return EVALUATIONS_IN_CLOSED_FORM;
+    }
+    EVALUATIONS[usize::from(model.moving().is_some())]
+}
+
 /// Steps to try that cost as much as a look at what so many times the substeps would wear.
 pub(super) fn tries_of_look(finer: usize) -> f64 {
     finer as f64 / EVALUATIONS[0]
@@ -108,10 +117,7 @@ pub(super) fn tries(progress: &Progress, model: &Model) -> f64 {
     let tried = (progress.steps + progress.rejected_steps) as f64;
     match model.gross() {
         Some(_) => tried,
-        None => {
-            let of_step = EVALUATIONS[usize::from(model.moving().is_some())];
-            tried.max(progress.rate_evaluations as f64 / of_step)
-        }
+        None => tried.max(progress.rate_evaluations as f64 / evaluations_on_annulus(model)),
     }
 }
 

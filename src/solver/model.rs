@@ -361,7 +361,14 @@ impl Model {
         }
         let nodes = &self.annulus().operators.abel.nodes()[1..];
         fields.unworn.resize(n, UnwornValues::default());
-        self.on_springs(&mut fields.unworn, |i| self.unworn_at(stick_zone, slip_area * nodes[i]));
+        let fill = |first: usize, part: &mut [UnwornValues]| {
+            let stick = self.moving().map(|_| [stick_zone.stick_area, stick_zone.slip_compression]);
+            self.annulus().unworn.fill(stick, |i| slip_area * nodes[first + i], part);
+        };
+        match self.annulus().operators.abel.backend() {
+            Backend::Dense => fill(0, &mut fields.unworn),
+            Backend::Hierarchical => in_parallel(&mut fields.unworn, 1, fill),
+        }
         let at_stick = self.density_factor_at_stick(stick_zone);
         let unworn = &fields.unworn;
         self.on_springs(&mut fields.density_factor, |i| at_stick * self.density_ratio(&unworn[i]));

@@ -8,6 +8,9 @@ const DEBRIS_LAYER: f64 = 0.1;
 /// Pressure, over the mean one of the unworn contact, from which on debris passes it on whole: without a kink at none.
 const LEAST_DEBRIS: f64 = 1e-3;
 
+/// Distance, in standard deviations, beyond which the weight is round-off.
+const FARTHEST: f64 = 9.0;
+
 /// A Gaussian average along the radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spreading {
@@ -28,10 +31,10 @@ impl Spreading {
         }
     }
 
-    /// Weight of a place at some distance, m, next to that of the place itself.
+    /// Weight of a place at some distance, m, next to that of the place itself; none where that is round-off.
     pub fn weight(self, distance: f64) -> f64 {
         let distance = distance / self.length;
-        (-0.5 * distance * distance).exp()
+        if distance.abs() < FARTHEST { (-0.5 * distance * distance).exp() } else { 0.0 }
     }
 
     /// Part of the debris that stays at some distance from the contact edge, m, where it leaves.

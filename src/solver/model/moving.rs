@@ -109,6 +109,8 @@ pub struct MovingStick {
     keeps: bool,
     /// Logarithms of the squares of the first and last radius of the stations.
     span: [f64; 2],
+    /// Where the stations are on that interval, from 0 to 1, and their weights in interpolation but for the sign.
+    places: Vec<[f64; 2]>,
 }
 
 /// The edge of stick, in a state.
@@ -200,6 +202,8 @@ impl MovingStick {
 
     pub(super) fn with_span(mut self, first: f64, last: f64) -> Self {
         self.span = [first.ln(), last.ln()];
+        let angle = |j: usize| PI * (j as f64 + 0.5) / STATIONS as f64;
+        self.places = (0..STATIONS).map(|j| [0.5 - 0.5 * angle(j).cos(), angle(j).sin()]).collect();
         self
     }
 
@@ -212,10 +216,7 @@ impl MovingStick {
     /// Squares of the radii of the stations, m².
     fn stations(&self) -> impl Iterator<Item = f64> {
         let [first, last] = self.span;
-        (0..STATIONS).map(move |j| {
-            let part = 0.5 - 0.5 * (PI * (j as f64 + 0.5) / STATIONS as f64).cos();
-            (first + (last - first) * part).exp()
-        })
+        self.places.iter().map(move |[part, _]| (first + (last - first) * part).exp())
     }
 
     /// What was left behind at a squared radius, m².
@@ -223,13 +224,12 @@ impl MovingStick {
         let [first, last] = self.span;
         let x = (squared.ln() - first) / (last - first);
         let (mut sum, mut weights) = (0.0, 0.0);
-        for (j, value) in values.iter().enumerate() {
-            let angle = PI * (j as f64 + 0.5) / STATIONS as f64;
-            let distance = x - (0.5 - 0.5 * angle.cos());
+        for (j, (value, [part, sine])) in values.iter().zip(&self.places).enumerate() {
+            let distance = x - part;
             if distance == 0.0 {
                 return *value;
             }
-            let weight = if j % 2 == 0 { 1.0 } else { -1.0 } * angle.sin() / distance;
+            let weight = if j % 2 == 0 { 1.0 } else { -1.0 } * sine / distance;
             sum += weight * value;
             weights += weight;
         }

@@ -60,7 +60,16 @@ impl Model {
             0.5 * (radii[(j + 1).min(n - 1)] - before)
         };
         let widths: Vec<f64> = (0..n).map(width).collect();
-        let mut weights = Mat::from_fn(n, n, |i, j| widths[j] * spreading.weight(radii[i] - radii[j]));
+        let mut weights = Mat::zeros(n, n);
+        for j in 0..n {
+            // The nearest first; what is too far weighs nothing.
+            let near =
+                (j..n).map(|i| spreading.weight(radii[i] - radii[j])).take_while(|weight| *weight > 0.0);
+            for (i, weight) in (j..n).zip(near) {
+                weights[(i, j)] = widths[j] * weight;
+                weights[(j, i)] = widths[i] * weight;
+            }
+        }
         for i in 0..n {
             let sum: f64 = weights.row(i).iter().sum();
             let kept = spreading.kept(radii[n - 1] - radii[i]);

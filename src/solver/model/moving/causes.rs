@@ -83,6 +83,7 @@ impl MovingStick {
             in_blocks: false,
             keeps: false,
             span: [0.0; 2],
+            places: vec![],
         }
     }
 
