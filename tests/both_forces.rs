@@ -101,8 +101,11 @@ fn transients_are_those_of_another_code() {
         let forces = results.tangential_force();
         let steady = forces.iter().map(|force| relative(*force, forces[0])).fold(0.0, f64::max);
         assert!(steady < 1e-4, "{row:?}: the tangential force changes by {steady:e}");
-        let energy = last.wear_volume / (1.667e-13 / 0.5 * last.dissipated_energy);
-        assert!((energy - 1.0).abs() < 5e-5, "{row:?}: {energy}");
+        // Over the limit's volume, as all errors are; measured 2.5e-7 to 1.3e-5, as of plain scenes on as many springs.
+        let by_energy = 1.667e-13 / 0.5 * last.dissipated_energy;
+        let energy = (last.wear_volume - by_energy).abs() / limit.wear_volume();
+        println!("balance of volume and energy {energy:.1e}");
+        assert!(energy < 2e-5, "{row:?}: {energy:e}");
     }
 }
 
@@ -177,6 +180,37 @@ fn a_measured_profile_and_a_sphere_end_where_the_paraboloid_does() {
     println!("{volumes:?}");
     // A sphere differs from the paraboloid by (a/R)², a table by its rounding.
     assert!(relative(volumes[1], volumes[0]) < 1e-3 && relative(volumes[2], volumes[0]) < 1e-6);
+}
+
+/// The compression at the edge of stick is a linear function of the springs', so that the forces held ask for no finer mesh, for no more steps and for
+/// no more corrections than the displacement held.
+#[test]
+fn forces_held_take_the_work_of_the_displacement_held() {
+    let laws =
+        [ARCHARD, "[wear.power-law]\ncoefficient = 1e-17\npressure_exponent = 1.5\nslip_exponent = 0.8"];
+    for (law, grading, accuracy) in [
+        (laws[0], 0.0, 1e-2),
+        (laws[0], 0.5, 1e-3),
+        (laws[0], -0.3, 1e-4),
+        (laws[1], 0.0, 1e-4),
+        (laws[0], 0.0, 1e-6),
+    ] {
+        let numerics = format!("tau = 3\n[numerics]\naccuracy = {accuracy}");
+        let held = scene(grading, 2.0, 0.7, law, &numerics);
+        let plain = Scene::from_str(&held.text().replace("\"force\"", "\"displacement\"")).unwrap();
+        let indented = format!("indentation = {}", held.contact().unwrap().indentation());
+        let plain = Scene::from_str(&plain.text().replace("normal_force = 10", &indented)).unwrap();
+        let work = |scene: &Scene| {
+            let results = run(scene);
+            assert_eq!(results.accuracy_met(), Some(true), "{law}, {accuracy:e}");
+            let progress = results.checkpoint().progress;
+            let tried = progress.steps + progress.rejected_steps;
+            [results.springs() as f64, tried as f64, progress.rate_evaluations as f64]
+        };
+        let (held, plain) = (work(&held), work(&plain));
+        println!("{law}, k = {grading}, {accuracy:e}: springs, steps, evaluations {held:?}, plain {plain:?}");
+        assert!(held.iter().zip(plain).all(|(held, plain)| *held <= 1.3 * plain), "{held:?}, {plain:?}");
+    }
 }
 
 /// `F_N - F_x/μ_f(N)` says where the edge is in every cycle, for it recedes over unworn ground; it ends at the closed form of the last one.

@@ -209,9 +209,9 @@ impl Model {
         if let Some(spreading) = loading.wear.spreading() {
             // Debris passes pressure on, not tension, and into gaps that it can fill.
             let mean = self.contact.mean_pressure();
-            let pressed =
+            pressure =
                 Mat::from_fn(n, pressure.ncols(), |i, m| spreading.passed_on(pressure[(i, m)], mean).0);
-            product(&mut pressure, self.averages(fields, spreading).as_ref(), pressed.as_ref(), 1.0);
+            self.spread(fields, spreading, &mut pressure);
             for i in 0..n {
                 let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
                 (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
@@ -404,9 +404,9 @@ impl Model {
         });
         let spreading = loading.wear.spreading();
         let spread = spreading.map(|it| self.spread_pressure(loading, &motion, compression, fields, it));
-        let pressure = |i: usize, j: usize| match &spread {
-            Some(spread) => spread[(i, j)],
-            None => self.annulus().operators.abel.pressure(i, j),
+        let pressed = |j: usize| match &spread {
+            Some(spread) => spread.col_as_slice(j).to_vec(),
+            None => (0..n).map(|i| self.annulus().operators.abel.pressure(i, j)).collect(),
         };
         let at_contact = self.share_at_contact(loading, fields, cycle);
         let per_cycle = at_contact * factor / loading.cycles_per_period;
@@ -425,12 +425,13 @@ impl Model {
                 product(&mut by_pressure, worn.by_pressure.as_ref(), slopes, 1.0);
             }
             for j in columns {
-                for i in 0..n {
-                    let carried = scale * profile[(i, j)] * fields.density_factor[j];
-                    let worn = by_pressure[(i, j - first)] * pressure_scale * pressure(i, j)
-                        + by_slip[(i, j - first)] * carried;
-                    matrix[(i, j)] +=
-                        (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
+                let (pressed, profile) = (pressed(j), profile.col_as_slice(j));
+                let by_pressure = by_pressure.col_as_slice(j - first);
+                let by_slip = by_slip.col_as_slice(j - first);
+                for (i, to) in matrix.col_as_slice_mut(j).iter_mut().enumerate().take(n) {
+                    let carried = scale * profile[i] * fields.density_factor[j];
+                    let worn = by_pressure[i] * pressure_scale * pressed[i] + by_slip[i] * carried;
+                    *to += (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
                 }
             }
         }

@@ -7,6 +7,7 @@ use super::motion::Motion;
 use super::schedule::CycleLoading;
 use super::{Fields, Model};
 use crate::laws::wear::Spreading;
+use crate::numerics::linear::dot;
 
 impl Model {
     /// How far debris fills the gap under a spring of some compression at the largest indentation, and the derivative; whole at the contact
@@ -49,17 +50,56 @@ impl Model {
         spread
     }
 
+    /// Spreads pressures at the springs, shape `(springs, steps)`, by [`Model::averages`], without that matrix.
+    pub(super) fn spread(&self, fields: &Fields, spreading: Spreading, pressure: &mut Mat<f64>) {
+        let [radii, widths] = self.widths(fields);
+        let n = radii.len();
+        // Of each pair of springs the weight is found once: columns of the pressures beside one for the sums of the weights.
+        let steps = pressure.ncols();
+        let part = |i: usize, m: usize| if m < steps { widths[i] * pressure[(i, m)] } else { widths[i] };
+        let parts = Mat::from_fn(n, steps + 1, part);
+        let mut spread = parts.clone();
+        let mut weights = vec![0.0; n];
+        for j in 0..n {
+            let mut near = 0;
+            for (i, weight) in (j + 1..n).map(|i| (i, spreading.weight(radii[i] - radii[j]))) {
+                if weight == 0.0 {
+                    break;
+                }
+                weights[near] = weight;
+                near = i - j;
+            }
+            let (weights, ahead) = (&weights[..near], j + 1..j + 1 + near);
+            for m in 0..=steps {
+                let from = parts.col_as_slice(m);
+                let to = spread.col_as_slice_mut(m);
+                to[j] += dot(weights, &from[ahead.clone()]);
+                to[ahead.clone()].iter_mut().zip(weights).for_each(|(to, weight)| *to += weight * from[j]);
+            }
+        }
+        for i in 0..n {
+            let kept = spreading.kept(radii[n - 1] - radii[i]) / spread[(i, steps)];
+            (0..steps).for_each(|m| pressure[(i, m)] = kept * spread[(i, m)]);
+        }
+    }
+
+    /// Radii of the springs, and of the rings that they stand for the widths, m.
+    fn widths(&self, fields: &Fields) -> [Vec<f64>; 2] {
+        let radii = self.spring_radii(fields);
+        let (last, inside) = (radii.len() - 1, fields.stick_zone.stick_area.sqrt());
+        let width = |j: usize| {
+            let before = if j == 0 { inside } else { radii[j - 1] };
+            0.5 * (radii[(j + 1).min(last)] - before)
+        };
+        let widths = (0..=last).map(width).collect();
+        [radii, widths]
+    }
+
     /// Averages along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well inside and to nothing
     /// there: else ground would wear where no pressure is at all.
     pub(super) fn averages(&self, fields: &Fields, spreading: Spreading) -> Mat<f64> {
-        let radii: Vec<f64> = self.spring_radii(fields);
+        let [radii, widths] = self.widths(fields);
         let n = radii.len();
-        let inside = fields.stick_zone.stick_area.sqrt();
-        let width = |j: usize| {
-            let before = if j == 0 { inside } else { radii[j - 1] };
-            0.5 * (radii[(j + 1).min(n - 1)] - before)
-        };
-        let widths: Vec<f64> = (0..n).map(width).collect();
         let mut weights = Mat::zeros(n, n);
         for j in 0..n {
             // The nearest first; what is too far weighs nothing.
