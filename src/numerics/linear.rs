@@ -106,6 +106,15 @@ impl<T: ComplexField> Factors<T> {
     }
 }
 
+/// Sums along the rows, column by column as they lie in memory.
+pub fn row_sums(matrix: &Mat<f64>) -> Vec<f64> {
+    let mut sums = vec![0.0; matrix.nrows()];
+    for m in 0..matrix.ncols() {
+        sums.iter_mut().zip(matrix.col_as_slice(m)).for_each(|(sum, value)| *sum += value);
+    }
+    sums
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,7 +12,7 @@ use super::motion::{Energies, Motion};
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
 use crate::laws::wear::{Rate, Rubbing};
-use crate::numerics::linear::dot;
+use crate::numerics::linear::{dot, row_sums};
 
 /// Change of the edge, relative, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
@@ -120,7 +120,7 @@ impl Model {
         let surface = self.surface(loading, &motion, compression, fields);
         let worn = self.worn(loading, &surface, false);
         let per_cycle = loading.cycles_per_period.recip();
-        let slip = (0..self.springs()).map(|i| 0.25 * per_cycle * surface.path.row(i).iter().sum::<f64>());
+        let slip = row_sums(&surface.path).into_iter().map(|path| 0.25 * per_cycle * path);
         let energy = |part: fn(&Energies) -> f64| {
             per_cycle * self.spring_energy(fields, motion.energies.iter().map(part))
         };
@@ -231,11 +231,10 @@ impl Model {
             let slip_of = |j: usize, m: usize| if j < inner { motion.slip[(j, m)] } else { motion.free[m] };
             let moved = Mat::from_fn(n, columns, |j, m| (slip_of(j, m) - free[m]) * fields.density_factor[j]);
             product(&mut slip, self.annulus().operators.abel.profile().as_ref(), moved.as_ref(), scale);
-            for i in 0..n {
-                let uniform = self.uniform_slip(fields, i);
-                for m in 0..columns {
-                    slip[(i, m)] += free[m] * uniform;
-                }
+            let uniform: Vec<f64> = (0..n).map(|i| self.uniform_slip(fields, i)).collect();
+            for (m, free) in free.iter().enumerate() {
+                let to = slip.col_as_slice_mut(m).iter_mut().zip(&uniform);
+                to.for_each(|(slip, uniform)| *slip += free * uniform);
             }
             // The stencils reach two springs ahead; where none of those inside ever slips, there is no slip. What they make of the front of slip in one
             // step cancels over the steps.
@@ -260,8 +259,8 @@ impl Model {
             }
         }
         // Ahead of a front of slip that cells do not resolve the stencils may leave a negative sum over the steps: there is no slip there.
-        for i in 0..n {
-            if path.row(i).iter().sum::<f64>() < 0.0 {
+        for (i, total) in row_sums(&path).into_iter().enumerate() {
+            if total < 0.0 {
                 path.row_mut(i).fill(0.0);
             }
         }
@@ -303,10 +302,7 @@ impl Model {
             by_path: Mat::zeros(size, steps),
         };
         let mean_pressure = self.contact.mean_pressure();
-        let mut total = vec![0.0; n];
-        for m in 0..steps {
-            total.iter_mut().zip(surface.path.col_as_slice(m)).for_each(|(sum, path)| *sum += path);
-        }
+        let total = row_sums(&surface.path);
         let different = surface.pressure.ncols();
         let mut rates = vec![Rate::default(); n];
         for m in 0..steps {
@@ -412,7 +408,7 @@ impl Model {
         let per_cycle = at_contact * factor / loading.cycles_per_period;
         let scale = fields.slip_area.powf(self.mu());
         let profile = self.annulus().operators.abel.profile();
-        let total: Vec<f64> = (0..n).map(|i| worn.by_pressure.row(i).iter().sum()).collect();
+        let total = row_sums(&worn.by_pressure);
         for columns in blocks(inner) {
             let (first, count) = (columns.start, columns.len());
             let mut by_slip = Mat::zeros(n, count);
