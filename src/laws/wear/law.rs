@@ -30,6 +30,13 @@ pub trait WearLaw: Debug + Send + Sync {
     /// Depth worn per slipped distance.
     fn rate(&self, at: &Rubbing) -> Rate;
 
+    /// Depth worn per slipped distance at many places, whose pressures, Pa, and paths of slip, m, are given.
+    fn rates(&self, pressures: &[f64], paths: &[f64], mean_pressure: f64, rates: &mut [Rate]) {
+        for (rate, (pressure, path)) in rates.iter_mut().zip(pressures.iter().zip(paths)) {
+            *rate = self.rate(&Rubbing { pressure: *pressure, path: *path, mean_pressure });
+        }
+    }
+
     /// Coefficient `k_w`, 1/Pa, of Archard's law that stands for this one in the closed form and the dimensionless time.
     fn reference(&self, contact: &Scales) -> f64;
 

@@ -11,7 +11,7 @@ use faer::{Accum, Mat, MatRef, Par};
 use super::motion::{Energies, Motion};
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
-use crate::laws::wear::{Rate, Rubbing};
+use crate::laws::wear::Rate;
 use crate::numerics::linear::{dot, row_sums};
 
 /// Change of the edge, relative, by which slopes are found.
@@ -307,10 +307,7 @@ impl Model {
         let mut rates = vec![Rate::default(); n];
         for m in 0..steps {
             if m < different {
-                let pressed = surface.pressure.col_as_slice(m).iter().zip(&total);
-                for (rate, (pressure, path)) in rates.iter_mut().zip(pressed) {
-                    *rate = law.rate(&Rubbing { pressure: *pressure, path: *path, mean_pressure });
-                }
+                law.rates(surface.pressure.col_as_slice(m), &total, mean_pressure, &mut rates);
             }
             let path = surface.path.col_as_slice(m);
             for (depth, (rate, path)) in worn.depth.iter_mut().zip(rates.iter().zip(path)) {
