@@ -206,8 +206,9 @@ impl RestingStage<'_> {
             model.evaluate_at(&moved, fields.slip_area, compression, &mut nearby);
             let loading = model.displaced(target.loading.clone(), moved.slip_compression);
             let after = model.cycle(&loading, compression, &nearby);
-            for i in 0..inner {
-                by_stick[i] -= target.step * (after.growth[i] - cycle.growth[i]) / step;
+            let growth = after.growth.iter().zip(&cycle.growth);
+            for (by, (after, before)) in by_stick.iter_mut().zip(growth).take(inner) {
+                *by -= target.step * (after - before) / step;
             }
         }
         by_stick
