@@ -41,7 +41,7 @@ pub use cycle::CycleFields;
 pub use gross::{Gross, GrossRates};
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
-pub use moving::{MovingStick, StickEdge, StickStage, StickTarget, StickTrial};
+pub use moving::{Bearing, MovingStick, StickEdge, StickStage, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;
 use output::OutputRadii;

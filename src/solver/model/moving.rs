@@ -35,6 +35,7 @@ use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::numerics::grid::Clustering;
 use crate::numerics::roots::bracketed;
+pub use both_forces::Bearing;
 pub use stage::{StickStage, StickTarget, StickTrial};
 
 /// Radii at which what was left behind is known, for interpolation over where the contact edge can be.

@@ -85,15 +85,17 @@ impl Stepper for Bdf {
         let still = State { cycles: now, past: Past::default(), ..state.clone() };
         let guesses = led.into_iter().chain(again).chain([still]).enumerate();
         let (tolerance, newton) = (self.at_the_end, &mut self.newton);
-        let stick = state.stick.as_ref();
-        let mut stage = RestingStage { model, target, stick, tolerance, tried: &mut self.tried };
+        let bearing = model.bearing_ahead(state);
+        let mut stage = RestingStage { model, target, bearing, tolerance, tried: &mut self.tried };
         let found = guesses.into_iter().find_map(|(attempt, guess)| {
             if attempt > 0 {
                 newton.outdate();
             }
             let mut at = Unknowns::of(&guess);
             newton.solve(&mut stage, &mut at, &mut evaluations).then_some(State {
-                stick: stick.map(|it| model.bearing_edge(it, at.slip_area, &at.compression)),
+                stick: bearing
+                    .zip(state.stick.as_ref())
+                    .map(|(it, stick)| model.bearing_edge(&it, stick, at.slip_area, &at.compression)),
                 slip_area: at.slip_area,
                 compression: at.compression,
                 ..guess
@@ -194,8 +196,8 @@ impl Bdf {
                         loading: model.schedule().loading(left.cycles, left.cycles),
                     };
                     let (tolerance, tried) = (self.at_the_end, &mut self.tried);
-                    let stick = state.stick.as_ref();
-                    self.newton.recall(&mut RestingStage { model, target, stick, tolerance, tried }, left);
+                    let bearing = model.bearing_ahead(state);
+                    self.newton.recall(&mut RestingStage { model, target, bearing, tolerance, tried }, left);
                 }
                 None => self.newton.outdate(),
             }
@@ -352,14 +354,14 @@ fn lagrange(times: &[f64]) -> Vec<f64> {
 /// polynomial too: next to the edge slip is the small difference of both.
 fn led(model: &Model, state: &State, times: &TimesBefore, past: &Past, cycles: f64) -> State {
     let mut at = state_of(state, times.guess(past), cycles);
-    if let Some(stick) = &state.stick {
+    if let Some((bearing, stick)) = model.bearing_ahead(state).zip(state.stick.as_ref()) {
         let compression = |point: &PastPoint| {
-            model.bearing_zone(stick, point.slip_area, &point.compression).slip_compression
+            model.bearing_zone(&bearing, point.slip_area, &point.compression).slip_compression
         };
         let weights = times.leading_weights(past);
         let known = weights.iter().zip(&past.points).map(|(weight, point)| weight * compression(point)).sum();
-        model.scale_to_bear(stick, known, at.slip_area, &mut at.compression);
-        at.stick = Some(model.bearing_edge(stick, at.slip_area, &at.compression));
+        model.scale_to_bear(&bearing, known, at.slip_area, &mut at.compression);
+        at.stick = Some(model.bearing_edge(&bearing, stick, at.slip_area, &at.compression));
     }
     at
 }

@@ -149,7 +149,7 @@ impl Stages for RestingContact<'_> {
         let step = target.step;
         self.guess(index, cycles);
         let (model, tolerance) = (self.model, self.tolerance);
-        let mut stage = RestingStage { model, target, stick: None, tolerance, tried: self.tried };
+        let mut stage = RestingStage { model, target, bearing: None, tolerance, tried: self.tried };
         if !self.newton.solve(&mut stage, &mut self.at, evaluations) {
             return None;
         }

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use super::newton::{Correction, Equations, Factorised};
 use crate::numerics::linear::Factors;
-use crate::solver::model::{CycleFields, Fields, Model, StickEdge, StickZone, Target, Unknowns};
+use crate::solver::model::{Bearing, CycleFields, Fields, Model, StickZone, Target, Unknowns};
 
 /// Corrections, relative to `q_c` or the slip area, that are round-off.
 pub(super) const ROUND_OFF: f64 = 1e-14;
@@ -36,8 +36,8 @@ pub(super) struct Tried {
 pub(super) struct RestingStage<'a> {
     pub model: &'a Model,
     pub target: Target,
-    /// An edge of stick at rest under both forces, of any state of the run.
-    pub stick: Option<&'a StickEdge>,
+    /// An edge of stick at rest under both forces.
+    pub bearing: Option<Bearing>,
     /// Of the time stepping.
     pub tolerance: f64,
     pub tried: &'a mut Tried,
@@ -55,14 +55,14 @@ impl Equations for RestingStage<'_> {
     }
 
     fn evaluate(&mut self, at: &Unknowns) -> bool {
-        let Self { model, target, stick, tried, .. } = self;
+        let Self { model, target, bearing, tried, .. } = self;
         if !(at.slip_area > 0.0 && at.slip_area < model.unworn().largest_slip_area()) {
             return false;
         }
-        match stick {
+        match bearing {
             None => model.evaluate(at.slip_area, &at.compression, &mut tried.fields),
-            Some(stick) => {
-                let zone = model.bearing_zone(stick, at.slip_area, &at.compression);
+            Some(bearing) => {
+                let zone = model.bearing_zone(bearing, at.slip_area, &at.compression);
                 if zone.slip_compression.is_nan() || zone.slip_compression <= 0.0 {
                     return false;
                 }
@@ -91,7 +91,7 @@ impl Equations for RestingStage<'_> {
     }
 
     fn scale(&self) -> f64 {
-        match self.stick {
+        match self.bearing {
             None => self.model.contact().slip_compression(),
             Some(_) => self.tried.fields.stick_zone.slip_compression,
         }
@@ -180,9 +180,9 @@ impl RestingStage<'_> {
             matrix[(inner, j)] = -scale * model.elastic_depth_by_compression(fields, inner, j);
         }
         matrix[(inner, inner)] = by_slip_area[inner];
-        if self.stick.is_some() {
+        if let Some(bearing) = &self.bearing {
             let by_stick = self.by_slip_compression(compression);
-            for (j, slope) in model.bearing_slopes(fields, compression).into_iter().enumerate() {
+            for (j, slope) in model.bearing_slopes(bearing, fields, compression).into_iter().enumerate() {
                 matrix.col_as_slice_mut(j).iter_mut().zip(&by_stick).for_each(|(to, by)| *to += by * slope);
             }
         }
