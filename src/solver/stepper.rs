@@ -69,8 +69,7 @@ pub trait Stepper {
     fn estimate_order(&self) -> f64;
 
     /// Whether it follows an edge of stick that moves, or the compression at one under forces that are held.
-    fn follows_stick(&self, model: &Model) -> bool {
-        let _ = model;
+    fn follows_stick(&self, _model: &Model) -> bool {
         false
     }
 
