@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use crate::error::{Error, Result};
 use crate::laws::loading::has_come;
 use crate::numerics::grid::Clustering;
+use crate::numerics::roots::SEARCH;
 use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper};
 
@@ -303,6 +304,9 @@ impl Simulation {
             let landed = self.advance(observers).map_err(|error| match error {
                 Error::NotConverged { .. } if self.model.is_losing_stick(&self.state) => self.slides_off(),
                 // A search within a step does not know the time.
+                Error::NotConverged { what: SEARCH, .. } => self.stuck(
+                    "no place is found for the edge of stick or of contact at which the forces balance",
+                ),
                 Error::NotConverged { what, why } if what != STEPPING => {
                     self.stuck(&format!("{what}: {why}"))
                 }
