@@ -68,6 +68,9 @@ const OVERHEAD: [f64; 2] = [4e3, 2e4];
 const BY_COLUMN: [f64; 4] = [1.0, 20.0, 6.0, 50.0];
 const BY_PERIOD: f64 = 12.0;
 
+/// How much longer springs take to pass periods under friction that depends on the load: a power for each of them and each point.
+const OF_POWERS: f64 = 3.0;
+
 /// How much longer it takes where a profile is a table.
 const OF_TABLE: f64 = 4.0;
 
@@ -93,6 +96,7 @@ fn work_of_step_on(model: &Model, springs: f64) -> f64 {
         true if schedule.is_tabulated() => from_table,
         true if !schedule.leaves_axis() && !schedule.conditions().friction.remembers_slip() => along_line,
         true if schedule.lifts() => BY_PERIOD * model.periods_to_rest().max(1.0),
+        true if schedule.conditions().friction.coefficient().is_none() => OF_POWERS * by_periods,
         true => by_periods,
     };
     let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
