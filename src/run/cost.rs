@@ -38,7 +38,7 @@ pub(super) const MOST_WORK: f64 = 8e9;
 const MOST_WORK_OF_LAST: f64 = 1.2e10;
 
 /// Most work of all attempts at a run together, their companions included, as [`work_of_step`], and the part of [`MOST_WORK`] that each may take in any case.
-const MOST_WORK_OF_ALL: f64 = 1.5e10;
+const MOST_WORK_OF_ALL: f64 = 1.2e10;
 const LEAST_PART: f64 = 0.05;
 
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
@@ -69,7 +69,7 @@ const BY_COLUMN: [f64; 4] = [1.0, 20.0, 6.0, 50.0];
 const BY_PERIOD: f64 = 12.0;
 
 /// How much longer springs take to pass periods under friction that depends on the load: a power for each of them and each point.
-const OF_POWERS: f64 = 3.0;
+const OF_POWERS: f64 = 6.0;
 
 /// How much longer it takes where a profile is a table.
 const OF_TABLE: f64 = 4.0;

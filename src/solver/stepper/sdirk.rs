@@ -13,7 +13,7 @@ const TURNING: f64 = 1e-5;
 
 /// The same over the tolerance, in steps that go to neither side as taken. Where blocks follow one another, the edge jumps to where the balance holds on the
 /// profile of the springs, which the stages know to what the springs are off by.
-const TURNING_OF_TOLERANCE: f64 = 0.03;
+const TURNING_OF_TOLERANCE: f64 = 0.3;
 
 /// Singly diagonally implicit Runge-Kutta method of Alexander, whether the edge of stick rests or moves.
 ///
