@@ -2,16 +2,15 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::laws::loading::has_come;
 use crate::numerics::grid::Clustering;
-use crate::numerics::roots::SEARCH;
 use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper};
 
 mod failure;
 
-use failure::{STEPPING, nothing_wears};
+use failure::nothing_wears;
 
 /// Safety factor and bounds of the choice of steps.
 const SAFETY: f64 = 0.9;
@@ -301,17 +300,7 @@ impl Simulation {
             if self.model.loses_stick(&self.state) {
                 return Err(self.slides_off());
             }
-            let landed = self.advance(observers).map_err(|error| match error {
-                Error::NotConverged { .. } if self.model.is_losing_stick(&self.state) => self.slides_off(),
-                // A search within a step does not know the time.
-                Error::NotConverged { what: SEARCH, .. } => self.stuck(
-                    "no place is found for the edge of stick or of contact at which the forces balance",
-                ),
-                Error::NotConverged { what, why } if what != STEPPING => {
-                    self.stuck(&format!("{what}: {why}"))
-                }
-                other => other,
-            })?;
+            let landed = self.advance(observers).map_err(|error| self.timed(error))?;
             let ended = self.outcome().is_some();
             if landed || ended {
                 self.tell(observers)?;
