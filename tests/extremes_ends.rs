@@ -49,7 +49,7 @@ fn a_rim_that_debris_spares_is_refused_and_two_meshes_agree_up_to_the_time_allow
         let scene = spread(GRADING, 30.0, &format!("springs = {springs}\ntolerance = 1e-4"));
         run(&scene.replace("cycles = 1e5", &format!("tau = {tau:e}"))).last().wear_volume
     };
-    let [coarse, fine] = [volume(24), volume(48)];
+    let [coarse, fine] = [volume(36), volume(72)];
     assert!((coarse / fine - 1.0).abs() < 1e-2, "{coarse:e} and {fine:e} m³ up to τ = {tau}");
 }
 

@@ -101,7 +101,8 @@ fn work_of_step_on(model: &Model, springs: f64) -> f64 {
     };
     let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
-    let once = if model.gross().is_some() { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
+    let whole = model.gross().is_some() && !schedule.resolves();
+    let once = if whole { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
     let by_spring = table * once + columns * (BY_PAIR * springs + passed) + spread;
     overhead + evaluations * springs * by_spring + BY_TRIPLE * springs.powi(3)
 }
@@ -121,6 +122,7 @@ pub(super) fn tries_of_look(finer: usize) -> f64 {
 pub(super) fn tries(progress: &Progress, model: &Model) -> f64 {
     let tried = (progress.steps + progress.rejected_steps) as f64;
     let of_step = match model.gross() {
+        Some(_) if model.schedule().resolves() => return tried,
         Some(_) => evaluations_in_gross_slip(model, model.springs() as f64),
         None => EVALUATIONS[usize::from(model.moving().is_some())],
     };
