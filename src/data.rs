@@ -238,6 +238,8 @@ pub struct Attempt {
     pub refinements: u64,
     /// Springs on which it came to an end, if less accurately than was asked for; zero where it did not.
     pub ended_on: u64,
+    /// Work of the attempts before, nanoseconds of one core, about.
+    pub work: u64,
 }
 
 impl Checkpoint {

@@ -18,6 +18,7 @@ pub mod readings;
 mod ready;
 mod recorder;
 mod results;
+mod rim;
 mod shared;
 mod simulation;
 

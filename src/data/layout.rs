@@ -119,6 +119,10 @@ pub const ENDED_ON: Quantity = quantity(
     "springs on which an attempt came to an end less accurately than was asked for, or 0",
 );
 
+/// Work of the attempts of such a run that came before, scalar.
+pub const WORK: Quantity =
+    quantity("work", "ns", "work of the attempts before, of one core, about, by what their steps take");
+
 /// A dataset, and the place of its values in the record it stores.
 pub(super) struct Field<Record, Value> {
     pub quantity: Quantity<'static>,

@@ -231,6 +231,7 @@ fn put_checkpoint(checkpoint: &Checkpoint) -> Dataset {
     if checkpoint.attempt != Attempt::default() {
         stored.scalar(REFINEMENTS, checkpoint.attempt.refinements);
         stored.scalar(ENDED_ON, checkpoint.attempt.ended_on);
+        stored.scalar(WORK, checkpoint.attempt.work);
     }
     if !state.past.points.is_empty() {
         stored.groups.push((PAST.into(), put_past(&state.past)));
@@ -405,6 +406,7 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
         checkpoint.attempt = Attempt {
             refinements: stored.take_scalar(REFINEMENTS)?,
             ended_on: stored.take_scalar(ENDED_ON)?,
+            work: stored.take_scalar(WORK)?,
         };
     }
     Ok(checkpoint)

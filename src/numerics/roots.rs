@@ -2,6 +2,9 @@
 
 use crate::error::{Error, Result};
 
+/// What does not converge where no root is found.
+pub(crate) const SEARCH: &str = "root search";
+
 /// Evaluations after which a search is given up: bisection alone needs no more for any bracket that is not absurd.
 const MAX_EVALUATIONS: usize = 200;
 
@@ -119,7 +122,7 @@ fn interpolation_step(
 }
 
 fn not_converged(why: String) -> Error {
-    Error::NotConverged { what: "root search", why }
+    Error::NotConverged { what: SEARCH, why }
 }
 
 #[cfg(test)]

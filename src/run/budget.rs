@@ -6,6 +6,7 @@
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::Clustering;
+use crate::scene::Numerics;
 use crate::solver::model::{Gross, Model, MovingStick, Schedule};
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
@@ -45,6 +46,23 @@ const RAISES: [f64; 2] = [1.15, 2.0];
 
 /// Part of the accuracy that an estimate may take up before the run is repeated: of twenty errors one is 1.7 times its estimate.
 pub(in crate::run) const SURE: f64 = 0.6;
+
+/// Attempts at a run, [`REFINEMENTS`] and one on fewer springs included, of which the last is made in coarse steps where all others found no end: it tells what
+/// becomes of the contact, and that nothing is known of the error.
+pub(in crate::run) const LAST_RESORT: u64 = REFINEMENTS + 2;
+
+/// Tolerance of that attempt, and the springs that it tries: in gross slip, and elsewhere with those that a mesh from near the axis needs.
+const COARSE_STEPS: f64 = 1e-2;
+pub(in crate::run) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10], &[24, 60]];
+
+/// The numerics of an attempt at a scene.
+///
+/// # Arguments
+/// * `refinements` -- those of the attempt
+pub(in crate::run) fn numerics_of(numerics: &Numerics, refinements: u64) -> Numerics {
+    let last = refinements >= LAST_RESORT;
+    Numerics { tolerance: if last { Some(COARSE_STEPS) } else { numerics.tolerance }, ..*numerics }
+}
 
 /// Most springs of a repeated run: more would take longer than a user may wait without having been asked.
 const MOST_REFINED: usize = 400;

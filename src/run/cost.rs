@@ -37,6 +37,10 @@ pub(super) const MOST_WORK: f64 = 8e9;
 /// The same for a run on so few springs that none are left out.
 const MOST_WORK_OF_LAST: f64 = 1.2e10;
 
+/// Most work of all attempts at a run together, their companions included, as [`work_of_step`], and the part of [`MOST_WORK`] that each may take in any case.
+const MOST_WORK_OF_ALL: f64 = 1.2e10;
+const LEAST_PART: f64 = 0.05;
+
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
 pub(super) const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];
 
@@ -51,9 +55,10 @@ const EVALUATIONS: [f64; 2] = [30.0, 60.0];
 const EVALUATIONS_IN_CLOSED_FORM: f64 = 3.0;
 const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
-/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves; by pair of springs and column of the slip in a period; by
+/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves, and in gross slip, where its sums are over the whole contact; by pair of springs and column of the slip in a period; by
 /// pair of springs over which wear spreads; of the factors, by triple of springs; and of a step in any case, in gross slip and elsewhere.
 const BY_SPRING: [f64; 2] = [150.0, 500.0];
+const BY_SPRING_IN_GROSS_SLIP: f64 = 1000.0;
 const BY_PAIR: f64 = 0.02;
 const BY_SPREADING: f64 = 30.0;
 const BY_TRIPLE: f64 = 0.05;
@@ -63,6 +68,9 @@ const OVERHEAD: [f64; 2] = [4e3, 2e4];
 /// they repeat themselves on a path that presses and lifts.
 const BY_COLUMN: [f64; 4] = [1.0, 20.0, 6.0, 50.0];
 const BY_PERIOD: f64 = 12.0;
+
+/// How much longer springs take to pass periods under friction that depends on the load: a power for each of them and each point.
+const OF_POWERS: f64 = 6.0;
 
 /// How much longer it takes where a profile is a table.
 const OF_TABLE: f64 = 4.0;
@@ -76,13 +84,9 @@ pub(super) fn work_of_step(model: &Model) -> f64 {
 fn work_of_step_on(model: &Model, springs: f64) -> f64 {
     let schedule = model.schedule();
     let moves = usize::from(model.moving().is_some());
-    let [once, beside_springs] = EVALUATIONS_IN_GROSS_SLIP;
     let [of_whole, elsewhere] = OVERHEAD;
-    let (evaluations, overhead) = match model.gross() {
-        Some(_) if schedule.is_smooth_in_gross_slip() => (once, of_whole),
-        Some(_) => (springs + beside_springs, of_whole),
-        None => (evaluations_on_annulus(model), elsewhere),
-    };
+    let overhead = if model.gross().is_some() { of_whole } else { elsewhere };
+    let evaluations = evaluations(model, springs);
     let columns = schedule.columns() as f64;
     let [from_table, in_gross_slip, along_line, by_periods] = BY_COLUMN;
     let passed = match schedule.resolves() {
@@ -91,20 +95,27 @@ fn work_of_step_on(model: &Model, springs: f64) -> f64 {
         true if schedule.is_tabulated() => from_table,
         true if !schedule.leaves_axis() && !schedule.conditions().friction.remembers_slip() => along_line,
         true if schedule.lifts() => BY_PERIOD * model.periods_to_rest().max(1.0),
+        true if schedule.conditions().friction.coefficient().is_none() => OF_POWERS * by_periods,
         true => by_periods,
     };
     let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
-    let by_spring = table * BY_SPRING[moves] + columns * (BY_PAIR * springs + passed) + spread;
+    let whole = model.gross().is_some() && !schedule.resolves();
+    let once = if whole { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
+    let by_spring = table * once + columns * (BY_PAIR * springs + passed) + spread;
     overhead + evaluations * springs * by_spring + BY_TRIPLE * springs.powi(3)
 }
 
-/// Evaluations of a step on the slip annulus.
-fn evaluations_on_annulus(model: &Model) -> f64 {
-    if model.wears_steadily() && !model.schedule().resolves() {
-        return EVALUATIONS_IN_CLOSED_FORM;
+/// Evaluations of a step on so many springs.
+fn evaluations(model: &Model, springs: f64) -> f64 {
+    let schedule = model.schedule();
+    let [once, beside_springs] = EVALUATIONS_IN_GROSS_SLIP;
+    match model.gross() {
+        Some(_) if schedule.is_smooth_in_gross_slip() => once,
+        Some(_) => springs + beside_springs,
+        None if model.wears_steadily() && !schedule.resolves() => EVALUATIONS_IN_CLOSED_FORM,
+        None => EVALUATIONS[usize::from(model.moving().is_some())],
     }
-    EVALUATIONS[usize::from(model.moving().is_some())]
 }
 
 /// Steps to try that cost as much as a look at what so many times the substeps would wear.
@@ -115,10 +126,22 @@ pub(super) fn tries_of_look(finer: usize) -> f64 {
 /// Steps tried so far, or as many as their evaluations make: one that finds no contact takes the most.
 pub(super) fn tries(progress: &Progress, model: &Model) -> f64 {
     let tried = (progress.steps + progress.rejected_steps) as f64;
-    match model.gross() {
-        Some(_) => tried,
-        None => tried.max(progress.rate_evaluations as f64 / evaluations_on_annulus(model)),
+    if model.gross().is_some() && model.schedule().resolves() {
+        return tried;
     }
+    tried.max(progress.rate_evaluations as f64 / evaluations(model, model.springs() as f64))
+}
+
+/// Work of an attempt so far with its companions, nanoseconds of one core, about.
+pub(super) fn work_of(simulation: &Simulation) -> u64 {
+    let model = simulation.model();
+    (WITH_COMPANION * tries(simulation.progress(), model) * work_of_step(model)) as u64
+}
+
+/// Most steps that an attempt may try after others that took so much.
+pub(super) fn tries_left(model: &Model, work: u64) -> f64 {
+    let left = (MOST_WORK_OF_ALL - work as f64) / WITH_COMPANION;
+    left.max(LEAST_PART * MOST_WORK) / work_of_step(model)
 }
 
 /// Springs with which to make a run anew that found no end on these; none if they would be too few. Polynomials over the whole contact swing the more, the more
@@ -144,10 +167,12 @@ pub(super) fn most_tries(model: &Model) -> f64 {
     most / work_of_step(model)
 }
 
-/// Whether a run that came to its end can be made anew on so many springs.
-pub(super) fn allows(simulation: &Simulation, springs: usize) -> bool {
+/// Whether a run that came to its end, after others that took so much, can be made anew on so many springs.
+pub(super) fn allows(simulation: &Simulation, springs: usize, work: u64) -> bool {
     let model = simulation.model();
-    tries(simulation.progress(), model) * work_of_step_on(model, springs as f64) <= MOST_WORK
+    let wanted = tries(simulation.progress(), model) * work_of_step_on(model, springs as f64);
+    let before = (work + work_of(simulation)) as f64;
+    wanted <= MOST_WORK && before + WITH_COMPANION * wanted <= MOST_WORK_OF_ALL
 }
 
 /// How a run is computed, and what it will take.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::budget;
 use super::parts::Parts;
 use super::{Results, Shared, Simulation, Stop};
 use crate::data::{Checkpoint, LimitDistance, ResultPath, RunFile, RunWriter, scene_hash};
@@ -164,7 +165,8 @@ impl Run {
         checkpoint.accuracy = scene.numerics().accuracy_asked();
         // As many springs as it came to, however often it was made anew.
         let springs = Some(checkpoint.state.compression.len() + 1);
-        let parts = Parts::new(&scene, scene.numerics(), springs, None, &shared.operators)?;
+        let numerics = budget::numerics_of(scene.numerics(), checkpoint.attempt.refinements);
+        let parts = Parts::new(&scene, &numerics, springs, None, &shared.operators)?;
         if file.header.radius != parts.model.radii()
             || checkpoint.state.compression.len() + 1 != parts.model.springs()
             || checkpoint.state.stick.is_some() != parts.model.moving().is_some()

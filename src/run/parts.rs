@@ -10,12 +10,13 @@ use crate::laws::history::History;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
 use crate::solver::model::{FEWEST_SPRINGS, Model, MovingStick, OperatorStore, Resolution, Schedule};
-use crate::solver::simulation::{Plan, Simulation};
+use crate::solver::simulation::{Flow, Observer, Outcome, Plan, Simulation};
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossBdf, GrossSdirk, Sdirk, Stepper};
 
-/// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, and what is added to
-/// that.
+/// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, most steps that it may try, and
+/// what is added to that radius.
 const COARSE: ([usize; 2], f64) = ([12, FEWEST_SPRINGS], 1e-3);
+const MOST_TRIED: u64 = 8000;
 const MARGIN: f64 = 1.02;
 const WITHIN_END: f64 = 1.0 - 1e-12;
 
@@ -108,7 +109,9 @@ fn farthest_radius(parts: &Parts, store: &OperatorStore) -> Result<f64> {
         let model = Model::under(contact, schedule.clone(), springs, Clustering::Cubic, store)?;
         let plan = Plan { outputs: vec![], end: parts.plan.end };
         let mut coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
-        coarse.run(&mut [])?;
+        if coarse.run(&mut [&mut Bounded])? == Outcome::Interrupted {
+            return Err(coarse.takes_too_long());
+        }
         Ok(coarse.model().contact_radius(coarse.state()))
     };
     let [first, fewer] = springs;
@@ -122,6 +125,17 @@ fn farthest_radius(parts: &Parts, store: &OperatorStore) -> Result<f64> {
         }
         Err(Error::NotConverged { .. }) => Err(Error::Inconsistent { what: "loading", why }),
         found => found,
+    }
+}
+
+/// Stops the coarse run that takes too long.
+struct Bounded;
+
+impl Observer for Bounded {
+    fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
+        let progress = simulation.progress();
+        let tried = progress.steps + progress.rejected_steps;
+        Ok(if tried < MOST_TRIED { Flow::Continue } else { Flow::Stop })
     }
 }
 

@@ -163,11 +163,14 @@ impl Recorder {
         let [after_long, after_no_end] = cost::OF_LAST_ATTEMPTS;
         let part = match self.attempt.refinements.cmp(&budget::REFINEMENTS) {
             _ if self.attempt.ended_on > 0 => 1.0,
+            _ if self.attempt.refinements >= budget::LAST_RESORT => after_long,
             Ordering::Less => 1.0,
             Ordering::Equal => after_long,
             Ordering::Greater => after_no_end,
         };
-        self.most_tries = if bounded { part * cost::most_tries(simulation.model()) } else { f64::INFINITY };
+        let model = simulation.model();
+        let most = || (part * cost::most_tries(model)).min(cost::tries_left(model, self.attempt.work));
+        self.most_tries = if bounded { most() } else { f64::INFINITY };
         (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
         let coarsening = chosen.then(|| Coarsening::new(scene, simulation, part));
         let (stop, too_long) = (Arc::clone(&self.stop), Arc::clone(&self.would_take_too_long));
@@ -197,6 +200,9 @@ impl Recorder {
     /// on a smooth mesh saw.
     fn error_estimate(&self, simulation: &Simulation) -> Option<f64> {
         let Some(companions) = &self.companions else { return balance_error(simulation) };
+        if self.attempt.refinements >= budget::LAST_RESORT {
+            return Some(budget::UNKNOWN);
+        }
         let shares = companions.shares(simulation, self.writer.snapshots());
         let balance = || if companions.is_smooth() { balance_error(simulation) } else { None };
         shares.map(|shares| shares.error()).or_else(balance)
@@ -225,7 +231,7 @@ impl Recorder {
             Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
             Err(_) => None,
         };
-        wanted.filter(|springs| cost::allows(simulation, *springs))
+        wanted.filter(|springs| cost::allows(simulation, *springs, self.attempt.work))
     }
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost.

@@ -222,14 +222,20 @@ fn to_the_end(
     let store = &shared.operators;
     loop {
         let known = stepping.model().schedule().clone();
-        let anew = |springs: usize| {
-            let parts = Parts::new(scene, scene.numerics(), Some(springs), Some(&known), store)?;
+        let made = |springs: usize, refinements: u64| {
+            let numerics = budget::numerics_of(scene.numerics(), refinements);
+            let parts = Parts::new(scene, &numerics, Some(springs), Some(&known), store)?;
             let stepping =
                 stepping::Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
             Ok::<_, Error>((stepping, parts.limit))
         };
+        let anew = |springs: usize| made(springs, 0);
+        let is_last = recorder.attempt.refinements >= budget::LAST_RESORT;
         // On fewer springs where these take too long; a mesh may need as many.
         let coarser = |stepping: &stepping::Simulation| {
+            if is_last {
+                return None;
+            }
             let springs = stepping.model().springs();
             let coarser = cost::fewer(springs).and_then(|fewer| anew(fewer).ok());
             coarser.filter(|(coarser, _)| coarser.model().springs() < springs)
@@ -245,11 +251,13 @@ fn to_the_end(
             }
             outcome = recorder.go_on(&mut stepping, onlookers);
         }
+        let work = cost::work_of(&stepping);
         if recorder.takes_too_long() {
             if let Some(found) = (ended_on == 0).then(|| coarser(&stepping)).flatten() {
                 (stepping, limit) = found;
                 recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
                 recorder.attempt.refinements = budget::REFINEMENTS;
+                recorder.attempt.work += work;
                 continue;
             }
             outcome = Err(stepping.takes_too_long());
@@ -267,14 +275,20 @@ fn to_the_end(
                 anew(ended_on).ok()
             }
             // Coarser ones may, and tell that nothing is known of the error.
-            None if no_end && recorder.looks_for_an_end(&stepping) => {
+            None if no_end && !is_last && recorder.looks_for_an_end(&stepping) => {
                 recorder.attempt.refinements = budget::REFINEMENTS;
                 let first = Parts::new(scene, scene.numerics(), None, Some(&known), store).ok();
                 let springs = stepping.model().springs();
                 let first = first.map(|parts| parts.model).filter(|it| it.springs() < springs);
                 let fewer = cost::fewer_for_an_end(first.as_ref().unwrap_or(stepping.model()));
                 // A mesh may need as many.
-                fewer.and_then(|it| anew(it).ok()).filter(|(coarser, _)| coarser.model().springs() < springs)
+                let coarser = fewer.and_then(|it| anew(it).ok());
+                coarser.filter(|(coarser, _)| coarser.model().springs() < springs).or_else(|| {
+                    recorder.attempt.refinements = budget::LAST_RESORT - 1;
+                    let springs =
+                        budget::SPRINGS_OF_LAST_RESORT[usize::from(stepping.model().gross().is_none())];
+                    springs.iter().find_map(|springs| made(*springs, budget::LAST_RESORT).ok())
+                })
             }
             more => more.and_then(|springs| anew(springs).ok()),
         };
@@ -282,6 +296,7 @@ fn to_the_end(
             recorder.attempt = Attempt {
                 refinements: recorder.attempt.refinements + 1,
                 ended_on: outcome.map_or(0, |_| stepping.model().springs() as u64),
+                work: recorder.attempt.work + work,
             };
             (stepping, limit) = found;
             recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::laws::loading::has_come;
 use crate::numerics::grid::Clustering;
 use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
@@ -10,7 +10,7 @@ use crate::solver::stepper::{self, Stepper};
 
 mod failure;
 
-use failure::{STEPPING, nothing_wears};
+use failure::nothing_wears;
 
 /// Safety factor and bounds of the choice of steps.
 const SAFETY: f64 = 0.9;
@@ -300,14 +300,7 @@ impl Simulation {
             if self.model.loses_stick(&self.state) {
                 return Err(self.slides_off());
             }
-            let landed = self.advance(observers).map_err(|error| match error {
-                Error::NotConverged { .. } if self.model.is_losing_stick(&self.state) => self.slides_off(),
-                // A search within a step does not know the time.
-                Error::NotConverged { what, why } if what != STEPPING => {
-                    self.stuck(&format!("{what}: {why}"))
-                }
-                other => other,
-            })?;
+            let landed = self.advance(observers).map_err(|error| self.timed(error))?;
             let ended = self.outcome().is_some();
             if landed || ended {
                 self.tell(observers)?;

@@ -56,6 +56,11 @@ const LOST: f64 = 4.0;
 /// The same below which it is lost where no step leads on.
 const NEARLY_LOST: f64 = 10.0;
 
+/// Area of stick over that of the contact below which it is lost as well, where no step leads on, once what is left of it would last for so small a part of the
+/// cycles before: under friction that depends on the load the contact gives way earlier.
+const SMALL: f64 = 0.05;
+const AT_ONCE: f64 = 1e-3;
+
 /// Radius, over that of the contact, of the core of a mesh that follows an edge of stick that recedes until none is left: stick is lost within 1e-3 of the time when it is as small as that.
 pub(super) const LAST_CORE: f64 = 0.02;
 
@@ -365,9 +370,20 @@ impl Model {
         self.shrinks_below(LOST, state) || self.breaks_away(state)
     }
 
-    /// Whether a stick zone that shrinks is so near to the core of the mesh that it is lost in the next moment.
+    /// Whether a stick zone that shrinks is so near to the core of the mesh that it is lost in the next moment, or shrinks so fast that it is.
     pub fn is_losing_stick(&self, state: &State) -> bool {
-        self.shrinks_below(NEARLY_LOST, state)
+        self.shrinks_below(NEARLY_LOST, state) || self.runs_away(state)
+    }
+
+    /// Whether a small stick zone under a held tangential force is lost at once at the rate at which its edge recedes.
+    fn runs_away(&self, state: &State) -> bool {
+        let held = self.schedule.conditions().tangential_control == TangentialControl::Force;
+        let stick = state.stick.as_ref().filter(|_| held);
+        stick.is_some_and(|stick| {
+            let left = stick.area / -stick.rates[0];
+            let is_small = stick.area < SMALL * (stick.area + state.slip_area);
+            is_small && left > 0.0 && left < AT_ONCE * state.cycles
+        })
     }
 
     /// Whether a stick zone that a tangential force takes away in the end has less than so many times the area of the core of the mesh.

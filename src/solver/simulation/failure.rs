@@ -2,10 +2,11 @@
 
 use super::{SMALLEST_FACTOR, SMALLEST_GROWTH, Simulation, largest};
 use crate::error::{Error, Result};
+use crate::numerics::roots::SEARCH;
 use crate::solver::model::Model;
 
 /// What of a run does not converge.
-pub(super) const STEPPING: &str = "time stepping";
+const STEPPING: &str = "time stepping";
 
 /// Contact radius, over the present one, that is about to be reached.
 const AHEAD: f64 = 1.02;
@@ -62,6 +63,17 @@ impl Simulation {
                  gross slip and no longer bears the tangential force that is asked for; end before (loading.tau), or ask for a smaller \
                  amplitude"
             ),
+        }
+    }
+
+    /// An error of a step, with the moment, which a search within it does not know.
+    pub(super) fn timed(&self, error: Error) -> Error {
+        match error {
+            Error::NotConverged { .. } if self.model.is_losing_stick(&self.state) => self.slides_off(),
+            Error::NotConverged { what: SEARCH, .. } => self
+                .stuck("no place is found for the edge of stick or of contact at which the forces balance"),
+            Error::NotConverged { what, why } if what != STEPPING => self.stuck(&format!("{what}: {why}")),
+            other => other,
         }
     }
 

@@ -11,6 +11,10 @@ use crate::solver::model::{Model, State, StickTrial};
 /// Change of the squared radius of stick, relative, to the side to which it was not taken to move, that a step in which it turns may make.
 const TURNING: f64 = 1e-5;
 
+/// The same over the tolerance, in steps that go to neither side as taken. Where blocks follow one another, the edge jumps to where the balance holds on the
+/// profile of the springs, which the stages know to what the springs are off by.
+const TURNING_OF_TOLERANCE: f64 = 0.3;
+
 /// Singly diagonally implicit Runge-Kutta method of Alexander, whether the edge of stick rests or moves.
 ///
 /// On an ordinary differential equation it is of order 3 with an estimate of order 2. Here the contact edge obeys a constraint whose
@@ -60,7 +64,8 @@ impl Stepper for Sdirk {
                 if !model.turns() || went(&first, stick.area, outwards).is_ok() {
                     return Ok(first);
                 }
-                turned(first, towards(!outwards), stick.area, outwards)
+                let least = TURNING.max(TURNING_OF_TOLERANCE * *tolerance) * stick.area;
+                turned(first, towards(!outwards), [stick.area, least], outwards)
             }
         })
     }
@@ -86,12 +91,17 @@ fn went(trial: &Trial, area: f64, outwards: bool) -> std::result::Result<(), f64
 
 /// Of two steps, the first with the edge of stick taken to move to the side it went before, the one in which it went as was taken; or the first, if it
 /// turns just before its end.
-fn turned(first: Trial, second: Trial, area: f64, outwards: bool) -> Trial {
+///
+/// # Arguments
+/// * `from` -- squared radius of stick before the step, and the most that it may go to the other side, m²
+fn turned(first: Trial, second: Trial, from: [f64; 2], outwards: bool) -> Trial {
     let rate_evaluations = first.rate_evaluations + second.rate_evaluations;
-    let back = went(&first, area, outwards).err().unwrap_or_default();
-    if went(&second, area, !outwards).is_ok() {
+    let [area, most] = from;
+    let back = |trial: &Trial, outwards: bool| went(trial, area, outwards).err().unwrap_or_default();
+    let [of_first, of_second] = [back(&first, outwards), back(&second, !outwards)];
+    if of_second == 0.0 || (of_second < of_first && of_second <= most) {
         Trial { rate_evaluations, ..second }
-    } else if back <= TURNING * area {
+    } else if of_first <= most {
         Trial { rate_evaluations, ..first }
     } else {
         Trial::failed(rate_evaluations)

@@ -1,0 +1,106 @@
+//! How runs end that no springs and no steps lead on from: refused with the moment, or told by coarse steps (docs/extremes.md).
+
+use fretwear::{Error, Results, Scene, Simulation};
+
+const GRADING: f64 = -0.8;
+
+/// Debris spread over a twentieth of the contact radius, on a paraboloid at half of full sliding.
+fn spread(grading: f64, tau: f64, numerics: &str) -> String {
+    let coefficient = tau / 1e5 / (4.0 * 1e11 * 1e-3_f64.powf(grading - 1.0) * 1e-6 * 0.625);
+    format!(
+        "[indenter.power-law]\ncoefficient = 1.0\nexponent = 2\n[half_space]\ngrading = {grading}\nnormal_stiffness = 1e11\nstiffness_ratio = 0.8\n\
+         [friction.coulomb]\ncoefficient = 0.5\n[wear.non-local]\ncoefficient = {coefficient:e}\nlength = 5e-5\n[loading]\nindentation = 1e-6\n\
+         amplitude_ratio = 0.625\ncycles = 1e5\n[numerics]\n{numerics}\n[output]\nsnapshots = 2\n"
+    )
+}
+
+fn read(text: &str) -> Scene {
+    Scene::from_toml(text, "scene.toml").expect("a scene")
+}
+
+fn run(text: &str) -> Results {
+    read(text).simulate().expect("it comes to its end")
+}
+
+/// Key and reason.
+fn refusal(text: &str) -> (&'static str, String) {
+    let error = Simulation::new(&read(text)).err().expect("refused");
+    match error {
+        Error::Inconsistent { what, why } => (what, why),
+        other => panic!("{other}"),
+    }
+}
+
+/// Dimensionless time that a refusal allows.
+fn allowed(why: &str) -> f64 {
+    let from = why.rfind("loading.tau = ").expect("a time to end at") + "loading.tau = ".len();
+    let number: String = why[from..].chars().take_while(|it| !",)".contains(*it)).collect();
+    number.parse().expect("a number")
+}
+
+#[test]
+fn a_rim_that_debris_spares_is_refused_and_two_meshes_agree_up_to_the_time_allowed() {
+    let (key, why) = refusal(&spread(GRADING, 30.0, "accuracy = 1e-2"));
+    assert_eq!(key, "wear.non-local.length");
+    let tau = allowed(&why);
+    // Runs on 20 to 100 springs come to no end at τ = 1.42 to 1.23.
+    assert!((0.1..1.2).contains(&tau), "{why}");
+    let volume = |springs: usize| {
+        let scene = spread(GRADING, 30.0, &format!("springs = {springs}\ntolerance = 1e-4"));
+        run(&scene.replace("cycles = 1e5", &format!("tau = {tau:e}"))).last().wear_volume
+    };
+    let [coarse, fine] = [volume(36), volume(72)];
+    assert!((coarse / fine - 1.0).abs() < 1e-2, "{coarse:e} and {fine:e} m³ up to τ = {tau}");
+}
+
+#[test]
+fn the_time_allowed_shrinks_towards_the_softest_grading_and_there_is_no_end_of_it_above() {
+    let moment = |grading: f64| allowed(&refusal(&spread(grading, 1e3, "accuracy = 1e-2")).1);
+    let moments = [-0.6, -0.7, -0.8, -0.9, -0.99].map(moment);
+    assert!(moments.is_sorted_by(|a, b| a > b), "{moments:?}");
+    assert!(Simulation::new(&read(&spread(-0.49, 1e3, "accuracy = 1e-2"))).is_ok());
+}
+
+fn by_energy(density: f64) -> String {
+    spread(0.0, 1e-12, "accuracy = 1e-2").replace("[friction.coulomb]\ncoefficient = 0.5", &format!(
+        "[friction.wear-dependent]\nfirst_coefficient = 0.5\nlast_coefficient = 0.6\nenergy_density = {density:e}"
+    ))
+}
+
+#[test]
+fn friction_that_changes_within_a_tiny_part_of_the_first_cycle_is_refused() {
+    let (key, why) = refusal(&by_energy(1e-11));
+    assert_eq!(key, "friction.wear-dependent.energy_density");
+    assert!(why.contains("of the first cycle"), "{why}");
+    assert!(Simulation::new(&read(&by_energy(1e2))).is_ok());
+}
+
+#[test]
+fn a_rig_that_moves_an_edge_by_less_than_it_is_rounded_is_refused_in_words_of_the_contact() {
+    let scene = spread(0.0, 3.0, "accuracy = 1e-2")
+        .replace("[wear.non-local]", "[wear.archard]")
+        .replace("length = 5e-5\n", "")
+        .replace("amplitude_ratio = 0.625", "amplitude_ratio = 1.25e-10\nrig_stiffness = 3.2e8");
+    let (key, why) = refusal(&scene);
+    assert_eq!(key, "loading.amplitude_ratio");
+    assert!(why.contains("slip annulus") && !why.contains("root"), "{why}");
+}
+
+/// Deeper blocks, repeated, at a hundred times full sliding: nothing but coarse steps comes to the end. Worn volume and dissipated energy are in proportion
+/// whatever springs and steps, so that what is told is of the right size.
+#[test]
+fn what_no_steps_but_coarse_ones_lead_on_from_is_told_and_keeps_its_balance() {
+    let blocks = "repeat = true\n[[loading.blocks]]\ntau = 0.6\n[[loading.blocks]]\ntau = 0.6\nindentation_factor = 1.2\n";
+    let scene = spread(0.0, 3.0, "accuracy = 1e-2")
+        .replace("[wear.non-local]", "[wear.archard]")
+        .replace("length = 5e-5\n", "")
+        .replace("amplitude_ratio = 0.625", "amplitude_ratio = 125.0")
+        .replace("cycles = 1e5\n", &format!("cycles = 1e5\n{blocks}"));
+    let results = run(&scene);
+    assert_eq!(results.accuracy_met(), Some(false));
+    assert_eq!(results.error_estimate(), Some(1.0));
+    let last = results.last();
+    let coefficient = 3.0 / 1e5 / (4.0 * 1e11 * 1e-3_f64.powf(-1.0) * 1e-6 * 0.625);
+    let balance = last.wear_volume * 0.5 / (coefficient * last.dissipated_energy);
+    assert!((balance - 1.0).abs() < 1e-2, "{balance}");
+}
