@@ -162,8 +162,24 @@ const MOST_IN_GROSS_SLIP: f64 = 60.0;
 const SOFT: f64 = -0.6;
 const MOST_AT_SOFT_TOP: f64 = 13.0;
 
+/// Springs over the slip annulus, for every one in gross slip beyond the second number, once springs stick again: as many as [`SPRINGS_UNDER_FORCE`] at the
+/// default accuracy.
+const TO_STICK_AGAIN: [usize; 2] = [20, 7];
+
+/// Springs over the slip annulus where those of gross slip stick again.
+pub(in crate::run) fn springs_to_stick_again(in_gross_slip: usize) -> usize {
+    let [each, beyond] = TO_STICK_AGAIN;
+    each * (in_gross_slip - beyond)
+}
+
+/// Springs of gross slip that lead to so many over the slip annulus, or to more.
+pub(in crate::run) fn springs_before(sticking_again: usize) -> usize {
+    let [each, beyond] = TO_STICK_AGAIN;
+    beyond + sticking_again.div_ceil(each)
+}
+
 /// Part of the tolerance elsewhere that is that of gross slip.
-const OF_STEPS: f64 = 5e-3;
+pub(in crate::run) const OF_STEPS: f64 = 5e-3;
 
 /// Substeps of a period that is sampled: the fewest and the most, the accuracy up to which the fewest serve, and the power with which they
 /// grow beyond: four times as many for a tenth of the error.

@@ -223,14 +223,13 @@ fn to_the_end(
     loop {
         let known = stepping.model().schedule().clone();
         let anew = |springs: usize| {
-            let parts = Parts::new(scene, scene.numerics(), Some(springs), Some(&known), store)?;
-            let stepping =
-                stepping::Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
-            Ok::<_, Error>((stepping, parts.limit))
+            let mut parts = Parts::new(scene, scene.numerics(), Some(springs), Some(&known), store)?;
+            let limit = parts.limit.take();
+            Ok::<_, Error>((parts.begin()?, limit))
         };
         // On fewer springs where these take too long; a mesh may need as many.
         let coarser = |stepping: &stepping::Simulation| {
-            let springs = stepping.model().springs();
+            let springs = stepping.first().0.springs();
             let coarser = cost::fewer(springs).and_then(|fewer| anew(fewer).ok());
             coarser.filter(|(coarser, _)| coarser.model().springs() < springs)
         };
@@ -270,9 +269,10 @@ fn to_the_end(
             None if no_end && recorder.looks_for_an_end(&stepping) => {
                 recorder.attempt.refinements = budget::REFINEMENTS;
                 let first = Parts::new(scene, scene.numerics(), None, Some(&known), store).ok();
-                let springs = stepping.model().springs();
+                let (begun, _) = stepping.first();
+                let springs = begun.springs();
                 let first = first.map(|parts| parts.model).filter(|it| it.springs() < springs);
-                let fewer = cost::fewer_for_an_end(first.as_ref().unwrap_or(stepping.model()));
+                let fewer = cost::fewer_for_an_end(first.as_ref().unwrap_or(begun));
                 // A mesh may need as many.
                 fewer.and_then(|it| anew(it).ok()).filter(|(coarser, _)| coarser.model().springs() < springs)
             }
@@ -281,7 +281,7 @@ fn to_the_end(
         if let Some(found) = found {
             recorder.attempt = Attempt {
                 refinements: recorder.attempt.refinements + 1,
-                ended_on: outcome.map_or(0, |_| stepping.model().springs() as u64),
+                ended_on: outcome.map_or(0, |_| stepping.first().0.springs() as u64),
             };
             (stepping, limit) = found;
             recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));

@@ -9,8 +9,11 @@ use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State
 use crate::solver::stepper::{self, Stepper};
 
 mod failure;
+mod hand_over;
 
 use failure::{STEPPING, nothing_wears};
+pub use hand_over::HandOver;
+use hand_over::Taking;
 
 /// Safety factor and bounds of the choice of steps.
 const SAFETY: f64 = 0.9;
@@ -158,6 +161,7 @@ pub struct Simulation {
     progress: Progress,
     /// Radius, m, at which the last state that was refused had lost wear depth.
     healed_at: Option<f64>,
+    taking: Taking,
 }
 
 impl Simulation {
@@ -203,7 +207,17 @@ impl Simulation {
         let cycle = cycle_of(&model, &state, &fields, state.cycles);
         let depth = model.depth_on_springs(&state, &fields);
         let rate = rate_of_wear(&model, &fields, &cycle);
-        Self { model, stepper, tolerance, plan, state, fields, cycle, depth, rate, progress, healed_at: None }
+        let (healed_at, taking) = (None, Taking::Never);
+        Self { model, stepper, tolerance, plan, state, fields, cycle, depth, rate, progress, healed_at, taking }
+    }
+
+    /// Takes a state, with all that follows from it.
+    fn take_up(&mut self, state: State) {
+        self.fields = self.model.fields(&state);
+        self.cycle = cycle_of(&self.model, &state, &self.fields, state.cycles);
+        self.depth = self.model.depth_on_springs(&state, &self.fields);
+        self.rate = rate_of_wear(&self.model, &self.fields, &self.cycle);
+        self.state = state;
     }
 
     /// The model.
@@ -297,6 +311,7 @@ impl Simulation {
             if let Some(outcome) = self.outcome() {
                 return Ok(outcome);
             }
+            self.hand_over();
             if self.model.loses_stick(&self.state) {
                 return Err(self.slides_off());
             }

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
+use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before, springs_to_stick_again};
 use super::super::cost::MOST_WORK;
 use super::super::parts::resolution;
 use super::companion::{Coarser, Companion, Lost, Worn};
@@ -60,7 +60,6 @@ const OF_COMPANION: f64 = 0.2;
 /// Coarser runs of a scene.
 #[derive(Debug)]
 pub(in crate::run) struct Companions {
-    springs: usize,
     /// Whether the order of convergence is known.
     smooth: bool,
     /// The largest order believed, where it is not known.
@@ -87,6 +86,8 @@ pub(in crate::run) struct Coarsening {
     smooth: bool,
     /// Whether one companion serves.
     alone: bool,
+    /// Whether springs stick again after gross slip, so that it is the springs over the slip annulus that are to be fewer.
+    sticks_again: bool,
     /// Of the work of a run that this one may take.
     part: f64,
     /// `r² - c²`, m², of the radii compared.
@@ -103,14 +104,16 @@ impl Coarsening {
     /// # Arguments
     /// * `part` -- of the work of a run that this one may take
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, part: f64) -> Self {
-        let (model, numerics) = (simulation.model(), scene.numerics());
+        let ((model, tolerance), numerics) = (simulation.first(), scene.numerics());
+        let sticks_again = model.gross().is_some() && simulation.sticks_again();
         let smooth = is_smooth(scene, model);
         let substeps = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
         Self {
             springs: model.springs(),
-            tolerance: simulation.tolerance(),
+            tolerance,
             smooth,
-            alone: smooth || model.gross().is_some(),
+            alone: smooth || model.gross().is_some() && !sticks_again,
+            sticks_again,
             part,
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
@@ -132,7 +135,11 @@ impl Coarsening {
                     substeps: self.substeps.map(fewer).or(numerics.substeps),
                     ..*numerics
                 },
-                springs: fewer(self.springs).max(FEWEST),
+                springs: match self.sticks_again {
+                    true => springs_before(fewer(springs_to_stick_again(self.springs))),
+                    false => fewer(self.springs),
+                }
+                .max(FEWEST),
                 offsets: &self.offsets,
                 schedule: self.schedule.as_ref(),
                 samples: steps == 1 && self.substeps.is_none(),
@@ -178,7 +185,7 @@ impl Companions {
     /// # Arguments
     /// * `limited` -- whether the scene has a limit in closed form
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, limited: bool) -> Self {
-        let model = simulation.model();
+        let (model, _) = simulation.first();
         let (smooth, gross, every) = (is_smooth(scene, model), model.gross().is_some(), every(model));
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
@@ -187,7 +194,7 @@ impl Companions {
             (model.moving().is_some() || sampled || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
         let recedes = model.moving().is_some_and(MovingStick::recedes);
-        let order = match held || model.slides() {
+        let order = match held || model.slides() && !gross {
             _ if recedes => ORDER_RECEDING,
             true => ORDER_INWARDS,
             false => ORDER,
@@ -198,7 +205,6 @@ impl Companions {
         let by_hand = numerics.tolerance.filter(|_| numerics.stepper != Stepper::EveryCycle);
         let of_time = LEAST_OF_TIME * by_hand.unwrap_or(0.0);
         Self {
-            springs: model.springs(),
             smooth,
             order,
             gross,
@@ -243,7 +249,7 @@ impl Companions {
         let left_out = self.left_out.max(below);
         let unknown = Shares { springs: UNKNOWN, left_out, ..Shares::default() };
         let Some(first) = &self.first else { return Some(unknown) };
-        let ratio = self.springs as f64 / first.springs as f64;
+        let ratio = simulation.model().springs() as f64 / first.springs as f64;
         let spent = !self.smooth
             && matches!(simulation.plan().end, End::Rate(_))
             && matches!(simulation.outcome(), Some(Outcome::Rate | Outcome::WornOut));
@@ -253,7 +259,7 @@ impl Companions {
             return by_known_order(simulation, ratio, nearest);
         }
         let substeps = finite(first.unsampled.as_ref().map_or(0.0, |it| it.error(scale)));
-        if self.gross {
+        if self.gross && simulation.model().gross().is_some() {
             let shares = in_gross_slip(simulation, snapshots, nearest, ratio, scale);
             return Some(Shares { substeps, ..shares });
         }

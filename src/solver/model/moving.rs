@@ -209,7 +209,7 @@ impl MovingStick {
     }
 
     /// Squares of the radii of the stations, m².
-    fn stations(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn stations(&self) -> impl Iterator<Item = f64> {
         let [first, last] = self.span;
         (0..STATIONS).map(move |j| {
             let part = 0.5 - 0.5 * (PI * (j as f64 + 0.5) / STATIONS as f64).cos();
@@ -218,7 +218,7 @@ impl MovingStick {
     }
 
     /// What was left behind at a squared radius, m².
-    fn left_behind(&self, values: &[f64], squared: f64) -> f64 {
+    pub(super) fn left_behind(&self, values: &[f64], squared: f64) -> f64 {
         let [first, last] = self.span;
         let x = (squared.ln() - first) / (last - first);
         let (mut sum, mut weights) = (0.0, 0.0);
