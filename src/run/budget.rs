@@ -78,9 +78,7 @@ pub(in crate::run) fn springs_for(
     accuracy: f64,
 ) -> usize {
     if Gross::follows(contact, schedule).unwrap_or_default() {
-        let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
-        let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
-        return (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize;
+        return springs_in_gross_slip(contact, accuracy);
     }
     if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip {
         let [springs, at] = SPRINGS_UNDER_FORCE;
@@ -97,6 +95,13 @@ pub(in crate::run) fn springs_for(
     let wanted = MARGIN * accuracy;
     let springs = (added * wide.springs(wanted)).max(next_to_stick.springs(wanted));
     springs.clamp(fewest, MOST_RAISED as f64).ceil() as usize
+}
+
+/// The same over the whole contact in gross slip.
+pub(in crate::run) fn springs_in_gross_slip(contact: &InitialContact, accuracy: f64) -> usize {
+    let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
+    let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
+    (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize
 }
 
 /// An error that falls with a power of the springs.

@@ -7,7 +7,6 @@ use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
-use crate::numerics::grid::Clustering;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
 use crate::solver::model::{FEWEST_SPRINGS, Gross, Model, MovingStick, OperatorStore, Resolution, Schedule, State};
 use crate::solver::simulation::{HandOver, Plan, Progress, Simulation};
@@ -48,7 +47,7 @@ impl Parts {
         if parts.model.gross().is_some() {
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
-            let Reach { radius, sticks_again } = Reach::of(&parts, store)?;
+            let Reach { radius, sticks_again } = Reach::of(&parts)?;
             if let Some(hand_over) = &mut parts.hand_over {
                 hand_over.expected = sticks_again;
             }
@@ -61,15 +60,13 @@ impl Parts {
     /// As [`Parts::new`], on as many springs as a run came to, however often it was made anew.
     pub(super) fn of_state(scene: &Scene, state: &State, store: &OperatorStore) -> Result<Self> {
         let springs = state.compression.len() + 1;
-        let slides = || -> Result<bool> {
-            let contact = scene.contact()?;
-            let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, scene.numerics()))?;
-            Gross::follows(&contact, &schedule)
-        };
-        let springs = match state.stick {
-            Some(_) if slides()? => budget::springs_before(springs),
-            _ => springs,
-        };
+        if state.stick.is_some()
+            && let Ok(parts) =
+                Self::new(scene, scene.numerics(), Some(budget::springs_before(springs)), None, store)
+            && parts.hand_over.is_some()
+        {
+            return Ok(parts);
+        }
         Self::new(scene, scene.numerics(), Some(springs), None, store)
     }
 
@@ -141,11 +138,16 @@ impl Parts {
         let whole = numerics.stepper == StepperChoice::EveryCycle;
         let plan =
             super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
-        // By hand it is one tolerance for both, and no more springs than by choice.
-        let most = if numerics.springs.is_some() { budget::MOST_RAISED } else { usize::MAX };
+        // By hand it is one tolerance for both, and no more springs than by choice; near gross slip springs are those over the slip annulus.
+        let again = springs_to_stick_again(model.springs());
+        let springs = match numerics.springs {
+            Some(springs) if contact.regime() == Regime::PartialSlip => springs,
+            Some(_) => again.min(budget::MOST_RAISED),
+            None => again,
+        };
         let part = if scene.numerics().tolerance.is_some() { 1.0 } else { OF_STEPS };
         let hand_over = model.gross().is_some_and(Gross::holds_force).then(|| HandOver {
-            springs: springs_to_stick_again(model.springs()).min(most),
+            springs,
             tolerance: tolerance / part,
             expected: false,
         });
@@ -174,11 +176,11 @@ struct Reach {
 impl Reach {
     /// By a coarse run; where that comes to no end on any springs, the radius that bounds it at an indentation that is held, beyond which the unworn profile is
     /// as high.
-    fn of(parts: &Parts, store: &OperatorStore) -> Result<Self> {
+    fn of(parts: &Parts) -> Result<Self> {
         let (springs, tolerance) = COARSE;
         let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
         let coarse = |springs: usize| -> Result<Self> {
-            let model = Model::under(contact, schedule.clone(), springs, Clustering::Cubic, store)?;
+            let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
             let plan = Plan { outputs: vec![], end: parts.plan.end };
             let hand_over = HandOver { springs: springs_to_stick_again(springs), tolerance, expected: false };
             let coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;

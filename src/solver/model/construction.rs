@@ -98,8 +98,11 @@ impl Model {
         )
     }
 
-    /// A contact in gross slip.
-    fn in_gross_slip(contact: &InitialContact, schedule: Schedule, springs: usize) -> Result<Self> {
+    /// A contact on the mesh of gross slip, in it or [nearly](Gross::nearly_follows).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] and [`Error::Inconsistent`] for too few and too many springs; those of the quadrature.
+    pub fn in_gross_slip(contact: &InitialContact, schedule: Schedule, springs: usize) -> Result<Self> {
         check_springs(springs)?;
         if springs > MOST_IN_GROSS_SLIP {
             let why = format!(
@@ -143,7 +146,7 @@ impl Model {
             Annulus { innermost, stick_radius, farthest: &farthest, moving, surplus: 0.0, slides: false };
         let operators = (Backend::Dense, &OperatorStore::default());
         let model = annulus.model(contact.clone(), schedule.clone(), springs, Clustering::Cubic, operators)?;
-        Ok(Self { depth_scale: contact.indentation(), ..model })
+        Ok(model)
     }
 
     /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
@@ -214,7 +217,10 @@ impl Annulus<'_> {
         let compression = innermost.slip_compression();
         let stick_load = 0.5 * profile.load_integral(stick_radius)
             + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
-        let depth_scale = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
+        let deepest = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
+        // Under a held normal force the edge of stick does not stay where the limit that bounds where wear can reach has it.
+        let bounded = moving.as_ref().is_some_and(MovingStick::creeps_under_force);
+        let depth_scale = if bounded { deepest.min(contact.indentation()) } else { deepest };
         let hidden = match clustering {
             clustering if clustering.follows_front() => {
                 operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN)

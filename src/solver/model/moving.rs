@@ -187,6 +187,11 @@ impl MovingStick {
         self.leaves_ground() && !self.rests()
     }
 
+    /// Whether it moves since the normal force is held beside the displacement.
+    pub(super) fn creeps_under_force(&self) -> bool {
+        matches!(self.cause, Cause::NormalForce(_))
+    }
+
     /// Whether the edge stays where it is during a step.
     fn rests(&self) -> bool {
         self.jumps || self.deepens()

@@ -10,10 +10,13 @@
 use std::f64::consts::PI;
 
 use super::Gross;
+use crate::contact::InitialContact;
+use crate::contact::stick_slip::Regime;
 use crate::error::Result;
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::solver::model::moving::StickEdge;
+use crate::solver::model::schedule::Schedule;
 use crate::solver::model::{Fields, Model, Past, State, StickZone};
 
 /// Stick radius, over that of the contact, from which on its edge is followed. Up to there the kink at the edge costs the polynomials over the whole contact
@@ -23,6 +26,29 @@ const FOLLOWED: f64 = 0.1;
 /// Radius of the core of the mesh that follows it, over that of the first contact.
 const CORE: f64 = 0.03;
 
+/// Grading below which the mesh of gross slip holds the compressions less well than that of an edge of stick.
+const SOFT: f64 = -0.5;
+
+/// Whether the edge of springs that stick again is followed.
+fn is_followed(schedule: &Schedule) -> bool {
+    let conditions = schedule.conditions();
+    let stays = *schedule.friction_change() == History::Constant
+        && *schedule.friction_along_energy() == History::Constant
+        && conditions.blocks.is_empty()
+        && conditions.tangential_control == TangentialControl::Displacement;
+    let local = conditions.wear.spreading().is_none() && !schedule.resolves();
+    stays && local && conditions.friction.coefficient().is_some()
+}
+
+impl Gross {
+    /// Whether a contact sticks at first, but not as far out as the edge of stick is followed, and soon sticks there under the normal force that is held.
+    pub fn nearly_follows(contact: &InitialContact, schedule: &Schedule) -> bool {
+        let small = contact.stick_radius().is_some_and(|radius| radius < FOLLOWED * contact.contact_radius());
+        let held = schedule.conditions().holds_normal_force && contact.half_space().grading() >= SOFT;
+        contact.regime() == Regime::PartialSlip && small && held && is_followed(schedule)
+    }
+}
+
 impl Model {
     /// The same contact on the mesh of an edge of stick that moves, for when springs stick again; none where that cannot come or is not followed.
     ///
@@ -30,13 +56,7 @@ impl Model {
     /// Those of [`Model::under`].
     pub fn sticking_again(&self, springs: usize) -> Result<Option<Self>> {
         let schedule = self.schedule();
-        let conditions = schedule.conditions();
-        let stays = *schedule.friction_change() == History::Constant
-            && *schedule.friction_along_energy() == History::Constant
-            && conditions.blocks.is_empty()
-            && conditions.tangential_control == TangentialControl::Displacement;
-        let followed = stays && conditions.friction.coefficient().is_some() && !schedule.resolves();
-        if !followed || !self.gross().is_some_and(Gross::holds_force) {
+        if !is_followed(schedule) || !self.gross().is_some_and(Gross::holds_force) {
             return Ok(None);
         }
         let contact = self.contact();
@@ -58,7 +78,8 @@ impl Model {
         let slip_compression = loading.slip_compression(self.contact.half_space().stiffness_ratio());
         let end = mesh.last_above(&state.compression, slip_compression)?;
         let fraction = mesh.fraction(end);
-        if fraction < FOLLOWED * FOLLOWED {
+        let followed: f64 = std::env::var("FOLLOWED").ok().and_then(|v| v.parse().ok()).unwrap_or(FOLLOWED);
+        if fraction < followed * followed {
             return None;
         }
         let within = mesh.up_to(end, &state.compression).ok()?;
