@@ -8,7 +8,9 @@ use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
-use crate::solver::model::{FEWEST_SPRINGS, Gross, Model, MovingStick, OperatorStore, Resolution, Schedule, State};
+use crate::solver::model::{
+    FEWEST_SPRINGS, Gross, Model, MovingStick, OperatorStore, Resolution, Schedule, State,
+};
 use crate::solver::simulation::{HandOver, Plan, Progress, Simulation};
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossBdf, GrossSdirk, Sdirk, Stepper};
 

@@ -6,7 +6,9 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before, springs_to_stick_again};
+use super::super::budget::{
+    CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before, springs_to_stick_again,
+};
 use super::super::cost::MOST_WORK;
 use super::super::parts::resolution;
 use super::companion::{Coarser, Companion, Lost, Worn};
@@ -112,7 +114,7 @@ impl Coarsening {
             springs: model.springs(),
             tolerance,
             smooth,
-            alone: smooth || model.gross().is_some() && !sticks_again,
+            alone: smooth || model.gross().is_some(),
             sticks_again,
             part,
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
@@ -259,13 +261,18 @@ impl Companions {
             return by_known_order(simulation, ratio, nearest);
         }
         let substeps = finite(first.unsampled.as_ref().map_or(0.0, |it| it.error(scale)));
-        if self.gross && simulation.model().gross().is_some() {
+        // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
+        let tells = ratio >= LEAST_RATIO;
+        if self.gross && simulation.model().gross().is_none() {
+            // What the polynomials over the whole contact make of the kink at the edge of stick falls with no order: the companion is off by more than the run.
+            let springs = if tells { finite(nearest) } else { UNKNOWN };
+            return Some(Shares { springs, order: ORDER, substeps, left_out: finite(left_out) });
+        }
+        if self.gross {
             let shares = in_gross_slip(simulation, snapshots, nearest, ratio, scale);
             return Some(Shares { substeps, ..shares });
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
-        // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
-        let tells = ratio >= LEAST_RATIO;
         Some(Shares {
             springs: if tells { finite(difference / (ratio.powf(order) - 1.0)) } else { UNKNOWN },
             order,

@@ -145,7 +145,8 @@ impl Model {
         let annulus =
             Annulus { innermost, stick_radius, farthest: &farthest, moving, surplus: 0.0, slides: false };
         let operators = (Backend::Dense, &OperatorStore::default());
-        let model = annulus.model(contact.clone(), schedule.clone(), springs, Clustering::Cubic, operators)?;
+        let model =
+            annulus.model(contact.clone(), schedule.clone(), springs, Clustering::Cubic, operators)?;
         Ok(model)
     }
 

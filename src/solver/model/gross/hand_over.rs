@@ -17,7 +17,7 @@ use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::solver::model::moving::StickEdge;
 use crate::solver::model::schedule::Schedule;
-use crate::solver::model::{Fields, Model, Past, State, StickZone};
+use crate::solver::model::{Model, Past, State, StickZone};
 
 /// Stick radius, over that of the contact, from which on its edge is followed. Up to there the kink at the edge costs the polynomials over the whole contact
 /// 1e-5 of the worn volume.
@@ -78,8 +78,7 @@ impl Model {
         let slip_compression = loading.slip_compression(self.contact.half_space().stiffness_ratio());
         let end = mesh.last_above(&state.compression, slip_compression)?;
         let fraction = mesh.fraction(end);
-        let followed: f64 = std::env::var("FOLLOWED").ok().and_then(|v| v.parse().ok()).unwrap_or(FOLLOWED);
-        if fraction < followed * followed {
+        if fraction < FOLLOWED * FOLLOWED {
             return None;
         }
         let within = mesh.up_to(end, &state.compression).ok()?;
@@ -118,13 +117,12 @@ impl Model {
             .collect();
         let mut all = state.compression.clone();
         all.push(0.0);
-        let nodes = &to.operators().nodes()[1..];
-        let at = |x: &f64| mesh.coordinate((zone.stick_area + slip_area * x) / whole.area);
-        let slipping: Vec<f64> =
-            nodes.iter().map(|x| (zone.slip_compression - mesh.value(&all, at(x))).max(0.0)).collect();
-        let mut fields = Fields::default();
-        to.evaluate_at(&zone, slip_area, &vec![0.0; to.springs() - 1], &mut fields);
-        let slip = to.carried(&fields, slipping.into_iter());
+        let slipping = |offset: f64| {
+            let at = mesh.coordinate((zone.stick_area + offset) / whole.area);
+            zone.slip_compression - mesh.value(&all, at)
+        };
+        let slip_at = |x: &f64| to.unworn().carried(zone.stick_area, slip_area * x, slipping);
+        let slip: Vec<f64> = to.operators().nodes()[1..].iter().map(slip_at).collect();
         // By another quadrature than the slip: the contact edge stays where it is.
         let behind = moving.left_behind(&left_behind, whole.area);
         let off = to.mismatch_at(&zone, slip_area, |i, _| slip[i]) - behind;
