@@ -1,6 +1,6 @@
 //! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
 
-use super::budget::{self, OF_STEPS, springs_to_stick_again};
+use super::budget::{self, NEAR_GROSS_SLIP, OF_STEPS, springs_to_stick_again};
 use super::mesh::{self, SPRINGS_TO_SLIDE};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
@@ -140,17 +140,17 @@ impl Parts {
         let whole = numerics.stepper == StepperChoice::EveryCycle;
         let plan =
             super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
-        // By hand it is one tolerance for both, and no more springs than by choice; near gross slip springs are those over the slip annulus.
+        // By hand it is one tolerance for both meshes, and no more springs than by choice; near gross slip springs are those over the slip annulus.
         let again = springs_to_stick_again(model.springs());
         let springs = match numerics.springs {
             Some(springs) if contact.regime() == Regime::PartialSlip => springs,
             Some(_) => again.min(budget::MOST_RAISED),
             None => again,
         };
-        let part = if scene.numerics().tolerance.is_some() { 1.0 } else { OF_STEPS };
+        let part = if scene.numerics().tolerance.is_some() { 1.0 } else { NEAR_GROSS_SLIP / OF_STEPS };
         let hand_over = model.gross().is_some_and(Gross::holds_force).then(|| HandOver {
             springs,
-            tolerance: tolerance / part,
+            tolerance: part * tolerance,
             expected: false,
         });
         Ok(Self { model, stepper, tolerance, plan, limit: None, hand_over })

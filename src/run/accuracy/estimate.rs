@@ -114,7 +114,7 @@ impl Coarsening {
             springs: model.springs(),
             tolerance,
             smooth,
-            alone: smooth || model.gross().is_some(),
+            alone: smooth || model.gross().is_some() && !sticks_again,
             sticks_again,
             part,
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
@@ -264,8 +264,10 @@ impl Companions {
         // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
         let tells = ratio >= LEAST_RATIO;
         if self.gross && simulation.model().gross().is_none() {
-            // What the polynomials over the whole contact make of the kink at the edge of stick falls with no order: the companion is off by more than the run.
-            let springs = if tells { finite(nearest) } else { UNKNOWN };
+            // What the polynomials over the whole contact make of the kink at the edge of stick falls with no order, and two runs may share it: the companions
+            // are off by more than the run.
+            let farther = self.farther(first, scale).map_or(nearest, |(gap, _)| gap.max(nearest));
+            let springs = if tells { finite(farther) } else { UNKNOWN };
             return Some(Shares { springs, order: ORDER, substeps, left_out: finite(left_out) });
         }
         if self.gross {
@@ -283,15 +285,18 @@ impl Companions {
 
     /// The order that two companions show, and the difference that falls with it.
     fn observed_order(&self, first: &Companion, nearest: f64, scale: [f64; 2]) -> (f64, f64) {
-        let farther = self.second.as_ref().and_then(|second| {
-            let spent = first.spent && second.spent;
-            let gap = gap(&first.seen, &second.seen, spent, |a, b| self.apart(a, b, scale))?;
-            Some((gap, first.springs as f64 / second.springs as f64))
-        });
-        let Some((gap, step)) = farther else { return (LEAST_ORDER, nearest) };
+        let Some((gap, step)) = self.farther(first, scale) else { return (LEAST_ORDER, nearest) };
         let observed = (gap / nearest).ln() / step.ln();
         let grows = if observed > 0.0 { nearest } else { nearest.max(gap) };
         (observed.clamp(LEAST_ORDER, self.order), grows)
+    }
+
+    /// By what the second companion differs from the first, and the ratio of their springs.
+    fn farther(&self, first: &Companion, scale: [f64; 2]) -> Option<(f64, f64)> {
+        let second = self.second.as_ref()?;
+        let spent = first.spent && second.spent;
+        let gap = gap(&first.seen, &second.seen, spent, |a, b| self.apart(a, b, scale))?;
+        Some((gap, first.springs as f64 / second.springs as f64))
     }
 
     /// The larger of the differences of volume and profile, relative.

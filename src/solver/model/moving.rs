@@ -188,7 +188,7 @@ impl MovingStick {
     }
 
     /// Whether it moves since the normal force is held beside the displacement.
-    pub(super) fn creeps_under_force(&self) -> bool {
+    pub fn creeps_under_force(&self) -> bool {
         matches!(self.cause, Cause::NormalForce(_))
     }
 

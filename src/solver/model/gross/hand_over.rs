@@ -41,7 +41,7 @@ fn is_followed(schedule: &Schedule) -> bool {
 }
 
 impl Gross {
-    /// Whether a contact sticks at first, but not as far out as the edge of stick is followed, and soon sticks there under the normal force that is held.
+    /// Whether a contact hardly sticks at first, and soon sticks farther out under the normal force that is held.
     pub fn nearly_follows(contact: &InitialContact, schedule: &Schedule) -> bool {
         let small = contact.stick_radius().is_some_and(|radius| radius < FOLLOWED * contact.contact_radius());
         let held = schedule.conditions().holds_normal_force && contact.half_space().grading() >= SOFT;
