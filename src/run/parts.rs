@@ -148,7 +148,7 @@ impl Parts {
             None => again,
         };
         let part = if scene.numerics().tolerance.is_some() { 1.0 } else { NEAR_GROSS_SLIP / OF_STEPS };
-        let hand_over = model.gross().is_some_and(Gross::holds_force).then(|| HandOver {
+        let hand_over = model.gross().is_some_and(Gross::holds_force).then_some(HandOver {
             springs,
             tolerance: part * tolerance,
             expected: false,
