@@ -295,6 +295,17 @@ impl UnwornSlip {
         self.values(logarithm, slip_compression, slip)
     }
 
+    /// `F e`, m, at `z = r² - c²`, m², of compressions `e(x² - c²)`, m, by quadrature.
+    pub fn carried(&self, stick_area: f64, z: f64, compression: impl Fn(f64) -> f64) -> f64 {
+        let (logarithm, nu) = ((z / stick_area).ln_1p(), 1.0 - self.mu);
+        let weighted = |(node, complement): (&f64, &f64)| {
+            kernel(logarithm * node, nu) * compression(stick_area * (logarithm * complement).exp_m1())
+        };
+        let terms = self.rule.nodes.iter().zip(&self.rule.complements).map(weighted);
+        let mean = terms.zip(&self.rule.weights).map(|(term, weight)| term * weight).sum::<f64>();
+        profile_factor(nu, self.mu) * power(logarithm, self.mu) * mean
+    }
+
     fn slip_elsewhere(&self, stick_area: f64, logarithm: f64) -> f64 {
         let Some(terms) = self.terms.get_or_init(|| self.of_terms()) else {
             return Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm);
@@ -388,8 +399,12 @@ impl<'a> Transform<'a> {
         self.factor * terms.zip(&self.rule.weights).map(|(term, weight)| term * weight).sum::<f64>()
     }
 
-    /// `(expm1(y)/y)^(-ν)`.
     fn kernel(&self, y: f64) -> f64 {
-        if y > 1e-300 { power(y.exp_m1() / y, -self.nu) } else { 1.0 }
+        kernel(y, self.nu)
     }
+}
+
+/// `(expm1(y)/y)^(-ν)`.
+fn kernel(y: f64, nu: f64) -> f64 {
+    if y > 1e-300 { power(y.exp_m1() / y, -nu) } else { 1.0 }
 }

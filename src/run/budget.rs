@@ -96,9 +96,7 @@ pub(in crate::run) fn springs_for(
     accuracy: f64,
 ) -> usize {
     if Gross::follows(contact, schedule).unwrap_or_default() {
-        let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
-        let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
-        return (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize;
+        return springs_in_gross_slip(contact, accuracy);
     }
     let smooth = clustering == Clustering::Smooth;
     if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip && !smooth {
@@ -116,6 +114,13 @@ pub(in crate::run) fn springs_for(
     let wanted = MARGIN * accuracy;
     let springs = (added * wide.springs(wanted)).max(next_to_stick.springs(wanted));
     springs.clamp(fewest, MOST_RAISED as f64).ceil() as usize
+}
+
+/// The same over the whole contact in gross slip.
+pub(in crate::run) fn springs_in_gross_slip(contact: &InitialContact, accuracy: f64) -> usize {
+    let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
+    let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
+    (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize
 }
 
 /// An error that falls with a power of the springs.
@@ -159,8 +164,23 @@ pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
         * match model.gross() {
             Some(_) => OF_STEPS * OF_TIME,
             None if loses_stick => OF_TIME_LOSING_STICK,
+            None if nearly_slides(model) => NEAR_GROSS_SLIP * OF_TIME,
             None => OF_TIME,
         }
+}
+
+/// Part of that where a held normal force lets a small stick zone grow: volumes at τ = 30 change by eight times as much as the amplitude, and so they do by errors of
+/// early steps.
+pub(in crate::run) const NEAR_GROSS_SLIP: f64 = 0.1;
+
+/// Stick radius over that of the contact below which it is small.
+const SMALL_STICK: f64 = 0.3;
+
+/// Whether a held normal force lets a small stick zone grow.
+fn nearly_slides(model: &Model) -> bool {
+    let contact = model.contact();
+    let small = contact.stick_radius().is_some_and(|radius| radius < SMALL_STICK * contact.contact_radius());
+    small && model.moving().is_some_and(MovingStick::creeps_under_force)
 }
 
 /// Springs with which a held normal force is followed to an accuracy: the edge of stick creeps over worn ground, to second order
@@ -181,8 +201,24 @@ const MOST_IN_GROSS_SLIP: f64 = 60.0;
 const SOFT: f64 = -0.6;
 const MOST_AT_SOFT_TOP: f64 = 13.0;
 
+/// Springs over the slip annulus, for every one in gross slip beyond the second number, once springs stick again: as many as [`SPRINGS_UNDER_FORCE`] at the
+/// default accuracy.
+const TO_STICK_AGAIN: [usize; 2] = [20, 7];
+
+/// Springs over the slip annulus where those of gross slip stick again.
+pub(in crate::run) fn springs_to_stick_again(in_gross_slip: usize) -> usize {
+    let [each, beyond] = TO_STICK_AGAIN;
+    each * (in_gross_slip - beyond)
+}
+
+/// Springs of gross slip that lead to so many over the slip annulus, or to more.
+pub(in crate::run) fn springs_before(sticking_again: usize) -> usize {
+    let [each, beyond] = TO_STICK_AGAIN;
+    beyond + sticking_again.div_ceil(each)
+}
+
 /// Part of the tolerance elsewhere that is that of gross slip.
-const OF_STEPS: f64 = 5e-3;
+pub(in crate::run) const OF_STEPS: f64 = 5e-3;
 
 /// Substeps of a period that is sampled: the fewest and the most, the accuracy up to which the fewest serve, and the power with which they
 /// grow beyond: four times as many for a tenth of the error.

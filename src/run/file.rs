@@ -163,17 +163,14 @@ impl Run {
             file.header.path.clone(),
         )?;
         checkpoint.accuracy = scene.numerics().accuracy_asked();
-        // As many springs as it came to, however often it was made anew.
-        let springs = Some(checkpoint.state.compression.len() + 1);
         let numerics = budget::numerics_of(scene.numerics(), checkpoint.attempt.refinements);
-        let parts = Parts::new(&scene, &numerics, springs, None, &shared.operators)?;
+        let parts = Parts::of_state(&scene, &numerics, &checkpoint.state, &shared.operators)?;
         if file.header.radius != parts.model.radii()
-            || checkpoint.state.compression.len() + 1 != parts.model.springs()
-            || checkpoint.state.stick.is_some() != parts.model.moving().is_some()
+            || !parts.fit(&checkpoint.state)
             || !checkpoint.state.past.fits(
                 &checkpoint.state,
                 Bdf::HIGHEST_ORDER,
-                parts.model.gross().is_some(),
+                parts.model.gross().is_some() && checkpoint.state.stick.is_none(),
             )
             || !checkpoint
                 .state
@@ -204,17 +201,10 @@ impl Run {
             })));
         }
         let Checkpoint { state, progress, wall_seconds, attempt, .. } = checkpoint;
-        let stepping = stepping::Simulation::resume(
-            parts.model,
-            parts.stepper,
-            parts.tolerance,
-            parts.plan,
-            state,
-            progress,
-        );
+        let limit = parts.limit.clone();
         Ok(Resumed::Run(Box::new(Self(Simulation {
-            stepping,
-            limit: parts.limit,
+            stepping: parts.resume(state, progress)?,
+            limit,
             warning: None,
             scene,
             shared: shared.clone(),

@@ -1,6 +1,6 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
-use super::budget::{MOST_RAISED, smallness, springs_for};
+use super::budget::{MOST_RAISED, smallness, springs_before, springs_for, springs_in_gross_slip};
 use super::memory::memory_figure;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
@@ -9,10 +9,13 @@ use crate::laws::loading::Duration;
 use crate::numerics::abel::Backend;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Stepper};
-use crate::solver::model::{FEWEST_SPRINGS, Model, OperatorStore, Schedule};
+use crate::solver::model::{FEWEST_SPRINGS, Gross, Model, OperatorStore, Schedule};
 
 /// Fewest springs that carry a contact which is in gross slip: their mesh begins at a thousandth of its radius.
 pub(super) const SPRINGS_TO_SLIDE: usize = 60;
+
+/// Fewest springs of gross slip from which one goes over to springs by hand.
+const FEWEST_BY_HAND: usize = 12;
 
 /// Grading below which nodes cluster as `N^-2` at the edge of stick. There the depth of the limit is nearly linear, so that finer ones resolve
 /// nothing, and where the pressure at the edge blows up they are unstable (docs/extremes.md).
@@ -77,6 +80,11 @@ pub(super) fn model(
     store: &OperatorStore,
 ) -> Result<Model> {
     let given = numerics.springs;
+    if numerics.stepper == Stepper::Implicit
+        && let Some(model) = nearly_sliding(contact, schedule, numerics, wanted)
+    {
+        return Ok(model);
+    }
     let grading = contact.half_space().grading();
     let concentrated = grading < STEEP_SOFTENING && smallness(contact) > SMALL_STICK;
     let clusterings = |springs: usize| -> &[Clustering] {
@@ -132,6 +140,25 @@ pub(super) fn model(
         }
         springs = raised;
     }
+}
+
+/// The mesh of gross slip for a contact that hardly sticks at first, and whose springs soon stick farther out.
+fn nearly_sliding(
+    contact: &InitialContact,
+    schedule: &Schedule,
+    numerics: &Numerics,
+    wanted: Option<usize>,
+) -> Option<Model> {
+    if !Gross::nearly_follows(contact, schedule) {
+        return None;
+    }
+    let by_hand = |springs| springs_before(springs).max(FEWEST_BY_HAND);
+    let chosen = || springs_in_gross_slip(contact, numerics.accuracy);
+    let springs = numerics.springs.map(by_hand).or(wanted).unwrap_or_else(chosen);
+    let model = Model::in_gross_slip(contact, schedule.clone(), springs).ok()?;
+    // Profiles that end may not reach as far as the mesh of an edge of stick asks for.
+    model.sticking_again(FEWEST_SPRINGS).ok().flatten()?;
+    Some(model)
 }
 
 /// Whether kinks that a threshold makes are followed on narrow cells.

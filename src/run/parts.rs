@@ -1,16 +1,19 @@
 //! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
 
-use super::budget;
+use std::cell::Cell;
+
+use super::budget::{self, NEAR_GROSS_SLIP, OF_STEPS, springs_to_stick_again};
 use super::mesh::{self, SPRINGS_TO_SLIDE};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
-use crate::numerics::grid::Clustering;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
-use crate::solver::model::{FEWEST_SPRINGS, Model, MovingStick, OperatorStore, Resolution, Schedule};
-use crate::solver::simulation::{Flow, Observer, Outcome, Plan, Simulation};
+use crate::solver::model::{
+    FEWEST_SPRINGS, Gross, Model, MovingStick, OperatorStore, Resolution, Schedule, State,
+};
+use crate::solver::simulation::{Flow, HandOver, Observer, Outcome, Plan, Progress, Simulation};
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossBdf, GrossSdirk, Sdirk, Stepper};
 
 /// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, most steps that it may try, and
@@ -27,6 +30,8 @@ pub(super) struct Parts {
     pub tolerance: f64,
     pub plan: Plan,
     pub limit: Option<LimitingShape>,
+    /// What comes of gross slip where springs may stick again.
+    pub hand_over: Option<HandOver>,
 }
 
 impl Parts {
@@ -47,10 +52,66 @@ impl Parts {
         if parts.model.gross().is_some() {
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
-            let offsets = parts.model.gross_offsets((MARGIN * farthest_radius(&parts, store)?).min(end));
+            let Reach { radius, sticks_again } = Reach::of(&parts)?;
+            if let Some(hand_over) = &mut parts.hand_over {
+                hand_over.expected = sticks_again;
+            }
+            let offsets = parts.model.gross_offsets((MARGIN * radius).min(end));
             parts.model = parts.model.shown_at(offsets);
         }
         Ok(parts)
+    }
+
+    /// As [`Parts::new`], on as many springs as a run came to, however often it was made anew.
+    pub(super) fn of_state(
+        scene: &Scene,
+        numerics: &Numerics,
+        state: &State,
+        store: &OperatorStore,
+    ) -> Result<Self> {
+        let springs = state.compression.len() + 1;
+        if state.stick.is_some()
+            && let Ok(parts) = Self::new(scene, numerics, Some(budget::springs_before(springs)), None, store)
+            && parts.hand_over.is_some()
+        {
+            return Ok(parts);
+        }
+        Self::new(scene, numerics, Some(springs), None, store)
+    }
+
+    /// Whether a state is one of this run.
+    pub(super) fn fit(&self, state: &State) -> bool {
+        let springs = state.compression.len() + 1;
+        match &self.hand_over {
+            Some(hand_over) if state.stick.is_some() => springs == hand_over.springs,
+            _ => springs == self.model.springs() && state.stick.is_some() == self.model.moving().is_some(),
+        }
+    }
+
+    /// The run from a state on.
+    ///
+    /// # Errors
+    /// As [`Simulation::resume_handed_over`].
+    pub(super) fn resume(self, state: State, progress: Progress) -> Result<Simulation> {
+        let Self { model, stepper, tolerance, plan, hand_over, .. } = self;
+        match hand_over {
+            Some(hand_over) if state.stick.is_some() => {
+                Simulation::resume_handed_over((model, tolerance), hand_over, plan, state, progress)
+            }
+            _ => {
+                let simulation = Simulation::resume(model, stepper, tolerance, plan, state, progress);
+                Ok(simulation.handing_over(hand_over))
+            }
+        }
+    }
+
+    /// The run from the unworn contact on.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub(super) fn begin(self) -> Result<Simulation> {
+        let simulation = Simulation::new(self.model, self.stepper, self.tolerance, self.plan)?;
+        Ok(simulation.handing_over(self.hand_over))
     }
 
     /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that is in gross slip, and without its limit.
@@ -86,7 +147,20 @@ impl Parts {
         let whole = numerics.stepper == StepperChoice::EveryCycle;
         let plan =
             super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
-        Ok(Self { model, stepper, tolerance, plan, limit: None })
+        // By hand it is one tolerance for both meshes, and no more springs than by choice; near gross slip springs are those over the slip annulus.
+        let again = springs_to_stick_again(model.springs());
+        let springs = match numerics.springs {
+            Some(springs) if contact.regime() == Regime::PartialSlip => springs,
+            Some(_) => again.min(budget::MOST_RAISED),
+            None => again,
+        };
+        let part = if scene.numerics().tolerance.is_some() { 1.0 } else { NEAR_GROSS_SLIP / OF_STEPS };
+        let hand_over = model.gross().is_some_and(Gross::holds_force).then_some(HandOver {
+            springs,
+            tolerance: part * tolerance,
+            expected: false,
+        });
+        Ok(Self { model, stepper, tolerance, plan, limit: None, hand_over })
     }
 }
 
@@ -100,31 +174,53 @@ fn limit(model: &Model) -> Result<Option<LimitingShape>> {
     if unlimited { Ok(None) } else { LimitingShape::under(model.contact(), conditions) }
 }
 
-/// Contact radius, m, to which gross slip leads, by a coarse run; where that comes to no end on any springs, the radius that bounds it at an
-/// indentation that is held, beyond which the unworn profile is as high.
-fn farthest_radius(parts: &Parts, store: &OperatorStore) -> Result<f64> {
-    let (springs, tolerance) = COARSE;
-    let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
-    let coarse = |springs: usize| -> Result<f64> {
-        let model = Model::under(contact, schedule.clone(), springs, Clustering::Cubic, store)?;
-        let plan = Plan { outputs: vec![], end: parts.plan.end };
-        let mut coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
-        if coarse.run(&mut [&mut Bounded])? == Outcome::Interrupted {
-            return Err(coarse.takes_too_long());
+/// Where gross slip leads to.
+struct Reach {
+    /// Contact radius, m.
+    radius: f64,
+    /// Whether springs stick again on the way.
+    sticks_again: bool,
+}
+
+impl Reach {
+    /// By a coarse run. Where that comes to no end after springs stick again, one in which they do not reaches farther; where none comes to an end, the
+    /// radius is that which bounds it at an indentation that is held, beyond which the unworn profile is as high.
+    fn of(parts: &Parts) -> Result<Self> {
+        let (springs, tolerance) = COARSE;
+        let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
+        let sticks_again = Cell::new(false);
+        let coarse = |springs: usize, follow: bool| -> Result<Self> {
+            let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
+            let plan = Plan { outputs: vec![], end: parts.plan.end };
+            let hand_over = HandOver { springs: springs_to_stick_again(springs), tolerance, expected: false };
+            let coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
+            let mut coarse = coarse.handing_over(follow.then_some(hand_over));
+            let outcome = coarse.run(&mut [&mut Bounded]);
+            sticks_again.set(sticks_again.get() || coarse.sticks_again());
+            if outcome? == Outcome::Interrupted {
+                return Err(coarse.takes_too_long());
+            }
+            Ok(Self {
+                radius: coarse.model().contact_radius(coarse.state()),
+                sticks_again: sticks_again.get(),
+            })
+        };
+        let [first, fewer] = springs;
+        let mut why = None;
+        for (springs, follow) in [(first, true), (fewer, true), (first, false)] {
+            if !follow && !sticks_again.get() {
+                break;
+            }
+            match coarse(springs, follow) {
+                Err(Error::NotConverged { why: here, .. }) => why = why.or(Some(here)),
+                found => return found,
+            }
         }
-        Ok(coarse.model().contact_radius(coarse.state()))
-    };
-    let [first, fewer] = springs;
-    let why = match coarse(first) {
-        Err(Error::NotConverged { why, .. }) => why,
-        found => return found,
-    };
-    match coarse(fewer) {
-        Err(Error::NotConverged { .. }) if !parts.model.wears_without_end() => {
-            Ok(contact.indenter().radius_at_height(contact.indentation()))
+        if parts.model.wears_without_end() {
+            return Err(Error::Inconsistent { what: "loading", why: why.unwrap_or_default() });
         }
-        Err(Error::NotConverged { .. }) => Err(Error::Inconsistent { what: "loading", why }),
-        found => found,
+        let radius = contact.indenter().radius_at_height(contact.indentation());
+        Ok(Self { radius, sticks_again: sticks_again.get() })
     }
 }
 

@@ -34,13 +34,14 @@ impl Ready {
     }
 
     fn unkeyed(scene: &Scene, store: &OperatorStore) -> Result<Self> {
-        let parts = Parts::new(scene, scene.numerics(), None, None, store)?;
-        let mut simulation = Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
+        let mut parts = Parts::new(scene, scene.numerics(), None, None, store)?;
+        let limit = parts.limit.take();
+        let mut simulation = parts.begin()?;
         cost::check(scene.numerics().stepper, &mut simulation)?;
         check_width(&mut simulation)?;
         rim::check(&simulation)?;
         check_energy(&simulation)?;
-        Ok(Self { simulation, limit: parts.limit })
+        Ok(Self { simulation, limit })
     }
 }
 

@@ -224,10 +224,9 @@ fn to_the_end(
         let known = stepping.model().schedule().clone();
         let made = |springs: usize, refinements: u64| {
             let numerics = budget::numerics_of(scene.numerics(), refinements);
-            let parts = Parts::new(scene, &numerics, Some(springs), Some(&known), store)?;
-            let stepping =
-                stepping::Simulation::new(parts.model, parts.stepper, parts.tolerance, parts.plan)?;
-            Ok::<_, Error>((stepping, parts.limit))
+            let mut parts = Parts::new(scene, &numerics, Some(springs), Some(&known), store)?;
+            let limit = parts.limit.take();
+            Ok::<_, Error>((parts.begin()?, limit))
         };
         let anew = |springs: usize| made(springs, 0);
         let is_last = recorder.attempt.refinements >= budget::LAST_RESORT;
@@ -236,7 +235,7 @@ fn to_the_end(
             if is_last {
                 return None;
             }
-            let springs = stepping.model().springs();
+            let springs = stepping.first().0.springs();
             let coarser = cost::fewer(springs).and_then(|fewer| anew(fewer).ok());
             coarser.filter(|(coarser, _)| coarser.model().springs() < springs)
         };
@@ -278,9 +277,10 @@ fn to_the_end(
             None if no_end && !is_last && recorder.looks_for_an_end(&stepping) => {
                 recorder.attempt.refinements = budget::REFINEMENTS;
                 let first = Parts::new(scene, scene.numerics(), None, Some(&known), store).ok();
-                let springs = stepping.model().springs();
+                let (begun, _) = stepping.first();
+                let springs = begun.springs();
                 let first = first.map(|parts| parts.model).filter(|it| it.springs() < springs);
-                let fewer = cost::fewer_for_an_end(first.as_ref().unwrap_or(stepping.model()));
+                let fewer = cost::fewer_for_an_end(first.as_ref().unwrap_or(begun));
                 // A mesh may need as many.
                 let coarser = fewer.and_then(|it| anew(it).ok());
                 coarser.filter(|(coarser, _)| coarser.model().springs() < springs).or_else(|| {
@@ -295,7 +295,7 @@ fn to_the_end(
         if let Some(found) = found {
             recorder.attempt = Attempt {
                 refinements: recorder.attempt.refinements + 1,
-                ended_on: outcome.map_or(0, |_| stepping.model().springs() as u64),
+                ended_on: outcome.map_or(0, |_| stepping.first().0.springs() as u64),
                 work: recorder.attempt.work + work,
             };
             (stepping, limit) = found;

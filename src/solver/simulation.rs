@@ -4,13 +4,16 @@ use std::f64::consts::PI;
 
 use crate::error::Result;
 use crate::laws::loading::has_come;
-use crate::numerics::grid::Clustering;
 use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper};
 
 mod failure;
+mod hand_over;
+mod possible;
 
 use failure::nothing_wears;
+pub use hand_over::HandOver;
+use hand_over::Taking;
 
 /// Safety factor and bounds of the choice of steps.
 const SAFETY: f64 = 0.9;
@@ -23,24 +26,12 @@ const SMALLEST_GROWTH: f64 = 1e-13;
 /// Compression, relative to `q_c`, below which no pressure is left but round-off.
 const WORN_OUT: f64 = 1e-13;
 
-/// Largest loss of wear depth in a step, relative to the limit's largest depth, that is taken for an error of interpolation between moving
-/// springs: this, or `(3/n)^4` if that is larger, on a smooth mesh. It rejects explicit steps before they are unstable.
-const INTERPOLATION: f64 = 1e-6;
-const COARSE_INTERPOLATION: f64 = 3.0;
-
-/// The same where wear has kinks.
-const KINKED_INTERPOLATION: f64 = 1e-2;
-
 /// Least rate at the end of the last step, over the one asked for.
 const OVERSHOT: f64 = 0.5;
 
 /// Part of the rate of worn volume by trapezoids that is certainly worn. The quadrature of the volume is more accurate, but some of its weights
 /// are negative, and where only the ground next to the edge of stick still wears its sum may vanish.
 const CERTAIN_WEAR: f64 = 0.5;
-
-/// How far a compression, over `q_c`, may lie outside the range from 0 to 1. Where the pressure at the edge of stick blows up it is negative for a
-/// while, by more than 0.1 as `k → -1`; on unstable meshes it swings by more than one.
-const BEYOND_CONTACT: f64 = 0.3;
 
 /// Rejected steps after which a run is given up if they are more than half of the accepted ones as well. Where a held force loses its stick
 /// zone, the edge of stick is followed in ever smaller steps.
@@ -158,6 +149,9 @@ pub struct Simulation {
     progress: Progress,
     /// Radius, m, at which the last state that was refused had lost wear depth.
     healed_at: Option<f64>,
+    taking: Taking,
+    /// Whether the next step settles a state that was handed over, so that its error does not count.
+    settles: bool,
 }
 
 impl Simulation {
@@ -203,7 +197,21 @@ impl Simulation {
         let cycle = cycle_of(&model, &state, &fields, state.cycles);
         let depth = model.depth_on_springs(&state, &fields);
         let rate = rate_of_wear(&model, &fields, &cycle);
-        Self { model, stepper, tolerance, plan, state, fields, cycle, depth, rate, progress, healed_at: None }
+        Self {
+            model,
+            stepper,
+            tolerance,
+            plan,
+            state,
+            fields,
+            cycle,
+            depth,
+            rate,
+            progress,
+            healed_at: None,
+            taking: Taking::Never,
+            settles: false,
+        }
     }
 
     /// The model.
@@ -297,6 +305,7 @@ impl Simulation {
             if let Some(outcome) = self.outcome() {
                 return Ok(outcome);
             }
+            self.hand_over();
             if self.model.loses_stick(&self.state) {
                 return Err(self.slides_off());
             }
@@ -386,7 +395,7 @@ impl Simulation {
             self.progress.rate_evaluations += trial.rate_evaluations;
             let error = trial.error / self.tolerance;
             let accepted = match trial.state {
-                Some(state) if error <= 1.0 => {
+                Some(state) if error <= 1.0 || self.settles => {
                     let fields = trial.fields.unwrap_or_else(|| self.model.fields(&state));
                     let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
                     let rate = rate_of_wear(&self.model, &fields, &cycle);
@@ -413,9 +422,12 @@ impl Simulation {
                     return Err(self.stuck("the wear of one cycle leaves no contact that wear can lead to"));
                 }
             } else {
+                // What settles tells nothing of the next step.
+                let error = if self.settles && accepted { error.min(1.0) } else { error };
                 self.adapt(step, error, accepted, trial.next_step);
             }
             if accepted {
+                self.settles = false;
                 self.progress.steps += 1;
                 self.progress.next_output += u64::from(landing.output);
                 return Ok(landing.output);
@@ -518,14 +530,6 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Whether compressions are between zero and that at the edge of stick, with some room. Asked under the plain laws only: under others single
-    /// springs next to the edge of stick swing farther and come back.
-    fn compressions_are_possible(&self, state: &State) -> bool {
-        let most = self.model.contact().slip_compression();
-        let within = |q: &f64| (-BEYOND_CONTACT..=1.0 + BEYOND_CONTACT).contains(&(q / most));
-        !self.model.schedule().conditions().is_plain() || state.compression.iter().all(within)
-    }
-
     /// Chooses the next step from the error of this one over the tolerance.
     fn adapt(&mut self, step: f64, error: f64, accepted: bool, wanted: Option<f64>) {
         let order = self.stepper.estimate_order();
@@ -539,29 +543,6 @@ impl Simulation {
         } else {
             best.clamp(SMALLEST_FACTOR * step, 0.5 * step)
         };
-    }
-
-    /// Whether a state is one of a contact in which wear became deeper everywhere; notes the radius where it did not.
-    fn is_possible(&mut self, state: &State, fields: &Fields, depth: &[f64]) -> bool {
-        let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
-        let interpolation = match self.model.operators().mesh().clustering() {
-            Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
-            Clustering::Even => KINKED_INTERPOLATION,
-            _ if self.model.schedule().is_uniform() => INTERPOLATION,
-            _ => KINKED_INTERPOLATION,
-        };
-        let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
-        let healed = depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed);
-        if healed.is_none() && fields.are_physical() && self.compressions_are_possible(state) {
-            return true;
-        }
-        self.healed_at = healed.map(|at| {
-            let stick = self.model.contact().stick_radius().unwrap_or_default();
-            let nodes = self.model.operators().nodes();
-            let x = nodes[(at + 1).min(nodes.len() - 1)];
-            (stick * stick + self.model.unworn().limit_slip_area() * x).sqrt()
-        });
-        false
     }
 }
 

@@ -92,8 +92,7 @@ impl Companion {
         let unsampled = unsampled.transpose()?;
         let model = parts.model.shown_at(coarser.offsets.to_vec());
         let most_tries = coarser.most_work / work_of_step(&model);
-        let simulation = Simulation::new(model, parts.stepper, parts.tolerance, parts.plan);
-        let Ok(mut simulation) = simulation else { return Err(Lost::NoEnd) };
+        let Ok(mut simulation) = (Parts { model, ..parts }).begin() else { return Err(Lost::NoEnd) };
         // Explicit steps are as many as cycles or stiffness ask for.
         let implicit = numerics.stepper == Stepper::Implicit;
         let most_steps = if implicit { coarser.most_steps } else { u64::MAX };

@@ -6,7 +6,9 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN};
+use super::super::budget::{
+    CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before, springs_to_stick_again,
+};
 use super::super::cost::MOST_WORK;
 use super::super::parts::resolution;
 use super::companion::{Coarser, Companion, Lost, Worn};
@@ -60,7 +62,6 @@ const OF_COMPANION: f64 = 0.2;
 /// Coarser runs of a scene.
 #[derive(Debug)]
 pub(in crate::run) struct Companions {
-    springs: usize,
     /// Whether the order of convergence is known.
     smooth: bool,
     /// The largest order believed, where it is not known.
@@ -87,6 +88,8 @@ pub(in crate::run) struct Coarsening {
     smooth: bool,
     /// Whether one companion serves.
     alone: bool,
+    /// Whether springs stick again after gross slip, so that it is the springs over the slip annulus that are to be fewer.
+    sticks_again: bool,
     /// Of the work of a run that this one may take.
     part: f64,
     /// `r² - c²`, m², of the radii compared.
@@ -103,14 +106,16 @@ impl Coarsening {
     /// # Arguments
     /// * `part` -- of the work of a run that this one may take
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, part: f64) -> Self {
-        let (model, numerics) = (simulation.model(), scene.numerics());
+        let ((model, tolerance), numerics) = (simulation.first(), scene.numerics());
+        let sticks_again = model.gross().is_some() && simulation.sticks_again();
         let smooth = is_smooth(scene, model);
         let substeps = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
         Self {
             springs: model.springs(),
-            tolerance: simulation.tolerance(),
+            tolerance,
             smooth,
-            alone: smooth || model.gross().is_some(),
+            alone: smooth || model.gross().is_some() && !sticks_again,
+            sticks_again,
             part,
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
@@ -132,7 +137,11 @@ impl Coarsening {
                     substeps: self.substeps.map(fewer).or(numerics.substeps),
                     ..*numerics
                 },
-                springs: fewer(self.springs).max(FEWEST),
+                springs: match self.sticks_again {
+                    true => springs_before(fewer(springs_to_stick_again(self.springs))),
+                    false => fewer(self.springs),
+                }
+                .max(FEWEST),
                 offsets: &self.offsets,
                 schedule: self.schedule.as_ref(),
                 samples: steps == 1 && self.substeps.is_none(),
@@ -178,7 +187,7 @@ impl Companions {
     /// # Arguments
     /// * `limited` -- whether the scene has a limit in closed form
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, limited: bool) -> Self {
-        let model = simulation.model();
+        let (model, _) = simulation.first();
         let (smooth, gross, every) = (is_smooth(scene, model), model.gross().is_some(), every(model));
         let radius = model.contact().contact_radius();
         let shown = model.radii().into_iter().step_by(every);
@@ -187,7 +196,7 @@ impl Companions {
         let radii = (moves || sampled || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
         let recedes = model.moving().is_some_and(MovingStick::recedes);
-        let order = match held || model.slides() {
+        let order = match held || model.slides() && !gross {
             _ if recedes => ORDER_RECEDING,
             true => ORDER_INWARDS,
             false => ORDER,
@@ -198,7 +207,6 @@ impl Companions {
         let by_hand = numerics.tolerance.filter(|_| numerics.stepper != Stepper::EveryCycle);
         let of_time = LEAST_OF_TIME * by_hand.unwrap_or(0.0);
         Self {
-            springs: model.springs(),
             smooth,
             order,
             gross,
@@ -243,7 +251,7 @@ impl Companions {
         let left_out = self.left_out.max(below);
         let unknown = Shares { springs: UNKNOWN, left_out, ..Shares::default() };
         let Some(first) = &self.first else { return Some(unknown) };
-        let ratio = self.springs as f64 / first.springs as f64;
+        let ratio = simulation.model().springs() as f64 / first.springs as f64;
         let spent = !self.smooth
             && matches!(simulation.plan().end, End::Rate(_))
             && matches!(simulation.outcome(), Some(Outcome::Rate | Outcome::WornOut));
@@ -253,13 +261,20 @@ impl Companions {
             return by_known_order(simulation, ratio, nearest);
         }
         let substeps = finite(first.unsampled.as_ref().map_or(0.0, |it| it.error(scale)));
+        // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
+        let tells = ratio >= LEAST_RATIO;
+        if self.gross && simulation.model().gross().is_none() {
+            // What the polynomials over the whole contact make of the kink at the edge of stick falls with no order, and two runs may share it: the companions
+            // are off by more than the run.
+            let farther = self.farther(first, scale).map_or(nearest, |(gap, _)| gap.max(nearest));
+            let springs = if tells { finite(farther) } else { UNKNOWN };
+            return Some(Shares { springs, order: ORDER, substeps, left_out: finite(left_out) });
+        }
         if self.gross {
             let shares = in_gross_slip(simulation, snapshots, nearest, ratio, scale);
             return Some(Shares { substeps, ..shares });
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
-        // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
-        let tells = ratio >= LEAST_RATIO;
         Some(Shares {
             springs: if tells { finite(difference / (ratio.powf(order) - 1.0)) } else { UNKNOWN },
             order,
@@ -270,15 +285,18 @@ impl Companions {
 
     /// The order that two companions show, and the difference that falls with it.
     fn observed_order(&self, first: &Companion, nearest: f64, scale: [f64; 2]) -> (f64, f64) {
-        let farther = self.second.as_ref().and_then(|second| {
-            let spent = first.spent && second.spent;
-            let gap = gap(&first.seen, &second.seen, spent, |a, b| self.apart(a, b, scale))?;
-            Some((gap, first.springs as f64 / second.springs as f64))
-        });
-        let Some((gap, step)) = farther else { return (LEAST_ORDER, nearest) };
+        let Some((gap, step)) = self.farther(first, scale) else { return (LEAST_ORDER, nearest) };
         let observed = (gap / nearest).ln() / step.ln();
         let grows = if observed > 0.0 { nearest } else { nearest.max(gap) };
         (observed.clamp(LEAST_ORDER, self.order), grows)
+    }
+
+    /// By what the second companion differs from the first, and the ratio of their springs.
+    fn farther(&self, first: &Companion, scale: [f64; 2]) -> Option<(f64, f64)> {
+        let second = self.second.as_ref()?;
+        let spent = first.spent && second.spent;
+        let gap = gap(&first.seen, &second.seen, spent, |a, b| self.apart(a, b, scale))?;
+        Some((gap, first.springs as f64 / second.springs as f64))
     }
 
     /// The larger of the differences of volume and profile, relative.

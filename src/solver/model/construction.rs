@@ -84,73 +84,25 @@ impl Model {
             ),
         })?;
         check_springs(springs)?;
-        let profile = contact.equivalent_profile();
-        let grading = profile.grading();
         let moving = MovingStick::new(&schedule, contact, slides)?;
         let farthest = match &moving {
             Some(moving) => moving.farthest(contact)?,
             None => contact.clone(),
         };
-        if moving.is_some() && profile.end_of_table().is_some() {
-            // The closed form refuses profiles that lose contact in rings.
-            LimitingShape::from_contact(&farthest)?;
-        }
-        let unworn = UnwornSlip::new(
-            profile,
-            stick_radius,
-            farthest.slip_compression(),
-            surplus,
-            farthest.slip_area_offset(),
-        )?;
-        let stick_radius_squared = stick_radius * stick_radius;
-        let first = contact.contact_radius().powi(2);
-        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
-        let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
-        // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
-        let rests = matches!(clustering, Clustering::Cubic | Clustering::Even | Clustering::Front);
-        let clustering = if rests && surplus > 0.0 { Clustering::CreepingStick } else { clustering };
-        let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
-        let natural = match &moving {
-            Some(moving) if moving.creeps() => natural.min(MOST_STRETCHED),
-            _ => natural,
-        };
-        let stretch = clustering.stretch(natural, grading);
-        let operators = store.get(grading, stretch, springs, clustering, backend)?;
-        let radial_unworn: Vec<_> =
-            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_slip_area() * x)).collect();
-        let compression = contact.slip_compression();
-        let stick_load = 0.5 * profile.load_integral(stick_radius)
-            + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
-        let depth_scale = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
-        let hidden = match clustering {
-            clustering if clustering.follows_front() => {
-                operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN)
-            }
-            _ => 0,
-        };
-        Ok(Self {
-            contact: contact.clone(),
+        Annulus { innermost: contact, stick_radius, farthest: &farthest, moving, surplus, slides }.model(
+            contact.clone(),
             schedule,
-            output: OutputRadii::new(&unworn, operators.abel.mesh(), hidden),
-            mesh: SpringMesh::Annulus(Box::new(AnnulusMesh {
-                unworn,
-                operators,
-                radial_unworn,
-                hidden,
-                moving,
-            })),
-            stick_zone: StickZone {
-                stick_area: stick_radius_squared,
-                slip_compression: compression + surplus,
-                stick_load,
-            },
-            depth_scale,
-            slides,
-        })
+            springs,
+            clustering,
+            (backend, store),
+        )
     }
 
-    /// A contact in gross slip.
-    fn in_gross_slip(contact: &InitialContact, schedule: Schedule, springs: usize) -> Result<Self> {
+    /// A contact on the mesh of gross slip, in it or [nearly](Gross::nearly_follows).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] and [`Error::Inconsistent`] for too few and too many springs; those of the quadrature.
+    pub fn in_gross_slip(contact: &InitialContact, schedule: Schedule, springs: usize) -> Result<Self> {
         check_springs(springs)?;
         if springs > MOST_IN_GROSS_SLIP {
             let why = format!(
@@ -177,6 +129,27 @@ impl Model {
         Ok(model.shown_at(offsets))
     }
 
+    /// A contact whose springs come to stick again after gross slip, with its edge of stick.
+    ///
+    /// # Arguments
+    /// * `innermost` -- with a core that the edge of stick leaves before it is taken up
+    pub(super) fn in_partial_slip(
+        contact: &InitialContact,
+        innermost: &InitialContact,
+        schedule: &Schedule,
+        springs: usize,
+    ) -> Result<Self> {
+        let moving = MovingStick::new(schedule, innermost, false)?;
+        let farthest = innermost.under_held_forces()?.unwrap_or_else(|| innermost.clone());
+        let stick_radius = innermost.stick_radius().unwrap_or_default();
+        let annulus =
+            Annulus { innermost, stick_radius, farthest: &farthest, moving, surplus: 0.0, slides: false };
+        let operators = (Backend::Dense, &OperatorStore::default());
+        let model =
+            annulus.model(contact.clone(), schedule.clone(), springs, Clustering::Cubic, operators)?;
+        Ok(model)
+    }
+
     /// Kind of operators for a number of springs: hierarchical where they are many, wear has no kinks and the edge of stick rests.
     pub fn backend(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Backend {
         let stays = !schedule.conditions().holds_normal_force && contact.regime() != Regime::FullSliding;
@@ -184,6 +157,96 @@ impl Model {
         let from = HIERARCHICAL[usize::from(stretched)];
         let serve = springs >= from && schedule.is_plain() && stays;
         if serve { Backend::Hierarchical } else { Backend::Dense }
+    }
+}
+
+/// What a mesh over the slip annulus is made for.
+struct Annulus<'a> {
+    /// The contact with the smallest stick zone.
+    innermost: &'a InitialContact,
+    /// Its radius, m.
+    stick_radius: f64,
+    /// The contact of which the limit bounds where wear can reach.
+    farthest: &'a InitialContact,
+    moving: Option<MovingStick>,
+    /// See [`Envelope::surplus`].
+    surplus: f64,
+    /// See [`Envelope::slides`].
+    slides: bool,
+}
+
+impl Annulus<'_> {
+    /// A contact on its springs.
+    fn model(
+        self,
+        contact: InitialContact,
+        schedule: Schedule,
+        springs: usize,
+        clustering: Clustering,
+        (backend, store): (Backend, &OperatorStore),
+    ) -> Result<Model> {
+        let Self { innermost, stick_radius, farthest, moving, surplus, slides } = self;
+        let profile = innermost.equivalent_profile();
+        let grading = profile.grading();
+        if moving.is_some() && profile.end_of_table().is_some() {
+            // The closed form refuses profiles that lose contact in rings.
+            LimitingShape::from_contact(farthest)?;
+        }
+        let unworn = UnwornSlip::new(
+            profile,
+            stick_radius,
+            farthest.slip_compression(),
+            surplus,
+            farthest.slip_area_offset(),
+        )?;
+        let stick_radius_squared = stick_radius * stick_radius;
+        let first = innermost.contact_radius().powi(2);
+        let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
+        let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
+        // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
+        let rests = matches!(clustering, Clustering::Cubic | Clustering::Even | Clustering::Front);
+        let clustering = if rests && surplus > 0.0 { Clustering::CreepingStick } else { clustering };
+        let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
+        let natural = match &moving {
+            Some(moving) if moving.creeps() => natural.min(MOST_STRETCHED),
+            _ => natural,
+        };
+        let stretch = clustering.stretch(natural, grading);
+        let operators = store.get(grading, stretch, springs, clustering, backend)?;
+        let radial_unworn: Vec<_> =
+            operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_slip_area() * x)).collect();
+        let compression = innermost.slip_compression();
+        let stick_load = 0.5 * profile.load_integral(stick_radius)
+            + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
+        let deepest = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
+        // Under a held normal force the edge of stick does not stay where the limit that bounds where wear can reach has it.
+        let bounded = moving.as_ref().is_some_and(MovingStick::creeps_under_force);
+        let depth_scale = if bounded { deepest.min(contact.indentation()) } else { deepest };
+        let hidden = match clustering {
+            clustering if clustering.follows_front() => {
+                operators.abel.nodes()[1..].partition_point(|x| *x < HIDDEN)
+            }
+            _ => 0,
+        };
+        Ok(Model {
+            contact,
+            schedule,
+            output: OutputRadii::new(&unworn, operators.abel.mesh(), hidden),
+            mesh: SpringMesh::Annulus(Box::new(AnnulusMesh {
+                unworn,
+                operators,
+                radial_unworn,
+                hidden,
+                moving,
+            })),
+            stick_zone: StickZone {
+                stick_area: stick_radius_squared,
+                slip_compression: compression + surplus,
+                stick_load,
+            },
+            depth_scale,
+            slides,
+        })
     }
 }
 

@@ -14,6 +14,7 @@
 //! `q_c - u` is the transform of `(q_c - q)₊`, zero within the stick radius.
 
 mod cycle;
+mod hand_over;
 
 use std::f64::consts::PI;
 

@@ -196,6 +196,11 @@ impl MovingStick {
         self.leaves_ground() && !self.rests()
     }
 
+    /// Whether it moves since the normal force is held beside the displacement.
+    pub fn creeps_under_force(&self) -> bool {
+        matches!(self.cause, Cause::NormalForce(_))
+    }
+
     /// Whether the edge stays where it is during a step.
     fn rests(&self) -> bool {
         self.jumps || self.deepens()
@@ -220,13 +225,13 @@ impl MovingStick {
     }
 
     /// Squares of the radii of the stations, m².
-    fn stations(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn stations(&self) -> impl Iterator<Item = f64> {
         let [first, last] = self.span;
         self.places.iter().map(move |[part, _]| (first + (last - first) * part).exp())
     }
 
     /// What was left behind at a squared radius, m².
-    fn left_behind(&self, values: &[f64], squared: f64) -> f64 {
+    pub(super) fn left_behind(&self, values: &[f64], squared: f64) -> f64 {
         let [first, last] = self.span;
         let x = (squared.ln() - first) / (last - first);
         let (mut sum, mut weights) = (0.0, 0.0);

@@ -1,0 +1,150 @@
+//! From gross slip to partial slip: springs next to the axis stick again, and from there on the edge of stick is followed.
+//!
+//! Within the new edge `c` the ground is worn already. With `G = d - q_c` the height of the equivalent profile there and `G_0 = g_0(c)` that of the unworn one,
+//! what was left behind (see [`moving`](super::super::moving)) follows from `S - S_0 = w + K`:
+//!
+//! ```text
+//! K(r) = G_0 - G + (2/π) cos(kπ/2) ∫_0^c x^k [(q - q_c) - (G_0 - g_0)] (r² - x²)^(-(1+k)/2) dx
+//! ```
+
+use std::f64::consts::PI;
+
+use super::Gross;
+use crate::contact::InitialContact;
+use crate::contact::stick_slip::Regime;
+use crate::error::Result;
+use crate::laws::history::History;
+use crate::laws::loading::TangentialControl;
+use crate::solver::model::moving::StickEdge;
+use crate::solver::model::schedule::Schedule;
+use crate::solver::model::{Model, Past, State, StickZone};
+
+/// Stick radius, over that of the contact, from which on its edge is followed. Up to there the kink at the edge costs the polynomials over the whole contact
+/// 1e-5 of the worn volume.
+const FOLLOWED: f64 = 0.1;
+
+/// Radius of the core of the mesh that follows it, over that of the first contact.
+const CORE: f64 = 0.03;
+
+/// Grading below which the mesh of gross slip holds the compressions less well than that of an edge of stick.
+const SOFT: f64 = -0.5;
+
+/// Whether the edge of springs that stick again is followed.
+fn is_followed(schedule: &Schedule) -> bool {
+    let conditions = schedule.conditions();
+    let stays = *schedule.friction_change() == History::Constant
+        && *schedule.friction_along_energy() == History::Constant
+        && conditions.blocks.is_empty()
+        && conditions.tangential_control == TangentialControl::Displacement;
+    let local = conditions.wear.spreading().is_none() && !schedule.resolves();
+    stays && local && conditions.friction.coefficient().is_some()
+}
+
+impl Gross {
+    /// Whether a contact hardly sticks at first, and soon sticks farther out under the normal force that is held.
+    pub fn nearly_follows(contact: &InitialContact, schedule: &Schedule) -> bool {
+        let small = contact.stick_radius().is_some_and(|radius| radius < FOLLOWED * contact.contact_radius());
+        let held = schedule.conditions().holds_normal_force && contact.half_space().grading() >= SOFT;
+        contact.regime() == Regime::PartialSlip && small && held && is_followed(schedule)
+    }
+}
+
+impl Model {
+    /// The same contact on the mesh of an edge of stick that moves, for when springs stick again; none where that cannot come or is not followed.
+    ///
+    /// # Errors
+    /// Those of [`Model::under`].
+    pub fn sticking_again(&self, springs: usize) -> Result<Option<Self>> {
+        let schedule = self.schedule();
+        if !is_followed(schedule) || !self.gross().is_some_and(Gross::holds_force) {
+            return Ok(None);
+        }
+        let contact = self.contact();
+        let innermost = contact.with_core(contact.indentation(), CORE * contact.contact_radius())?;
+        let model = Self::in_partial_slip(contact, &innermost, schedule, springs)?;
+        let core = model.stick_zone.stick_area;
+        Ok(Some(model.shown_at(self.offsets().iter().map(|squared| squared - core).collect())))
+    }
+
+    /// Whether springs stick again as far out as their edge is followed.
+    pub fn sticks_again(&self, state: &State) -> bool {
+        self.gross().and_then(|gross| self.stick_zone_again(gross, state)).is_some()
+    }
+
+    /// The stick zone of springs that stick again.
+    fn stick_zone_again(&self, gross: &Gross, state: &State) -> Option<StickZone> {
+        let (mesh, whole) = (&gross.mesh, self.whole(gross, &state.compression)?);
+        let loading = self.schedule.loading(state.cycles, state.cycles);
+        let slip_compression = loading.slip_compression(self.contact.half_space().stiffness_ratio());
+        let end = mesh.last_above(&state.compression, slip_compression)?;
+        let fraction = mesh.fraction(end);
+        if fraction < FOLLOWED * FOLLOWED {
+            return None;
+        }
+        let within = mesh.up_to(end, &state.compression).ok()?;
+        let load = within.iter().map(|[_, weight, q]| weight * q).sum::<f64>();
+        Some(StickZone {
+            stick_area: fraction * whole.area,
+            slip_compression,
+            stick_load: 0.5 * whole.area.powf(1.0 - self.mu()) * load,
+        })
+    }
+
+    /// A state in which springs stick again, on the mesh of [`Model::sticking_again`]; none where they do not, or no contact is found there.
+    pub fn hand_over(&self, state: &State, to: &Self) -> Option<State> {
+        let (gross, moving) = (self.gross()?, to.moving()?);
+        let zone = self.stick_zone_again(gross, state)?;
+        let (mesh, whole) = (&gross.mesh, self.whole(gross, &state.compression)?);
+        let slip_area = whole.area - zone.stick_area;
+        let profile = self.contact.equivalent_profile();
+        let height = profile.value(zone.stick_area.sqrt());
+        let depth = whole.indentation - zone.slip_compression;
+        // Of the springs that stick, beyond those of an unworn contact with the same edge.
+        let end = mesh.coordinate(zone.stick_area / whole.area);
+        let within = mesh.up_to(end, &state.compression).ok()?;
+        let more = within.iter().map(|[x, weight, q]| {
+            let unworn = height - profile.value((x * whole.area).sqrt());
+            [*x, weight * (q - zone.slip_compression - unworn)]
+        });
+        let more: Vec<[f64; 2]> = more.collect();
+        let nu = 1.0 - self.mu();
+        let mut left_behind: Vec<f64> = moving
+            .stations()
+            .map(|squared| {
+                let carried = more.iter().map(|[x, value]| value * (squared / whole.area - x).powf(-nu));
+                height - depth + (PI * nu).sin() / PI * carried.sum::<f64>()
+            })
+            .collect();
+        let mut all = state.compression.clone();
+        all.push(0.0);
+        let slipping = |offset: f64| {
+            let at = mesh.coordinate((zone.stick_area + offset) / whole.area);
+            zone.slip_compression - mesh.value(&all, at)
+        };
+        let slip_at = |x: &f64| to.unworn().carried(zone.stick_area, slip_area * x, slipping);
+        let slip: Vec<f64> = to.operators().nodes()[1..].iter().map(slip_at).collect();
+        // By another quadrature than the slip: the contact edge stays where it is.
+        let behind = moving.left_behind(&left_behind, whole.area);
+        let off = to.mismatch_at(&zone, slip_area, |i, _| slip[i]) - behind;
+        left_behind.iter_mut().for_each(|value| *value += off);
+        let compression = to.compression_at(&zone, slip_area, |i, _| slip[i]);
+        let stick = StickEdge {
+            area: zone.stick_area,
+            depth,
+            load: zone.stick_load,
+            left_behind,
+            wear_depth: self.gross_radial_fields(gross, state).wear_depth,
+            ..StickEdge::default()
+        };
+        let handed = to.close_force(State {
+            slip_area,
+            compression_rate: vec![0.0; compression.len()],
+            compression,
+            slip_area_rate: 0.0,
+            stick: Some(stick),
+            past: Past::default(),
+            ..state.clone()
+        });
+        to.fields(&handed).are_physical().then_some(handed)
+    }
+}

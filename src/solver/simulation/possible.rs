@@ -1,0 +1,50 @@
+//! Whether a step ended in a state that wear can lead to.
+
+use super::Simulation;
+use crate::numerics::grid::Clustering;
+use crate::solver::model::{Fields, State};
+
+/// Largest loss of wear depth in a step, relative to the limit's largest depth, that is taken for an error of interpolation between moving
+/// springs: this, or `(3/n)^4` if that is larger, on a smooth mesh. It rejects explicit steps before they are unstable.
+const INTERPOLATION: f64 = 1e-6;
+const COARSE_INTERPOLATION: f64 = 3.0;
+
+/// The same where wear has kinks.
+const KINKED_INTERPOLATION: f64 = 1e-2;
+
+/// How far a compression, over `q_c`, may lie outside the range from 0 to 1. Where the pressure at the edge of stick blows up it is negative for a
+/// while, by more than 0.1 as `k → -1`; on unstable meshes it swings by more than one.
+const BEYOND_CONTACT: f64 = 0.3;
+
+impl Simulation {
+    /// Whether compressions are between zero and that at the edge of stick, with some room. Asked under the plain laws only: under others single
+    /// springs next to the edge of stick swing farther and come back.
+    fn compressions_are_possible(&self, state: &State) -> bool {
+        let most = self.model.contact().slip_compression();
+        let within = |q: &f64| (-BEYOND_CONTACT..=1.0 + BEYOND_CONTACT).contains(&(q / most));
+        !self.model.schedule().conditions().is_plain() || state.compression.iter().all(within)
+    }
+
+    /// Whether a state is one of a contact in which wear became deeper everywhere; notes the radius where it did not.
+    pub(super) fn is_possible(&mut self, state: &State, fields: &Fields, depth: &[f64]) -> bool {
+        let coarse = COARSE_INTERPOLATION / self.model.springs() as f64;
+        let interpolation = match self.model.operators().mesh().clustering() {
+            Clustering::Smooth => INTERPOLATION.max(coarse.powi(4)),
+            Clustering::Even => KINKED_INTERPOLATION,
+            _ if self.model.schedule().is_uniform() => INTERPOLATION,
+            _ => KINKED_INTERPOLATION,
+        };
+        let allowed = (self.tolerance + interpolation) * self.model.depth_scale();
+        let healed = depth.iter().zip(&self.depth).position(|(now, before)| *now < before - allowed);
+        if healed.is_none() && fields.are_physical() && self.compressions_are_possible(state) {
+            return true;
+        }
+        self.healed_at = healed.map(|at| {
+            let stick = self.model.contact().stick_radius().unwrap_or_default();
+            let nodes = self.model.operators().nodes();
+            let x = nodes[(at + 1).min(nodes.len() - 1)];
+            (stick * stick + self.model.unworn().limit_slip_area() * x).sqrt()
+        });
+        false
+    }
+}
