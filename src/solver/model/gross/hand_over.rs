@@ -23,6 +23,9 @@ use crate::solver::model::{Model, Past, State, StickZone};
 /// 1e-5 of the worn volume.
 const FOLLOWED: f64 = 0.1;
 
+/// The same of an unworn contact below which it begins on the mesh of gross slip: an edge that is followed at once would leave no time to settle in.
+const BEGINS_BELOW: f64 = 0.09;
+
 /// Radius of the core of the mesh that follows it, over that of the first contact.
 const CORE: f64 = 0.03;
 
@@ -43,7 +46,8 @@ fn is_followed(schedule: &Schedule) -> bool {
 impl Gross {
     /// Whether a contact hardly sticks at first, and soon sticks farther out under the normal force that is held.
     pub fn nearly_follows(contact: &InitialContact, schedule: &Schedule) -> bool {
-        let small = contact.stick_radius().is_some_and(|radius| radius < FOLLOWED * contact.contact_radius());
+        let small =
+            contact.stick_radius().is_some_and(|radius| radius < BEGINS_BELOW * contact.contact_radius());
         let held = schedule.conditions().holds_normal_force && contact.half_space().grading() >= SOFT;
         contact.regime() == Regime::PartialSlip && small && held && is_followed(schedule)
     }
