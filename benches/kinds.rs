@@ -173,6 +173,12 @@ const KINDS: &[Kind] = &[
     Kind { name: "orbit", more: "[loading.orbit]\ntransverse_ratio = 0.6\n", ..PLAIN },
     Kind {
         name: "circle, k = 0.3",
+        more: "[loading.orbit]\ntransverse_ratio = 1.0\n",
+        grading: 0.3,
+        ..PLAIN
+    },
+    Kind {
+        name: "orbit along a diagonal, k = 0.3",
         more: "[loading.orbit]\ntransverse_ratio = 1.0\nphase = 1.5707963\n",
         grading: 0.3,
         ..PLAIN

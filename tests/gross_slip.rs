@@ -249,6 +249,54 @@ fn gross_slip_wears_by_any_local_law() {
     }
 }
 
+/// On a circle of radius U every spring slips on one of radius √(U² - l²), `l = μ_f q/M`, its deflection at right angles to it: in the indenter's frame
+/// `z = √(U² - l²) (√(U² - l²) - i l)/U`. The surface slips `2π |F z|` in a period, and a spring dissipates its strength times its way.
+#[test]
+fn gross_slip_round_a_circle_is_that_of_the_closed_form() {
+    const PLACES: usize = 20_000;
+    let amplitude = 3.0;
+    for grading in [-0.3, 0.0, 0.5] {
+        let circle = "[loading.orbit]\ntransverse_ratio = 1.0\n[numerics]\nsubsteps = 768\n[output]";
+        let scene: Scene = scene(grading, 2.0, amplitude, 1e-3, "initial_force")
+            .text()
+            .replace("[output]", circle)
+            .parse()
+            .unwrap();
+        let results = scene.simulate().unwrap();
+        // Midpoints in s, with x = r sin θ and θ = π/2 s² (3 - 2s), which takes the singular ends away.
+        let mean = |of: &dyn Fn(f64) -> f64| -> f64 {
+            let sum = |weight: &dyn Fn(f64, f64) -> f64| -> f64 {
+                let part = |i: usize| {
+                    let s = (i as f64 + 0.5) / PLACES as f64;
+                    let angle = 0.5 * PI * s * s * (3.0 - 2.0 * s);
+                    6.0 * s * (1.0 - s) * weight(angle.sin(), angle.tan().powf(grading))
+                };
+                (0..PLACES).map(part).sum()
+            };
+            sum(&|x, weight| weight * of(x)) / sum(&|_, weight| weight)
+        };
+        let (radii, slips) = (results.radius(), results.slip()[0]);
+        let slipped = |r: f64| {
+            let limit = |x: f64| 1.0 - (r * x).powi(2);
+            let forth = mean(&|x| amplitude - limit(x).powi(2) / amplitude);
+            let aside = mean(&|x| limit(x) * (amplitude * amplitude - limit(x).powi(2)).sqrt() / amplitude);
+            0.5 * PI * forth.hypot(aside)
+        };
+        let inside = radii.iter().zip(slips).filter(|(r, _)| **r < 0.95).step_by(8);
+        let off = inside.map(|(r, slip)| (slip / slipped(*r) - 1.0).abs()).fold(0.0, f64::max);
+        // ∫ x^k q 2π √(U² - q²) dx with s = x^(1+k).
+        let strength = |i: usize| {
+            let x = ((i as f64 + 0.5) / PLACES as f64).powf((1.0 + grading).recip());
+            let limit = 1.0 - x * x;
+            limit * (amplitude * amplitude - limit * limit).sqrt() / PLACES as f64
+        };
+        let energy = 4.0 * PI / (1.0 + grading) * (0..PLACES).map(strength).sum::<f64>();
+        let energy = (results.cycle_energy()[0] / energy - 1.0).abs();
+        println!("k = {grading}: slip off by {off:.1e}, energy by {energy:.1e}");
+        assert!(off < 2e-4 && energy < 2e-4, "{grading}: {off:e}, {energy:e}");
+    }
+}
+
 const COULOMB: &str = "[friction.coulomb]\ncoefficient = 1.0";
 
 /// Friction, what is added to `[loading]`, whether that leaves the indentation held, and what changes along the run.

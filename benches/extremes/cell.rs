@@ -55,7 +55,7 @@ impl Sizes {
 /// A kind of scene: its lines by place.
 type Kind = (&'static str, fn(&Sizes) -> Vec<(&'static str, String)>);
 
-const KINDS: [Kind; 27] = [
+const KINDS: [Kind; 28] = [
     ("plain", |_| vec![]),
     ("dissipated energy", |it| {
         vec![("wear", format!("[wear.dissipated-energy]\ncoefficient = {:e}", it.wear() / FRICTION))]
@@ -110,7 +110,8 @@ const KINDS: [Kind; 27] = [
         vec![("mode", format!("[loading.normal_oscillation]\n{table}"))]
     }),
     ("orbit", |_| vec![("mode", "[loading.orbit]\ntransverse_ratio = 0.6".into())]),
-    ("circle", |_| vec![("mode", "[loading.orbit]\ntransverse_ratio = 1\nphase = \"90 deg\"".into())]),
+    ("circle", |_| vec![("mode", "[loading.orbit]\ntransverse_ratio = 1".into())]),
+    ("diagonal", |_| vec![("mode", "[loading.orbit]\ntransverse_ratio = 1\nphase = \"90 deg\"".into())]),
     ("growing blocks", |it| blocks(it, &[(0.3, 0.7, 1.0), (1.0, 1.0, 1.0)], false)),
     ("shrinking blocks", |it| blocks(it, &[(0.3, 1.0, 1.0), (1.0, 0.7, 1.0)], false)),
     ("repeated blocks", |it| blocks(it, &[(0.1, 1.0, 1.0), (0.1, 0.7, 1.0)], true)),

@@ -49,10 +49,10 @@ const FEWER: f64 = 0.6;
 const OF_WHOLE: f64 = 0.75;
 const FEWEST: usize = 12;
 
-/// Evaluations of a step that is tried: where the edge of stick rests, where it moves, by backward differentiation where a cycle has a closed form, and in gross slip by backward differentiation, whose matrix by
-/// differences serves many steps, and by stages beside one for every spring, for theirs is found in each.
+/// Evaluations of a step that is tried: by stages where the edge of stick rests and where it moves, by backward differentiation, and in gross slip by backward
+/// differentiation, whose matrix by differences serves many steps, and by stages beside one for every spring, for theirs is found in each.
 const EVALUATIONS: [f64; 2] = [30.0, 60.0];
-const EVALUATIONS_IN_CLOSED_FORM: f64 = 3.0;
+const EVALUATIONS_BY_BACKWARD_DIFFERENTIATION: f64 = 3.0;
 const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
 /// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves, and in gross slip, where its sums are over the whole contact; by pair of springs and column of the slip in a period; by
@@ -113,7 +113,7 @@ fn evaluations(model: &Model, springs: f64) -> f64 {
     match model.gross() {
         Some(_) if schedule.is_smooth_in_gross_slip() => once,
         Some(_) => springs + beside_springs,
-        None if model.wears_steadily() && !schedule.resolves() => EVALUATIONS_IN_CLOSED_FORM,
+        None if model.wears_steadily() => EVALUATIONS_BY_BACKWARD_DIFFERENTIATION,
         None => EVALUATIONS[usize::from(model.moving().is_some())],
     }
 }
