@@ -479,16 +479,18 @@ fn gross_slip_that_is_interrupted_goes_on_as_if_it_had_not_been() {
     assert!(interruptions >= 10 && whole == parts);
 }
 
-/// Before, at and after the moment from which another model takes the run up.
+/// Before, at and after the moment from which another model takes the run up; the last run is bounded by its work, too.
 #[test]
 fn a_run_that_is_handed_over_and_interrupted_goes_on_as_if_it_had_not_been() {
-    for amplitude in [0.999, 1.003] {
+    for (amplitude, tau, accuracy, steps) in
+        [(0.999, 1.0, "1e-2", 3), (1.003, 1.0, "1e-2", 3), (1.0, 30.0, "1e-5", 60)]
+    {
         let folder = tempfile::tempdir().unwrap();
-        let text = scene(0.0, 2.0, amplitude, 1.0, "normal_force").text().to_owned();
-        let scene =
-            text.replace("[output]", "[numerics]\naccuracy = 1e-2\n[output]").parse::<Scene>().unwrap();
+        let text = scene(0.0, 2.0, amplitude, tau, "normal_force").text().to_owned();
+        let numerics = format!("[numerics]\naccuracy = {accuracy}\n[output]");
+        let scene: Scene = text.replace("[output]", &numerics).parse().unwrap();
         let (run, [whole, parts], interruptions) =
-            support::resume::whole_and_in_parts(&scene, folder.path(), 3);
+            support::resume::whole_and_in_parts(&scene, folder.path(), steps);
         let state = &run.checkpoint().state;
         println!(
             "U {amplitude}: {interruptions} interruptions, {} steps on {} springs at the end",

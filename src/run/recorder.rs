@@ -168,7 +168,8 @@ impl Recorder {
             Ordering::Equal => after_long,
             Ordering::Greater => after_no_end,
         };
-        let model = simulation.model();
+        // Also where another model has taken the run up, as before an interruption.
+        let (model, _) = simulation.first();
         let most = || (part * cost::most_tries(model)).min(cost::tries_left(model, self.attempt.work));
         self.most_tries = if bounded { most() } else { f64::INFINITY };
         (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
