@@ -1,6 +1,6 @@
 //! A contact in gross slip whose springs stick again: another model and another stepper take the run up.
 
-use super::{Plan, Progress, Simulation, cycle_of, rate_of_wear};
+use super::{Plan, Progress, Simulation};
 use crate::error::{Error, Result};
 use crate::solver::model::{Model, State};
 use crate::solver::stepper::Sdirk;
@@ -84,15 +84,6 @@ impl Simulation {
         }
     }
 
-    /// Takes a state, with all that follows from it.
-    fn take_up(&mut self, state: State) {
-        self.fields = self.model.fields(&state);
-        self.cycle = cycle_of(&self.model, &state, &self.fields, state.cycles);
-        self.depth = self.model.depth_on_springs(&state, &self.fields);
-        self.rate = rate_of_wear(&self.model, &self.fields, &self.cycle);
-        self.state = state;
-    }
-
     /// Lets the other model take the run up if springs stick again.
     pub(super) fn hand_over(&mut self) {
         let Taking::Ahead(hand_over, found) = &mut self.taking else { return };
@@ -106,13 +97,14 @@ impl Simulation {
         let Found::Ready(to) = found else { return };
         let Some(state) = self.model.hand_over(&self.state, to) else { return };
         let (model, tolerance) = ((**to).clone(), hand_over.tolerance);
-        let before = std::mem::replace(&mut self.model, model);
-        self.taking = Taking::Done(Box::new(before), self.tolerance);
-        (self.stepper, self.tolerance) = (Box::new(Sdirk::new(tolerance)), tolerance);
         // The finer mesh holds modes that the polynomials over the whole contact do not. What is left in them decays in one implicit step; the shorter that is, the
         // less its error falls.
+        let next_step = self.progress.next_step.min(SETTLED_IN * state.cycles);
+        let progress = Progress { next_step, ..self.progress };
+        let (stepper, plan) = (Box::new(Sdirk::new(tolerance)), self.plan.clone());
+        let taken_up = Self::resume(model, stepper, tolerance, plan, state, progress);
+        let before = std::mem::replace(self, taken_up);
+        self.taking = Taking::Done(Box::new(before.model), before.tolerance);
         self.settles = true;
-        self.progress.next_step = self.progress.next_step.min(SETTLED_IN * state.cycles);
-        self.take_up(state);
     }
 }
