@@ -233,8 +233,7 @@ impl Recorder {
             Err(_) => None,
         };
         let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, self.attempt.work));
-        let handed_over = simulation.first().0.gross().is_some() && simulation.model().gross().is_none();
-        if handed_over { wanted.map(budget::springs_before) } else { wanted }
+        if simulation.is_handed_over() { wanted.map(budget::springs_before) } else { wanted }
     }
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost.

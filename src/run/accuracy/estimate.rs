@@ -263,7 +263,7 @@ impl Companions {
         let substeps = finite(first.unsampled.as_ref().map_or(0.0, |it| it.error(scale)));
         // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
         let tells = ratio >= LEAST_RATIO;
-        if self.gross && simulation.model().gross().is_none() {
+        if simulation.is_handed_over() {
             // What the polynomials over the whole contact make of the kink at the edge of stick falls with no order, and two runs may share it: the companions
             // are off by more than the run.
             let farther = self.farther(first, scale).map_or(nearest, |(gap, _)| gap.max(nearest));

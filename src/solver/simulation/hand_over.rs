@@ -75,6 +75,11 @@ impl Simulation {
         }
     }
 
+    /// Whether another model has taken the run up.
+    pub fn is_handed_over(&self) -> bool {
+        matches!(self.taking, Taking::Done(..))
+    }
+
     /// Whether springs stick again after gross slip, as far as a coarse run or this one tells.
     pub fn sticks_again(&self) -> bool {
         match &self.taking {
