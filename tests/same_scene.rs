@@ -1,6 +1,9 @@
 //! A scene is computed as what it is, not as it is written; laws without kinks keep the accuracy asked as the plain ones do.
 
+use std::f64::consts::SQRT_2;
+
 use fretwear::Scene;
+use fretwear::laws::motion::{Mode, RecordedPath};
 
 const COULOMB: &str = "[friction.coulomb]\ncoefficient = 0.7\n";
 const ARCHARD: &str = "[wear.archard]\ncoefficient = \"1e-8 1/MPa\"\n";
@@ -69,6 +72,56 @@ fn the_same_physics_in_other_words_is_the_same_run() {
     ] {
         assert!(!scene(friction, ARCHARD, more, "").conditions().is_plain(), "{friction}{more}");
     }
+}
+
+#[test]
+fn motion_along_a_slanted_line_is_that_along_x() {
+    // Partial slip, the contact in gross slip along the line alone, both amplitudes that blocks scale, and a held normal force.
+    let blocks = "[[loading.blocks]]\ntau = 1\n[[loading.blocks]]\ntau = 1\namplitude_factor = 1.2\n";
+    for (load, ratio, more) in [
+        ("indentation", 0.3, ""),
+        ("indentation", 0.9, ""),
+        ("indentation", 0.4, blocks),
+        ("normal_force", 0.3, ""),
+    ] {
+        let run = |ratio: f64, more: &str| {
+            let load = if load == "indentation" { "indentation = 1e-6" } else { "normal_force = 10.0" };
+            let text = format!(
+                "[indenter.paraboloid]\nradius = 0.01\n[half_space]\ngrading = 0\nnormal_stiffness = 1e11\nstiffness_ratio = 0.8\n\
+                 {COULOMB}{ARCHARD}[loading]\n{load}\namplitude_ratio = {ratio}\ntau = 2\n{more}[output]\nsnapshots = 3\n\
+                 [numerics]\naccuracy = 1e-3\n"
+            );
+            let scene =
+                Scene::from_toml(&text, "scene.toml").unwrap_or_else(|error| panic!("{error}\n{text}"));
+            let slanted = scene.warnings().iter().filter(|it| it.contains("45° to x")).count();
+            (slanted, scene.simulate().unwrap())
+        };
+        let orbit = "[loading.orbit]\ntransverse_ratio = 1\nphase = \"90 deg\"\n";
+        let (told, found) = run(ratio, &format!("{orbit}{more}"));
+        let (untold, expected) = run(SQRT_2 * ratio, more);
+        assert_eq!((told, untold), (1, 0), "{load}, {ratio}, {more}");
+        let [volume, expected] = [&found, &expected].map(|it| it.last().wear_volume);
+        assert!((volume / expected - 1.0).abs() < 1e-12, "{load}, {ratio}, {more}: {volume:e}, {expected:e}");
+    }
+}
+
+#[test]
+fn a_recorded_path_is_told_from_the_line_that_comes_nearest_to_it() {
+    let path = |x: [f64; 3], y: [f64; 3]| {
+        let path = RecordedPath::new("path", x.to_vec(), y.to_vec(), vec![0.0; 3]).unwrap();
+        let mode: &dyn Mode = &path;
+        mode.to_and_fro(path.amplitude().unwrap(), 1.0)
+    };
+    let line = path([0.0, -3.0, 3.0], [0.0, -4.0, 4.0]);
+    assert!((line.amplitude - 5.0).abs() < 1e-14 && line.departure < 1e-14, "{line:?}");
+    assert!((line.angle - 4f64.atan2(3.0)).abs() < 1e-15, "{line:?}");
+    // To one side alone, and a triangle.
+    for [x, y] in [[[0.0, 3.0, 6.0], [0.0, 4.0, 8.0]], [[0.0, 3.0, 0.0], [0.0, 0.0, 4.0]]] {
+        assert!(path(x, y).departure > 0.1);
+    }
+    // A shape that is 1e-6 wide.
+    let narrow = path([3.0, -3.0, 0.0], [4.0, -4.0, 5e-6]);
+    assert!((narrow.departure / 6e-7 - 1.0).abs() < 1e-5, "{narrow:?}");
 }
 
 #[test]

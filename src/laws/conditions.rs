@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 use crate::laws::friction::{Coulomb, FrictionLaw};
 use crate::laws::history::History;
 use crate::laws::loading::{Block, Clock, TangentialControl};
-use crate::laws::motion::{Mode, Tangential};
+use crate::laws::motion::{Mode, Tangential, ToAndFro};
 use crate::laws::wear::{Archard, WearLaw};
 
 /// Laws, mode, blocks and control of a run, beside its contact.
@@ -173,6 +173,20 @@ impl Conditions {
         departures.into_iter().flatten().collect()
     }
 
+    /// Takes a motion that differs by no more than a part from one to and fro along a line for that; none where it differs by more, or is one already.
+    ///
+    /// # Arguments
+    /// * `contact` -- the first one, with the amplitude along x
+    /// * `part` -- relative to amplitude and indentation
+    pub fn straighten(&mut self, contact: &Extent, part: f64) -> Option<ToAndFro> {
+        let motion = self.mode.to_and_fro(contact.amplitude, contact.indentation);
+        let straight = !self.mode.is_tangential() && motion.departure <= part;
+        straight.then(|| {
+            self.mode = Arc::new(Tangential);
+            motion
+        })
+    }
+
     /// Leaves out what changes a run by no more than a part of it; in words what of that changes it at all.
     ///
     /// # Arguments
@@ -199,10 +213,6 @@ impl Conditions {
         let coefficient = self.friction.reference_coefficient();
         if is_idle(self.friction.departure(contact.indentation), self.friction.entry().departure) {
             self.friction = Arc::new(Coulomb { coefficient });
-        }
-        let departure = self.mode.entry().and_then(|mode| mode.departure);
-        if is_idle(self.mode.departure(contact.amplitude, contact.indentation), departure) {
-            self.mode = Arc::new(Tangential);
         }
         if let TangentialControl::Rig { stiffness } = self.tangential_control
             && is_idle(contact.tangential_stiffness / stiffness, Some(Self::RIG))

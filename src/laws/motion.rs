@@ -6,7 +6,7 @@ pub mod orbit;
 pub mod recorded;
 mod tangential;
 
-pub use mode::{Mode, SampledPath};
+pub use mode::{Mode, SampledPath, ToAndFro};
 pub use normal_oscillation::NormalOscillation;
 pub use orbit::Orbit;
 pub use recorded::RecordedPath;

@@ -206,6 +206,21 @@ impl AbelOperators {
         before - weights[(i, j)]
     }
 
+    /// Adds the column `j` of `P`, see [`AbelOperators::pressure`], times a factor, shape `(springs,)`.
+    ///
+    /// # Panics
+    /// As [`AbelOperators::profile`].
+    pub fn add_pressure(&self, j: usize, factor: f64, to: &mut [f64]) {
+        let weights = self.pressure_by_differences();
+        let column = weights.col_as_slice(j);
+        if j == 0 {
+            to.iter_mut().zip(column).for_each(|(to, weight)| *to -= factor * weight);
+            return;
+        }
+        let pairs = weights.col_as_slice(j - 1).iter().zip(column);
+        to.iter_mut().zip(pairs).for_each(|(to, (before, weight))| *to += factor * (before - weight));
+    }
+
     fn matrices(&self) -> &[Matrix; 2] {
         match &self.pair {
             Pair::Dense(matrices) => matrices,

@@ -14,13 +14,16 @@ use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::entry as law;
 use crate::laws::friction::{self, Coulomb};
-use crate::laws::loading::{Duration, Loading};
+use crate::laws::loading::{Amplitude, Duration, Loading};
 use crate::laws::motion::RecordedPath;
 use crate::laws::wear::{self, Archard};
-use crate::units::{Dimension, Table};
+use crate::units::{Dimension, Scale, Table, number};
 
 /// Part of the accuracy that a condition changes at most where it is left out.
 const IDLE: f64 = 1e-2;
+
+/// Departure from a slanted line, relative, that is only rounding.
+const ROUNDING: f64 = 1e-14;
 
 /// Reads the whole document; the text is kept as it is.
 pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
@@ -31,7 +34,7 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     let indenter = Indenter::from(shape.build()?);
     warnings.append(&mut shape.values.warnings.borrow_mut());
     let half_space = contact(root, &mut warnings)?;
-    let Physics { loading, wear, mut conditions } = physics(root, &indenter, &half_space, rows)?;
+    let Physics { mut loading, wear, mut conditions } = physics(root, &indenter, &half_space, rows)?;
     let friction = Coulomb { coefficient: conditions.friction.reference_coefficient() };
     let numerics = match root.optional("numerics") {
         Some(entry) => {
@@ -45,9 +48,29 @@ pub(super) fn scene(root: &Section, text: &str, rows: &Rows) -> Result<Scene> {
     let path = RecordedPath::of(&conditions.mode);
     let mut slides = false;
     if !conditions.is_plain() {
-        let first = InitialContact::new(&indenter, &half_space, &friction, &wear, &loading)
-            .map_err(|error| table(root, &keys::LOADING).map_or_else(|it| it, |it| it.error(error)))?;
-        let left_out = conditions.simplify(&motion::extent(&first), wear, IDLE * numerics.accuracy);
+        let part = IDLE * numerics.accuracy;
+        let formed = |loading: &Loading| {
+            InitialContact::new(&indenter, &half_space, &friction, &wear, loading)
+                .map_err(|error| table(root, &keys::LOADING).map_or_else(|it| it, |it| it.error(error)))
+        };
+        let mut first = formed(&loading)?;
+        let mode = conditions.mode.entry();
+        let mut left_out = vec![];
+        if let Some(motion) = conditions.straighten(&motion::extent(&first), part) {
+            if motion.angle.abs() > part {
+                let name = mode.map_or("", |mode| mode.name);
+                warnings.push(format!(
+                    "loading.{name}: goes to and fro along a line at {}° to x; it is computed as an oscillation along that line, with an amplitude of {}",
+                    number(motion.angle.to_degrees()),
+                    Scale::LENGTH.show(motion.amplitude)
+                ));
+                loading.amplitude = Amplitude::Displacement(motion.amplitude);
+                first = formed(&loading)?;
+            }
+            let told = motion.departure > ROUNDING;
+            left_out.extend(mode.and_then(|mode| mode.departure).filter(|_| told));
+        }
+        left_out.extend(conditions.simplify(&motion::extent(&first), wear, part));
         warnings.extend(left_out.into_iter().map(|words| {
             format!("{words}: less than a hundredth of numerics.accuracy comes of it, so that it is left out")
         }));

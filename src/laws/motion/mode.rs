@@ -88,20 +88,31 @@ impl dyn Mode {
         self.indentations() != [0.0; 2]
     }
 
-    /// What it differs by from oscillation to and fro by the amplitude, relative to amplitude and indentation.
+    /// The oscillation to and fro along a line, through where the indenter is pressed on, that comes nearest to it.
     ///
     /// # Arguments
-    /// * `amplitude` -- `U`, m
+    /// * `amplitude` -- `U`, m, along x
     /// * `indentation` -- `d`, m
-    pub fn departure(&self, amplitude: f64, indentation: f64) -> f64 {
+    pub fn to_and_fro(&self, amplitude: f64, indentation: f64) -> ToAndFro {
         if self.is_tangential() {
-            return 0.0;
+            return ToAndFro { amplitude, angle: 0.0, departure: 0.0 };
         }
         let period = self.period(amplitude, SAMPLES);
-        let aside = |point: &PathPoint| (point.tangential[1] / amplitude).abs().max(point.lift / indentation);
+        let reach = |point: &&PathPoint| point.tangential[0].hypot(point.tangential[1]);
+        let [x, y] = period
+            .iter()
+            .max_by(|one, other| reach(one).total_cmp(&reach(other)))
+            .map_or([amplitude, 0.0], |farthest| farthest.tangential);
+        let amplitude = x.hypot(y);
+        let line = [x, y].map(|it| it / amplitude * if x < 0.0 { -1.0 } else { 1.0 });
+        let aside = |point: &PathPoint| {
+            let [x, y] = point.tangential;
+            ((line[0] * y - line[1] * x) / amplitude).abs().max(point.lift / indentation)
+        };
         let deeper = self.indentations().map(|by| (by / indentation).abs());
         let aside = period.iter().map(aside).chain(deeper).fold(0.0, f64::max);
-        let along: Vec<f64> = period.iter().map(|point| point.tangential[0]).collect();
+        let along = |point: &PathPoint| line[0] * point.tangential[0] + line[1] * point.tangential[1];
+        let along: Vec<f64> = period.iter().map(along).collect();
         let moves = along.iter().zip(along.iter().cycle().skip(1)).map(|(from, to)| to - from);
         let moves: Vec<(f64, f64)> = along.iter().copied().zip(moves).filter(|(_, by)| *by != 0.0).collect();
         // Where the motion turns, it starts in the direction it did not come from.
@@ -113,12 +124,24 @@ impl dyn Mode {
             (at / amplitude + goes.signum()).abs()
         });
         let short = short.fold(0.0, f64::max);
-        if count == 2 * self.oscillations() { aside.max(short) } else { f64::INFINITY }
+        let departure = if count == 2 * self.oscillations() { aside.max(short) } else { f64::INFINITY };
+        ToAndFro { amplitude, angle: line[1].atan2(line[0]), departure }
     }
 
     fn name(&self) -> String {
         self.entry().map_or("tangential".into(), |entry| entry.name.replace('_', "-"))
     }
+}
+
+/// An oscillation to and fro along a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToAndFro {
+    /// Half of the stroke along the line, m.
+    pub amplitude: f64,
+    /// Angle from x to the line, rad.
+    pub angle: f64,
+    /// What the motion differs by from it, relative to amplitude and indentation.
+    pub departure: f64,
 }
 
 impl PartialEq for dyn Mode {

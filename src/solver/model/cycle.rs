@@ -377,9 +377,7 @@ impl Model {
             self.plain_growth_slopes(loading, fields, cycle, factor)
         {
             for j in 0..inner {
-                for i in 0..n {
-                    matrix[(i, j)] += by_pressure * self.annulus().operators.abel.pressure(i, j);
-                }
+                self.annulus().operators.abel.add_pressure(j, by_pressure, matrix.col_as_slice_mut(j));
             }
             for (i, by_slip_area) in by_slip_area.into_iter().enumerate() {
                 matrix[(i, inner)] += by_slip_area;
@@ -399,7 +397,11 @@ impl Model {
         let spread = spreading.map(|it| self.spread_pressure(loading, &motion, compression, fields, it));
         let pressed = |j: usize| match &spread {
             Some(spread) => spread.col_as_slice(j).to_vec(),
-            None => (0..n).map(|i| self.annulus().operators.abel.pressure(i, j)).collect(),
+            None => {
+                let mut column = vec![0.0; n];
+                self.annulus().operators.abel.add_pressure(j, 1.0, &mut column);
+                column
+            }
         };
         let at_contact = self.share_at_contact(loading, fields, cycle);
         let per_cycle = at_contact * factor / loading.cycles_per_period;

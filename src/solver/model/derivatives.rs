@@ -1,5 +1,7 @@
 //! How the fields change with the state, and the rates of the state that follow.
 
+use std::ops::Range;
+
 use faer::Mat;
 
 use super::{CycleFields, Fields, Model};
@@ -143,7 +145,9 @@ impl Model {
         let n = self.springs();
         let scale = fields.slip_area.powf(self.mu());
         let per_slip: Vec<f64> = fields.slip_depth.iter().map(|s| -scale / s).collect();
-        let mut changed = vec![0.0; n];
+        let stencils = Stencils::new(&self.annulus().operators.derivative);
+        // Beyond the contact edge, where stencils reach, nothing changes.
+        let (mut changed, mut along) = (vec![0.0; n + MOST_POINTS], vec![0.0; n]);
         for j in 0..n - 1 {
             // Cells inside a radius add nothing to it but through the stencils that reach one node back and two ahead.
             let first = j.saturating_sub(MOST_POINTS);
@@ -152,12 +156,53 @@ impl Model {
             for ((change, column), slip) in changed.iter_mut().zip(column).zip(&per_slip).skip(first) {
                 *change = factor * column * slip;
             }
-            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(&self.annulus().operators.derivative);
-            for (i, (entry, stencil)) in rows.enumerate().take(n - 1).skip(first) {
-                let along = stencil.apply(&changed);
-                *entry += changed[i] - theta * along;
+            stencils.apply(first, &changed, &mut along);
+            let rows = matrix.col_as_slice_mut(j).iter_mut().zip(changed.iter().zip(&along));
+            for (entry, (change, along)) in rows.take(n - 1).skip(first) {
+                *entry += change - theta * along;
             }
             changed[first] = 0.0;
+        }
+    }
+}
+
+/// Stencils of all springs weight by weight, for products with many columns.
+struct Stencils {
+    /// The first weight of each row, the second, and so on.
+    weights: [Vec<f64>; MOST_POINTS],
+    /// Rows of which each begins one spring after the one before, and the spring where the first of them does.
+    runs: Vec<(Range<usize>, usize)>,
+}
+
+impl Stencils {
+    fn new(stencils: &[Stencil]) -> Self {
+        let mut runs: Vec<(Range<usize>, usize)> = vec![];
+        for run in stencils.chunk_by(|one, next| next.first == one.first + 1) {
+            let begin = runs.last().map_or(0, |(rows, _)| rows.end);
+            runs.push((begin..begin + run.len(), run[0].first));
+        }
+        let weights = std::array::from_fn(|k| stencils.iter().map(|stencil| stencil.weights[k]).collect());
+        Self { weights, runs }
+    }
+
+    /// The product from a row on.
+    ///
+    /// # Arguments
+    /// * `values` -- at the springs, and zeros beyond the last one, shape `(springs + MOST_POINTS,)`
+    fn apply(&self, first: usize, values: &[f64], product: &mut [f64]) {
+        product[first..].fill(0.0);
+        for (rows, from) in &self.runs {
+            let begin = rows.start.max(first);
+            if begin >= rows.end {
+                continue;
+            }
+            let values = &values[from + begin - rows.start..];
+            for (k, weights) in self.weights.iter().enumerate() {
+                let parts = weights[begin..rows.end].iter().zip(&values[k..]);
+                for (to, (weight, value)) in product[begin..rows.end].iter_mut().zip(parts) {
+                    *to += weight * value;
+                }
+            }
         }
     }
 }

@@ -39,8 +39,12 @@ impl Model {
         let scale = self.contact.mean_pressure();
         let mean = |i: usize| pressed.row(i).iter().sum::<f64>() / steps as f64;
         let slopes: Vec<f64> = (0..n).map(|i| spreading.passed_on(mean(i), scale).1).collect();
-        let touching =
-            Mat::from_fn(n, inner, |i, j| slopes[i] * self.annulus().operators.abel.pressure(i, j));
+        let mut touching = Mat::zeros(n, inner);
+        for j in 0..inner {
+            let column = touching.col_as_slice_mut(j);
+            self.annulus().operators.abel.add_pressure(j, 1.0, column);
+            column.iter_mut().zip(&slopes).for_each(|(to, slope)| *to *= slope);
+        }
         let mut spread = Mat::zeros(n, inner);
         product(&mut spread, self.averages(fields, spreading).as_ref(), touching.as_ref(), 1.0);
         for i in 0..n {
