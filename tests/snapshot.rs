@@ -139,6 +139,7 @@ fn checkpoint() -> Checkpoint {
             steps: u64::MAX,
             rejected_steps: 1 << 53 | 1,
             rate_evaluations: 3,
+            resolved_work: 0,
             next_output: 0,
         },
         wall_seconds: 0.1,

@@ -26,7 +26,7 @@ use std::ops::ControlFlow;
 pub use neighbours::Neighbours;
 pub use response::Response;
 pub use steps::{PassedSteps, Steps};
-pub use stick::stick_compression;
+pub use stick::{searched_stick_compression, stick_compression};
 
 use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
@@ -86,6 +86,8 @@ pub struct SpringCycle {
     pub work: f64,
     /// Periods passed before the one that is recorded.
     pub periods: usize,
+    /// Substeps passed until then, those of the one recorded and of the search for it included.
+    pub substeps: usize,
     /// Limit of the deflection while slipping, at each corner, m.
     limit: Vec<f64>,
 }
@@ -208,7 +210,7 @@ fn periodic(
                 work += passed.work;
             });
         (out.dissipation, out.work, out.jump_loss) = (dissipation, work, 0.0);
-        out.periods = 1;
+        (out.periods, out.substeps) = (1, 2 * count);
         out.finish(stiffness_ratio, slip_path, negligible(loaded));
         return;
     }
@@ -220,7 +222,7 @@ fn periodic(
     }
     let limits = std::mem::take(&mut out.limit);
     let count = path.points.len();
-    out.periods = 0;
+    (out.periods, out.substeps) = (0, 0);
     let mut last_change = f64::INFINITY;
     loop {
         let before = spring;
@@ -396,6 +398,7 @@ fn general_period(
     static_factor: f64,
     out: &mut SpringCycle,
 ) -> (f64, f64) {
+    out.substeps += substeps;
     let (mut slip_path, mut loaded) = (0.0, 0.0);
     let mut from = (path.points[0], limits[0]);
     let corners = path.points.iter().zip(limits);

@@ -294,7 +294,7 @@ pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 10] = [
 ];
 
 /// Scalars of the checkpoint, whole numbers.
-pub(super) const CHECKPOINT_COUNTS: [Field<Checkpoint, u64>; 4] = [
+pub(super) const CHECKPOINT_COUNTS: [Field<Checkpoint, u64>; 5] = [
     field(quantity("steps", "1", "steps accepted"), |it| &it.progress.steps, |it| &mut it.progress.steps),
     field(
         quantity("rejected_steps", "1", "steps rejected"),
@@ -305,6 +305,15 @@ pub(super) const CHECKPOINT_COUNTS: [Field<Checkpoint, u64>; 4] = [
         quantity("rate_evaluations", "1", "evaluations of the wear rate"),
         |it| &it.progress.rate_evaluations,
         |it| &mut it.progress.rate_evaluations,
+    ),
+    field(
+        quantity(
+            "resolved_work",
+            "ns",
+            "work of the periods that steps and outputs resolved, of one core, about",
+        ),
+        |it| &it.progress.resolved_work,
+        |it| &mut it.progress.resolved_work,
     ),
     field(
         quantity("next_output", "1", "index of the next entry of the output plan"),

@@ -6,7 +6,7 @@
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::Clustering;
-use crate::scene::Numerics;
+use crate::scene::{Numerics, Scene};
 use crate::solver::model::{Gross, Model, MovingStick, Schedule};
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
@@ -51,17 +51,24 @@ pub(in crate::run) const SURE: f64 = 0.6;
 /// becomes of the contact, and that nothing is known of the error.
 pub(in crate::run) const LAST_RESORT: u64 = REFINEMENTS + 2;
 
-/// Tolerance of that attempt, and the springs that it tries: in gross slip, and elsewhere with those that a mesh from near the axis needs.
+/// Tolerance of that attempt, substeps of a period that is sampled, and the springs that it tries: in gross slip, and elsewhere with those that a mesh from near the axis
+/// needs.
 const COARSE_STEPS: f64 = 1e-2;
+const COARSE_SUBSTEPS: usize = 48;
 pub(in crate::run) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10], &[24, 60]];
 
 /// The numerics of an attempt at a scene.
 ///
 /// # Arguments
 /// * `refinements` -- those of the attempt
-pub(in crate::run) fn numerics_of(numerics: &Numerics, refinements: u64) -> Numerics {
-    let last = refinements >= LAST_RESORT;
-    Numerics { tolerance: if last { Some(COARSE_STEPS) } else { numerics.tolerance }, ..*numerics }
+pub(in crate::run) fn numerics_of(scene: &Scene, refinements: u64) -> Numerics {
+    let numerics = *scene.numerics();
+    if refinements < LAST_RESORT {
+        return numerics;
+    }
+    let sampled = !scene.conditions().mode.is_tangential();
+    let substeps = numerics.substeps.or(sampled.then_some(COARSE_SUBSTEPS));
+    Numerics { tolerance: Some(COARSE_STEPS), substeps, ..numerics }
 }
 
 /// Most springs of a repeated run: more would take longer than a user may wait without having been asked.

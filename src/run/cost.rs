@@ -31,13 +31,13 @@ const STABLE: f64 = 2.5;
 /// Iterations of the power method; the estimate is one of magnitude.
 const ITERATIONS: usize = 30;
 
-/// Most work of a run whose springs the program chooses, as [`work_of_step`]: some eight seconds. What would be more is made on fewer springs, and told.
+/// Most work of a run whose springs the program chooses, as [`work_so_far`]: some eight seconds. What would be more is made on fewer springs, and told.
 pub(super) const MOST_WORK: f64 = 8e9;
 
 /// The same for a run on so few springs that none are left out.
 const MOST_WORK_OF_LAST: f64 = 1.2e10;
 
-/// Most work of all attempts at a run together, their companions included, as [`work_of_step`], and the part of [`MOST_WORK`] that each may take in any case.
+/// Most work of all attempts at a run together, their companions included, as [`work_so_far`], and the part of [`MOST_WORK`] that each may take in any case.
 const MOST_WORK_OF_ALL: f64 = 1.2e10;
 const LEAST_PART: f64 = 0.05;
 
@@ -55,55 +55,31 @@ const EVALUATIONS: [f64; 2] = [30.0, 60.0];
 const EVALUATIONS_BY_BACKWARD_DIFFERENTIATION: f64 = 3.0;
 const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
-/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves, and in gross slip, where its sums are over the whole contact; by pair of springs and column of the slip in a period; by
-/// pair of springs over which wear spreads; of the factors, by triple of springs; and of a step in any case, in gross slip and elsewhere.
+/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves, and in gross slip, where its sums are over the whole contact; by pair of springs over which wear
+/// spreads; of the factors, by triple of springs; and of a step in any case, in gross slip and elsewhere. Periods that are resolved are counted as they are passed.
 const BY_SPRING: [f64; 2] = [150.0, 500.0];
 const BY_SPRING_IN_GROSS_SLIP: f64 = 1000.0;
-const BY_PAIR: f64 = 0.02;
 const BY_SPREADING: f64 = 30.0;
 const BY_TRIPLE: f64 = 0.05;
 const OVERHEAD: [f64; 2] = [4e3, 2e4];
 
-/// The same by spring and column: from a table, in gross slip, along a line, and where springs pass period after period; and by each period that they pass until
-/// they repeat themselves on a path that presses and lifts.
-const BY_COLUMN: [f64; 4] = [1.0, 20.0, 6.0, 50.0];
-const BY_PERIOD: f64 = 12.0;
-
-/// How much longer springs take to pass periods under friction that depends on the load: a power for each of them and each point.
-const OF_POWERS: f64 = 6.0;
+/// Power of the springs with which the work of resolved periods grows.
+const OF_RESOLVED: f64 = 1.5;
 
 /// How much longer it takes where a profile is a table.
 const OF_TABLE: f64 = 4.0;
 
-/// Work of a step that is tried, nanoseconds of one core, about. The same on every machine, so that a run and one that was interrupted take the same way.
-pub(super) fn work_of_step(model: &Model) -> f64 {
-    work_of_step_on(model, model.springs() as f64)
-}
-
-/// The same on another number of springs.
-fn work_of_step_on(model: &Model, springs: f64) -> f64 {
+/// Work of a step that is tried, nanoseconds of one core, about, but for that of the periods that are resolved. The same on every machine, so that a run and one that
+/// was interrupted take the same way.
+fn work_of_step(model: &Model, springs: f64) -> f64 {
     let schedule = model.schedule();
     let moves = usize::from(model.moving().is_some());
     let [of_whole, elsewhere] = OVERHEAD;
     let overhead = if model.gross().is_some() { of_whole } else { elsewhere };
-    let evaluations = evaluations(model, springs);
-    let columns = schedule.columns() as f64;
-    let [from_table, in_gross_slip, along_line, by_periods] = BY_COLUMN;
-    let passed = match schedule.resolves() {
-        false => 0.0,
-        true if schedule.is_tabulated() && model.gross().is_some() => in_gross_slip,
-        true if schedule.is_tabulated() => from_table,
-        true if !schedule.leaves_axis() && !schedule.conditions().friction.remembers_slip() => along_line,
-        true if schedule.lifts() => BY_PERIOD * model.periods_to_rest().max(1.0),
-        true if schedule.conditions().friction.coefficient().is_none() => OF_POWERS * by_periods,
-        true => by_periods,
-    };
     let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
-    let whole = model.gross().is_some() && !schedule.resolves();
-    let once = if whole { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
-    let by_spring = table * once + columns * (BY_PAIR * springs + passed) + spread;
-    overhead + evaluations * springs * by_spring + BY_TRIPLE * springs.powi(3)
+    let once = if model.gross().is_some() { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
+    overhead + evaluations(model, springs) * springs * (table * once + spread) + BY_TRIPLE * springs.powi(3)
 }
 
 /// Evaluations of a step on so many springs.
@@ -118,30 +94,27 @@ fn evaluations(model: &Model, springs: f64) -> f64 {
     }
 }
 
-/// Steps to try that cost as much as a look at what so many times the substeps would wear.
-pub(super) fn tries_of_look(finer: usize) -> f64 {
-    finer as f64 / EVALUATIONS[0]
-}
-
 /// Steps tried so far, or as many as their evaluations make: one that finds no contact takes the most.
-pub(super) fn tries(progress: &Progress, model: &Model) -> f64 {
+fn tries(progress: &Progress, model: &Model) -> f64 {
     let tried = (progress.steps + progress.rejected_steps) as f64;
-    if model.gross().is_some() && model.schedule().resolves() {
-        return tried;
-    }
     tried.max(progress.rate_evaluations as f64 / evaluations(model, model.springs() as f64))
 }
 
-/// Work of an attempt so far with its companions, nanoseconds of one core, about.
-pub(super) fn work_of(simulation: &Simulation) -> u64 {
-    let model = simulation.model();
-    (WITH_COMPANION * tries(simulation.progress(), model) * work_of_step(model)) as u64
+/// Work of a run so far without its companions, nanoseconds of one core, about.
+pub(super) fn work_so_far(simulation: &Simulation) -> f64 {
+    let (model, progress) = (simulation.model(), simulation.progress());
+    tries(progress, model) * work_of_step(model, model.springs() as f64) + progress.resolved_work as f64
 }
 
-/// Most steps that an attempt may try after others that took so much.
-pub(super) fn tries_left(model: &Model, work: u64) -> f64 {
+/// Work of an attempt so far with its companions.
+pub(super) fn work_of(simulation: &Simulation) -> u64 {
+    (WITH_COMPANION * work_so_far(simulation)) as u64
+}
+
+/// Most work of an attempt, without its companions, after others that took so much.
+pub(super) fn work_left(work: u64) -> f64 {
     let left = (MOST_WORK_OF_ALL - work as f64) / WITH_COMPANION;
-    left.max(LEAST_PART * MOST_WORK) / work_of_step(model)
+    left.max(LEAST_PART * MOST_WORK)
 }
 
 /// Springs with which to make a run anew that found no end on these; none if they would be too few. Polynomials over the whole contact swing the more, the more
@@ -161,17 +134,18 @@ pub(super) fn fewer(springs: usize) -> Option<usize> {
     (fewer >= FEWEST && fewer < springs).then_some(fewer)
 }
 
-/// Most steps that a run may try, whose springs the program chooses.
-pub(super) fn most_tries(model: &Model) -> f64 {
-    let most = if fewer(model.springs()).is_some() { MOST_WORK } else { MOST_WORK_OF_LAST };
-    most / work_of_step(model)
+/// Most work of a run whose springs the program chooses.
+pub(super) fn most_work(model: &Model) -> f64 {
+    if fewer(model.springs()).is_some() { MOST_WORK } else { MOST_WORK_OF_LAST }
 }
 
 /// Whether a run that came to its end, after others that took so much, can be made anew on so many springs.
 pub(super) fn allows(simulation: &Simulation, springs: usize, work: u64) -> bool {
-    let model = simulation.model();
-    let wanted = tries(simulation.progress(), model) * work_of_step_on(model, springs as f64);
+    let (model, progress) = (simulation.model(), simulation.progress());
     let before = (work + work_of(simulation)) as f64;
+    let (springs, now) = (springs as f64, model.springs() as f64);
+    let resolved = (springs / now).powf(OF_RESOLVED) * progress.resolved_work as f64;
+    let wanted = tries(progress, model) * work_of_step(model, springs) + resolved;
     wanted <= MOST_WORK && before + WITH_COMPANION * wanted <= MOST_WORK_OF_ALL
 }
 

@@ -163,7 +163,7 @@ impl Run {
             file.header.path.clone(),
         )?;
         checkpoint.accuracy = scene.numerics().accuracy_asked();
-        let numerics = budget::numerics_of(scene.numerics(), checkpoint.attempt.refinements);
+        let numerics = budget::numerics_of(&scene, checkpoint.attempt.refinements);
         let parts = Parts::of_state(&scene, &numerics, &checkpoint.state, &shared.operators)?;
         if file.header.radius != parts.model.radii()
             || !parts.fit(&checkpoint.state)

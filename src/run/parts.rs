@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::budget::{self, NEAR_GROSS_SLIP, OF_STEPS, springs_to_stick_again};
+use super::cost::work_so_far;
 use super::mesh::{self, SPRINGS_TO_SLIDE};
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
@@ -16,10 +17,11 @@ use crate::solver::model::{
 use crate::solver::simulation::{Flow, HandOver, Observer, Outcome, Plan, Progress, Simulation};
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossBdf, GrossSdirk, Sdirk, Stepper};
 
-/// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, most steps that it may try, and
-/// what is added to that radius.
+/// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, most steps that it may try,
+/// most work of all that resolve periods, and what is added to that radius.
 const COARSE: ([usize; 2], f64) = ([12, FEWEST_SPRINGS], 1e-3);
 const MOST_TRIED: u64 = 8000;
+const MOST_WORK: f64 = 5e8;
 const MARGIN: f64 = 1.02;
 const WITHIN_END: f64 = 1.0 - 1e-12;
 
@@ -188,14 +190,15 @@ impl Reach {
     fn of(parts: &Parts) -> Result<Self> {
         let (springs, tolerance) = COARSE;
         let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
-        let sticks_again = Cell::new(false);
+        let (sticks_again, most_work) = (Cell::new(false), Cell::new(MOST_WORK));
         let coarse = |springs: usize, follow: bool| -> Result<Self> {
             let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
             let plan = Plan { outputs: vec![], end: parts.plan.end };
             let hand_over = HandOver { springs: springs_to_stick_again(springs), tolerance, expected: false };
             let coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
             let mut coarse = coarse.handing_over(follow.then_some(hand_over));
-            let outcome = coarse.run(&mut [&mut Bounded]);
+            let outcome = coarse.run(&mut [&mut Bounded { most_work: most_work.get() }]);
+            most_work.set(most_work.get() - work_so_far(&coarse));
             sticks_again.set(sticks_again.get() || coarse.sticks_again());
             if outcome? == Outcome::Interrupted {
                 return Err(coarse.takes_too_long());
@@ -225,13 +228,22 @@ impl Reach {
 }
 
 /// Stops the coarse run that takes too long.
-struct Bounded;
+struct Bounded {
+    /// Where periods are resolved.
+    most_work: f64,
+}
 
 impl Observer for Bounded {
     fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
+        self.rejected(simulation)
+    }
+
+    fn rejected(&mut self, simulation: &Simulation) -> Result<Flow> {
         let progress = simulation.progress();
         let tried = progress.steps + progress.rejected_steps;
-        Ok(if tried < MOST_TRIED { Flow::Continue } else { Flow::Stop })
+        let resolves = progress.resolved_work > 0;
+        let goes_on = tried < MOST_TRIED && !(resolves && work_so_far(simulation) > self.most_work);
+        Ok(if goes_on { Flow::Continue } else { Flow::Stop })
     }
 }
 

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use super::Shared;
 use super::accuracy::estimate::{Coarsening, Companions};
 use super::budget;
-use super::cost::{self, tries};
+use super::cost;
 use super::limit::worn_profile;
 use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::{Error, Result};
@@ -93,8 +93,8 @@ pub(super) struct Recorder {
     companions: Option<Companions>,
     /// The accuracy asked for, where the program chooses the springs.
     accuracy: Option<f64>,
-    /// Steps that may be tried, where the program chooses springs and steps, and whether there were more.
-    most_tries: f64,
+    /// Work that it may take, where the program chooses springs and steps, and whether it took more.
+    most_work: f64,
     takes_too_long: bool,
     /// Whether the companions tell that it would take too long; they may do so while it runs.
     would_take_too_long: Arc<AtomicBool>,
@@ -119,7 +119,7 @@ impl Recorder {
             saves_result: true,
             companions: None,
             accuracy: scene.numerics().accuracy_asked(),
-            most_tries: f64::INFINITY,
+            most_work: f64::INFINITY,
             takes_too_long: false,
             would_take_too_long: Arc::default(),
             attempt: Attempt::default(),
@@ -170,8 +170,8 @@ impl Recorder {
         };
         // Also where another model has taken the run up, as before an interruption.
         let (model, _) = simulation.first();
-        let most = || (part * cost::most_tries(model)).min(cost::tries_left(model, self.attempt.work));
-        self.most_tries = if bounded { most() } else { f64::INFINITY };
+        let most = || (part * cost::most_work(model)).min(cost::work_left(self.attempt.work));
+        self.most_work = if bounded { most() } else { f64::INFINITY };
         (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
         let coarsening = chosen.then(|| Coarsening::new(scene, simulation, part));
         let (stop, too_long) = (Arc::clone(&self.stop), Arc::clone(&self.would_take_too_long));
@@ -260,11 +260,10 @@ impl Observer for Recorder {
     }
 
     fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
-        if self.stop.load(atomic::Ordering::Relaxed) || self.would_take_too_long() {
+        if self.stop.load(atomic::Ordering::Relaxed) {
             return Ok(Flow::Stop);
         }
-        if tries(simulation.progress(), simulation.model()) > self.most_tries {
-            self.takes_too_long = true;
+        if self.rejected(simulation)? == Flow::Stop {
             return Ok(Flow::Stop);
         }
         if self.saved.elapsed() >= self.interval {
@@ -272,6 +271,12 @@ impl Observer for Recorder {
             self.saved = Instant::now();
         }
         Ok(Flow::Continue)
+    }
+
+    fn rejected(&mut self, simulation: &Simulation) -> Result<Flow> {
+        self.takes_too_long = cost::work_so_far(simulation) > self.most_work;
+        let stops = self.takes_too_long || self.would_take_too_long();
+        Ok(if stops { Flow::Stop } else { Flow::Continue })
     }
 }
 

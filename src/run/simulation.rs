@@ -223,8 +223,9 @@ fn to_the_end(
     loop {
         let known = stepping.model().schedule().clone();
         let made = |springs: usize, refinements: u64| {
-            let numerics = budget::numerics_of(scene.numerics(), refinements);
-            let mut parts = Parts::new(scene, &numerics, Some(springs), Some(&known), store)?;
+            let numerics = budget::numerics_of(scene, refinements);
+            let known = (refinements < budget::LAST_RESORT).then_some(&known);
+            let mut parts = Parts::new(scene, &numerics, Some(springs), known, store)?;
             let limit = parts.limit.take();
             Ok::<_, Error>((parts.begin()?, limit))
         };

@@ -18,6 +18,7 @@ mod first_force;
 mod gross;
 mod jacobian;
 mod loops;
+mod meter;
 mod motion;
 mod moving;
 mod operators;
@@ -41,6 +42,7 @@ pub use cycle::CycleFields;
 pub use gross::{Gross, GrossRates};
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
+use meter::Meter;
 pub use moving::{Bearing, MovingStick, StickEdge, StickStage, StickTarget, StickTrial};
 pub use operators::OperatorStore;
 use operators::Operators;
@@ -134,6 +136,7 @@ pub struct Model {
     stick_zone: StickZone,
     depth_scale: f64,
     slides: bool,
+    meter: Meter,
 }
 
 /// Where the springs are.

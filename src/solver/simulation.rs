@@ -104,6 +104,15 @@ pub trait Observer {
         let _ = simulation;
         Ok(Flow::Continue)
     }
+
+    /// Called after every rejected one. A simulation that is stopped here is not resumed.
+    ///
+    /// # Errors
+    /// Ends the simulation.
+    fn rejected(&mut self, simulation: &Simulation) -> Result<Flow> {
+        let _ = simulation;
+        Ok(Flow::Continue)
+    }
 }
 
 /// What besides the state a restart needs.
@@ -123,6 +132,8 @@ pub struct Progress {
     pub rejected_steps: u64,
     /// Evaluations of pressure, slip and wear.
     pub rate_evaluations: u64,
+    /// Work of the periods that steps and outputs resolved, nanoseconds of one core, about, as [`Model::work_counted`].
+    pub resolved_work: u64,
 }
 
 /// A step to try.
@@ -309,7 +320,8 @@ impl Simulation {
             if self.model.loses_stick(&self.state) {
                 return Err(self.slides_off());
             }
-            let landed = self.advance(observers).map_err(|error| self.timed(error))?;
+            let advanced = self.advance(observers).map_err(|error| self.timed(error))?;
+            let Some(landed) = advanced else { return Ok(Outcome::Interrupted) };
             let ended = self.outcome().is_some();
             if landed || ended {
                 self.tell(observers)?;
@@ -362,8 +374,11 @@ impl Simulation {
         std::mem::swap(&mut self.cycle, &mut other.2);
     }
 
-    fn tell(&self, observers: &mut [&mut dyn Observer]) -> Result<()> {
-        observers.iter_mut().try_for_each(|observer| observer.output(self))
+    fn tell(&mut self, observers: &mut [&mut dyn Observer]) -> Result<()> {
+        let before = self.model.work_counted();
+        let told = observers.iter_mut().try_for_each(|observer| observer.output(self));
+        self.progress.resolved_work += self.model.work_counted() - before;
+        told
     }
 
     /// How it ended; none while it goes on or can be resumed.
@@ -386,12 +401,14 @@ impl Simulation {
         }
     }
 
-    /// Makes one step, of which the length may have to be found; whether it landed on an output.
-    fn advance(&mut self, observers: &mut [&mut dyn Observer]) -> Result<bool> {
+    /// Makes one step, of which the length may have to be found; whether it landed on an output. None where an observer stops the search for its length.
+    fn advance(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Option<bool>> {
         loop {
             let landing = self.choose_step()?;
             let step = landing.step;
+            let before = self.model.work_counted();
             let trial = self.stepper.step(&self.model, &self.state, step)?;
+            self.progress.resolved_work += self.model.work_counted() - before;
             self.progress.rate_evaluations += trial.rate_evaluations;
             let error = trial.error / self.tolerance;
             let accepted = match trial.state {
@@ -430,12 +447,19 @@ impl Simulation {
                 self.settles = false;
                 self.progress.steps += 1;
                 self.progress.next_output += u64::from(landing.output);
-                return Ok(landing.output);
+                return Ok(Some(landing.output));
             }
             self.progress.rejected_steps += 1;
             let rejected = self.progress.rejected_steps;
             if rejected > MOST_REJECTED && 2 * rejected > self.progress.steps {
                 return Err(self.stuck("wear goes on in ever smaller steps, of which most are rejected"));
+            }
+            let mut stops = false;
+            for observer in observers.iter_mut() {
+                stops |= observer.rejected(self)? == Flow::Stop;
+            }
+            if stops {
+                return Ok(None);
             }
         }
     }

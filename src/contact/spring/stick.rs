@@ -47,9 +47,16 @@ const JUST_LIFTED: f64 = 1e-6;
 /// assert_eq!(stick_compression(&path, &law, 1.0), 6.0); // M U/μ_f
 /// ```
 pub fn stick_compression(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> f64 {
+    searched_stick_compression(path, law, stiffness_ratio).0
+}
+
+/// [`stick_compression`], and the substeps passed in the search for it.
+pub fn searched_stick_compression(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> (f64, usize) {
     let lifted = path.largest_lift();
+    let mut trial = Trial { path, law, stiffness_ratio, cycle: SpringCycle::default(), substeps: 0 };
     if law.remembers_slip() {
-        return observed(path, law, stiffness_ratio, never_slips(path, law, stiffness_ratio));
+        let found = trial.observed(never_slips(path, law, stiffness_ratio));
+        return (found, trial.substeps);
     }
     let loaded_always = match law.coefficient() {
         Some(coefficient) => {
@@ -58,10 +65,10 @@ pub fn stick_compression(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f6
         }
         None => load_dependent(path, law, stiffness_ratio, lifted),
     };
-    let returns_as_it_came = lifted > 0.0
-        && loaded_always <= lifted * (1.0 + 1e-12)
-        && !slips(path, law, stiffness_ratio, lifted * (1.0 - JUST_LIFTED), &mut SpringCycle::default());
-    if returns_as_it_came { observed(path, law, stiffness_ratio, lifted) } else { loaded_always }
+    let returns_as_it_came =
+        lifted > 0.0 && loaded_always <= lifted * (1.0 + 1e-12) && !trial.slips(lifted * (1.0 - JUST_LIFTED));
+    let found = if returns_as_it_came { trial.observed(lifted) } else { loaded_always };
+    (found, trial.substeps)
 }
 
 /// The smallest circle around circles about the points, their radii from the lifts.
@@ -94,37 +101,45 @@ fn never_slips(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> f64 
     path.points.iter().map(least).fold(0.0, f64::max)
 }
 
-fn slips(
-    path: &Path,
-    law: &dyn FrictionLaw,
+/// Springs that are tried one after the other.
+struct Trial<'a> {
+    path: &'a Path,
+    law: &'a dyn FrictionLaw,
     stiffness_ratio: f64,
-    compression: f64,
-    cycle: &mut SpringCycle,
-) -> bool {
-    steady_cycle(path, law, stiffness_ratio, compression, &Shakedown::default(), cycle);
-    cycle.slip_path > 0.0
+    cycle: SpringCycle,
+    /// Passed so far.
+    substeps: usize,
 }
 
-/// Largest compression, m, of a spring that slips in the end, as far as levels tell; `high` sticks.
-fn observed(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64, mut high: f64) -> f64 {
-    let mut cycle = SpringCycle::default();
-    let top = high;
-    // Springs that are not compressed slip freely, which says nothing of those that are.
-    for level in (1..LEVELS).rev() {
-        let mut low = top * level as f64 / LEVELS as f64;
-        if !slips(path, law, stiffness_ratio, low, &mut cycle) {
-            high = low;
-            continue;
-        }
-        while high - low > 2.0 * f64::EPSILON * high {
-            let middle = 0.5 * (low + high);
-            if slips(path, law, stiffness_ratio, middle, &mut cycle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        return high;
+impl Trial<'_> {
+    /// Whether a spring of this compression, m, slips in the end.
+    fn slips(&mut self, compression: f64) -> bool {
+        let Self { path, law, stiffness_ratio, cycle, substeps } = self;
+        steady_cycle(path, *law, *stiffness_ratio, compression, &Shakedown::default(), cycle);
+        *substeps += cycle.substeps;
+        cycle.slip_path > 0.0
     }
-    0.0
+
+    /// Largest compression, m, of a spring that slips in the end, as far as levels tell; `high` sticks.
+    fn observed(&mut self, mut high: f64) -> f64 {
+        let top = high;
+        // Springs that are not compressed slip freely, which says nothing of those that are.
+        for level in (1..LEVELS).rev() {
+            let mut low = top * level as f64 / LEVELS as f64;
+            if !self.slips(low) {
+                high = low;
+                continue;
+            }
+            while high - low > 2.0 * f64::EPSILON * high {
+                let middle = 0.5 * (low + high);
+                if self.slips(middle) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            return high;
+        }
+        0.0
+    }
 }

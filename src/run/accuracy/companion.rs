@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::super::cost::{tries, tries_of_look, work_of_step};
+use super::super::cost::work_so_far;
 use super::super::parts::Parts;
 use super::substeps::{Unsampled, finer_than};
 use crate::data::Snapshot;
@@ -50,7 +50,7 @@ pub(super) struct Coarser<'a> {
     pub schedule: Option<&'a Schedule>,
     /// Steps after which it is lost, if it chooses them by itself.
     pub most_steps: u64,
-    /// Work, as [`work_of_step`], after which the run would take too long.
+    /// Work, as [`work_so_far`], after which the run would take too long.
     pub most_work: f64,
     pub store: &'a OperatorStore,
     pub stop: &'a Arc<AtomicBool>,
@@ -91,16 +91,18 @@ impl Companion {
         let unsampled = samples.then(|| Unsampled::new(scene, numerics, &parts.model).ok_or(Lost::NoEnd));
         let unsampled = unsampled.transpose()?;
         let model = parts.model.shown_at(coarser.offsets.to_vec());
-        let most_tries = coarser.most_work / work_of_step(&model);
         let Ok(mut simulation) = (Parts { model, ..parts }).begin() else { return Err(Lost::NoEnd) };
         // Explicit steps are as many as cycles or stiffness ask for.
         let implicit = numerics.stepper == Stepper::Implicit;
         let most_steps = if implicit { coarser.most_steps } else { u64::MAX };
-        let most_tries = if implicit { most_tries } else { f64::INFINITY };
+        let most_work = if implicit { coarser.most_work } else { f64::INFINITY };
+        if unsampled.is_some() && work_of_looks(&simulation) > most_work {
+            return Err(Lost::Dear);
+        }
         let stop = Arc::clone(coarser.stop);
-        let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_tries, looked: 0.0 };
+        let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_work };
         let outcome = simulation.run(&mut [&mut seen]);
-        if seen.tries(&simulation) > most_tries {
+        if work_so_far(&simulation) > most_work {
             return Err(Lost::Dear);
         }
         match outcome {
@@ -115,20 +117,27 @@ impl Companion {
     }
 }
 
+/// Work of what is seen of the substeps at the outputs, by that of the cycles with which a simulation begins: two at least.
+fn work_of_looks(simulation: &Simulation) -> f64 {
+    let model = simulation.model();
+    let cycle = 0.5 * model.work_counted() as f64;
+    let looks = 1 + simulation.plan().outputs.len();
+    (finer_than(model.schedule()) * looks) as f64 * cycle
+}
+
 /// What is seen at the outputs.
 struct Seen {
     worn: Vec<Worn>,
     unsampled: Option<Unsampled>,
     stop: Arc<AtomicBool>,
     most_steps: u64,
-    most_tries: f64,
-    /// Steps to try that what was seen of the substeps cost as much as.
-    looked: f64,
+    most_work: f64,
 }
 
 impl Seen {
-    fn tries(&self, simulation: &Simulation) -> f64 {
-        tries(simulation.progress(), simulation.model()) + self.looked
+    fn goes_on(&self, simulation: &Simulation) -> Flow {
+        let lost = simulation.progress().steps > self.most_steps || work_so_far(simulation) > self.most_work;
+        if lost || self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
     }
 }
 
@@ -137,14 +146,15 @@ impl Observer for Seen {
         self.worn.push(Worn::of(simulation));
         if let Some(unsampled) = &mut self.unsampled {
             unsampled.see(simulation);
-            self.looked += tries_of_look(finer_than(simulation.model().schedule()));
         }
         Ok(())
     }
 
     fn step(&mut self, simulation: &Simulation) -> crate::Result<Flow> {
-        let progress = simulation.progress();
-        let lost = progress.steps > self.most_steps || self.tries(simulation) > self.most_tries;
-        Ok(if lost || self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue })
+        Ok(self.goes_on(simulation))
+    }
+
+    fn rejected(&mut self, simulation: &Simulation) -> crate::Result<Flow> {
+        Ok(self.goes_on(simulation))
     }
 }

@@ -1,6 +1,7 @@
 //! How a contact is put on springs.
 
 use super::envelope::Envelope;
+use super::meter::Meter;
 use super::output::OutputRadii;
 use super::{
     AnnulusMesh, Gross, HIDDEN, Model, MovingStick, OperatorStore, Resolution, Schedule, SpringMesh,
@@ -124,6 +125,7 @@ impl Model {
             stick_zone: StickZone { slip_compression: contact.slip_compression(), ..StickZone::default() },
             depth_scale: contact.indentation(),
             slides: true,
+            meter: Meter::default(),
         };
         let offsets = model.gross_offsets(contact.contact_radius());
         Ok(model.shown_at(offsets))
@@ -246,6 +248,7 @@ impl Annulus<'_> {
             },
             depth_scale,
             slides,
+            meter: Meter::default(),
         })
     }
 }

@@ -20,6 +20,9 @@ const DIFFERENCE: f64 = 1e-7;
 /// Columns of a dense matrix that are formed at a time where only what follows from them is kept.
 const BLOCK: usize = 128;
 
+/// What slopes take over what a cycle takes, columns by columns.
+const SLOPES: usize = 3;
+
 /// Agreement of two amplitudes that are the same number by two ways.
 const SAME: f64 = 1e-13;
 
@@ -117,6 +120,7 @@ impl Model {
             return cycle;
         }
         let motion = self.motion(loading, compression, fields, false);
+        self.count_columns(loading, &motion, 1);
         let surface = self.surface(loading, &motion, compression, fields);
         let worn = self.worn(loading, &surface, false);
         let per_cycle = loading.cycles_per_period.recip();
@@ -385,6 +389,7 @@ impl Model {
             return;
         }
         let motion = self.motion(loading, compression, fields, true);
+        self.count_columns(loading, &motion, SLOPES);
         let surface = self.surface(loading, &motion, compression, fields);
         let worn = self.worn(loading, &surface, true);
         let (steps, components) = (motion.steps(), motion.components);

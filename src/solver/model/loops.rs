@@ -149,7 +149,7 @@ impl Model {
         let displacement =
             [0, 1].map(|axis| (0..=steps).map(|m| path.points[m % steps].tangential[axis]).collect());
         let mut force = [0, 1].map(|_| vec![0.0; steps + 1]);
-        let mut work = 0.0;
+        let (mut work, mut substeps) = (0.0, 0);
         let mut spring = SpringCycle::default();
         let friction = &*loading.friction;
         let turns = !path.is_straight() && friction.static_factor() == 1.0;
@@ -167,6 +167,7 @@ impl Model {
                 }
             }
             work += stiffness * spring.work;
+            substeps += spring.substeps;
             for (axis, force) in force.iter_mut().enumerate() {
                 for (total, deflection) in force[1..].iter_mut().zip(&spring.deflection) {
                     *total += ratio * stiffness * deflection[axis];
@@ -190,6 +191,7 @@ impl Model {
         for force in &mut force {
             force[0] = force[steps];
         }
+        self.count_substeps(substeps, !path.is_level());
         let found = FrettingLoop { displacement, force, work, width: f64::NAN };
         FrettingLoop { width: found.polygon_width(), ..found }
     }

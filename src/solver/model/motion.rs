@@ -14,9 +14,6 @@ use crate::numerics::roots::bracketed;
 /// Change of a compression, relative to the one at the edge of stick, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
 
-/// Compressions at which is looked how many periods springs pass.
-const SAMPLED: usize = 16;
-
 /// What the springs inside the contact edge do in one period.
 pub(super) struct Motion {
     /// Tangential amplitude of the contact, m.
@@ -171,6 +168,7 @@ impl Model {
             ratio: self.contact.half_space().stiffness_ratio(),
             difference: DIFFERENCE * self.contact.slip_compression(),
             cycle: SpringCycle::default(),
+            passed: 0,
         };
         let mut values = vec![0.0; columns];
         let mut slope = vec![0.0; if slopes { columns } else { 0 }];
@@ -197,6 +195,7 @@ impl Model {
                 motion.slip_slope[(j, m)] = *value;
             }
         }
+        self.count_substeps(springs.passed, !path.is_level());
         let count = path.points.len();
         let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
         let bearing = Bearing::new(loading);
@@ -234,24 +233,6 @@ impl Model {
             self.amplitude_slope(loading, &lifted, &slip, fields)
         });
         Motion { amplitude, amplitude_slope, ..motion }
-    }
-
-    /// Mean of the periods that springs evenly compressed, up to where they stick, pass before they repeat themselves, in the block that takes the most; zero where
-    /// no period is passed step by step.
-    pub fn periods_to_rest(&self) -> f64 {
-        let (ratio, most) = (self.contact.half_space().stiffness_ratio(), self.stick_zone.slip_compression);
-        let mut cycle = SpringCycle::default();
-        let mut periods = |loading: &CycleLoading| {
-            let Some(path) = &loading.path else { return 0.0 };
-            let passed = (0..SAMPLED).map(|i| {
-                let compression = most * (i as f64 + 0.5) / SAMPLED as f64;
-                let shakedown = Shakedown::default();
-                steady_cycle(path, &*loading.friction, ratio, compression, &shakedown, &mut cycle);
-                1 + cycle.periods
-            });
-            passed.sum::<usize>() as f64 / SAMPLED as f64
-        };
-        self.schedule.first_cycles().map(|loading| periods(&loading)).fold(0.0, f64::max)
     }
 
     /// Springs through the steps of a path along which the indenter moves up and down.
@@ -398,6 +379,8 @@ struct PathSprings<'a> {
     /// Change of the compression, m, by which slopes are found.
     difference: f64,
     cycle: SpringCycle,
+    /// Substeps so far.
+    passed: usize,
 }
 
 impl PathSprings<'_> {
@@ -447,6 +430,7 @@ impl PathSprings<'_> {
             &Shakedown::default(),
             cycle,
         );
+        self.passed += cycle.substeps;
         slip.fill(0.0);
         if self.components == 1 && self.path.is_level() {
             // What moved less what the deflection took up: a sum over the substeps would round off as many times.

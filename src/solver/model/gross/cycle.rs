@@ -93,6 +93,7 @@ impl Model {
         let sliding = match &loading.path {
             Some(path) => {
                 let motion = self.resolved_motion(loading, path, compression, false);
+                self.count_columns(loading, &motion, 1);
                 self.sliding_on_path(gross, loading, &motion, whole)
             }
             None => self.sliding_to_and_fro(gross, loading, compression, whole),

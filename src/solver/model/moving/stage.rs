@@ -1,5 +1,7 @@
 //! One stage of an implicit step with an edge of stick that moves: its equations, Newton's matrix, what is carried along.
 
+use std::cell::OnceCell;
+
 use faer::Mat;
 
 use super::{Cause, MovingStick, StickEdge, held_stick_radius};
@@ -52,6 +54,8 @@ pub struct StickStage<'a> {
     model: &'a Model,
     moving: &'a MovingStick,
     target: StickTarget,
+    /// [`StickStage::driven_slip_compression`], which is searched for on some paths.
+    driven: OnceCell<f64>,
 }
 
 /// Ground that the edge of stick has passed in a stage.
@@ -67,7 +71,7 @@ struct Passed {
 impl Model {
     /// The equations of a stage; none where the edge of stick rests.
     pub fn stick_stage(&self, target: StickTarget) -> Option<StickStage<'_>> {
-        self.moving().map(|moving| StickStage { model: self, moving, target })
+        self.moving().map(|moving| StickStage { model: self, moving, target, driven: OnceCell::new() })
     }
 }
 
@@ -225,7 +229,7 @@ impl StickStage<'_> {
 
     /// `q_c` at the amplitude that acts, m.
     fn driven_slip_compression(&self) -> f64 {
-        self.target.springs.loading.slip_compression(self.model.contact.half_space().stiffness_ratio())
+        *self.driven.get_or_init(|| self.model.slip_compression_of(&self.target.springs.loading))
     }
 
     /// What acts, with the amplitude of the contact.

@@ -1,0 +1,68 @@
+//! What resolved periods take, counted as they are passed.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::Model;
+use super::motion::Motion;
+use super::schedule::CycleLoading;
+use crate::contact::spring::searched_stick_compression;
+
+/// Nanoseconds of one core, as measured on a busy machine: of a substep through which a spring is passed at constant indentation, and where it is pressed and
+/// lifted; of a column of slip at a spring, by what is done with it there, and by each other spring that it is carried to; and of a column of loads there.
+const BY_SUBSTEP: [f64; 2] = [20.0, 65.0];
+const BY_COLUMN: f64 = 60.0;
+const BY_PAIR: f64 = 0.13;
+const BY_LOAD: f64 = 40.0;
+
+/// Work counted so far, nanoseconds of one core, about. Whole numbers of what was done make it, so that it is the same on every machine.
+#[derive(Debug, Default)]
+pub(super) struct Meter(AtomicU64);
+
+impl Clone for Meter {
+    fn clone(&self) -> Self {
+        Self(AtomicU64::new(self.read()))
+    }
+}
+
+impl Meter {
+    fn read(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    fn add(&self, work: f64) {
+        self.0.fetch_add(work as u64, Ordering::Relaxed);
+    }
+}
+
+impl Model {
+    /// Work of the resolved periods so far, nanoseconds of one core, about: the same on every machine.
+    pub fn work_counted(&self) -> u64 {
+        self.meter.read()
+    }
+
+    /// Counts substeps through which springs were passed.
+    pub(super) fn count_substeps(&self, substeps: usize, lifts: bool) {
+        self.meter.add(BY_SUBSTEP[usize::from(lifts)] * substeps as f64);
+    }
+
+    /// Compression at the edge of stick in a cycle, m, as [`CycleLoading::slip_compression`]; counts the periods of the search for it.
+    pub(super) fn slip_compression_of(&self, loading: &CycleLoading) -> f64 {
+        let ratio = self.contact.half_space().stiffness_ratio();
+        let Some(path) = &loading.path else { return loading.slip_compression(ratio) };
+        let (compression, substeps) = searched_stick_compression(path, &*loading.friction, ratio);
+        self.count_substeps(substeps, !path.is_level());
+        compression
+    }
+
+    /// Counts columns of slip and of loads that are carried to the surface, so many times.
+    pub(super) fn count_columns(&self, loading: &CycleLoading, motion: &Motion, times: usize) {
+        if loading.path.is_none() {
+            return;
+        }
+        let [springs, slips, loads] =
+            [self.springs(), motion.free.len(), motion.load.ncols()].map(|it| it as f64);
+        let carried = BY_PAIR * springs;
+        self.meter
+            .add(times as f64 * springs * (slips * (BY_COLUMN + carried) + loads * (BY_LOAD + carried)));
+    }
+}
