@@ -49,7 +49,7 @@ pub(super) struct Coarser<'a> {
     /// The schedule of the run, where that has as many substeps.
     pub schedule: Option<&'a Schedule>,
     /// Steps after which it is lost, if it chooses them by itself.
-    pub most_steps: u64,
+    pub most_steps: f64,
     /// Work, as [`work_of_step`], after which the run would take too long.
     pub most_work: f64,
     pub store: &'a OperatorStore,
@@ -95,7 +95,7 @@ impl Companion {
         let Ok(mut simulation) = (Parts { model, ..parts }).begin() else { return Err(Lost::NoEnd) };
         // Explicit steps are as many as cycles or stiffness ask for.
         let implicit = numerics.stepper == Stepper::Implicit;
-        let most_steps = if implicit { coarser.most_steps } else { u64::MAX };
+        let most_steps = if implicit { coarser.most_steps } else { f64::INFINITY };
         let most_tries = if implicit { most_tries } else { f64::INFINITY };
         let stop = Arc::clone(coarser.stop);
         let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_tries, looked: 0.0 };
@@ -120,7 +120,7 @@ struct Seen {
     worn: Vec<Worn>,
     unsampled: Option<Unsampled>,
     stop: Arc<AtomicBool>,
-    most_steps: u64,
+    most_steps: f64,
     most_tries: f64,
     /// Steps to try that what was seen of the substeps cost as much as.
     looked: f64,
@@ -144,7 +144,7 @@ impl Observer for Seen {
 
     fn step(&mut self, simulation: &Simulation) -> crate::Result<Flow> {
         let progress = simulation.progress();
-        let lost = progress.steps > self.most_steps || self.tries(simulation) > self.most_tries;
+        let lost = progress.steps as f64 > self.most_steps || self.tries(simulation) > self.most_tries;
         Ok(if lost || self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue })
     }
 }
