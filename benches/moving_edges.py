@@ -5,7 +5,7 @@
 A row: scene, springs, by how much volume and edge of stick miss those on 480 springs by hand (at a thirtieth of the tolerance), estimate,
 exit code, and the order of the volume over 60, 120, 240 and 480 springs at that tolerance. Volumes are over the limit's or, where there is none, the run's
 own; the edge is over the contact radius. Where 480 springs come to no end, 240 are the last. It ends with exit code 1 if a run that ended with exit code 0
-misses by more than its accuracy, or an order is below two, or below 1.5 where blocks grow (docs/accuracy.md).
+misses by more than its accuracy, or an order is below two.
 """
 
 import csv
@@ -76,8 +76,7 @@ def main():
             scale = found["wear_volume_limit"] or found["wear_volume"]
             volume = abs(found["wear_volume"] - best["wear_volume"]) / scale
             edge = abs(found["stick_radius"] - best["stick_radius"]) / found["contact_radius"]
-            least = 1.5 if row[4] == "blocks" and row[5] > 1 else 2
-            bad = code == 0 and not max(volume, edge) <= ACCURACY or not order >= least
+            bad = code == 0 and not max(volume, edge) <= ACCURACY or not order >= 2
             wrong += bad
             print(
                 f"| {title(*row)} | {springs} | {volume:.1e} | {edge:.1e} | {found['error_estimate']:.1e} | {code} | {order:.1f}{' WRONG' if bad else ''} "

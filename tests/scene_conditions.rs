@@ -666,7 +666,10 @@ fn friction_that_falls_and_rises_under_lifts_is_refused_with_nothing_written() {
     let output = command.current_dir(folder.path()).args(["run", "scene.toml"]).output().expect("a run");
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(message.contains("falls and rises") && message.contains("only fall or only rise"), "{message}");
+    assert!(
+        message.contains("friction.history: in the end") && message.contains("end at their smallest"),
+        "{message}"
+    );
     assert!(!folder.path().join("scene.h5").exists());
 }
 

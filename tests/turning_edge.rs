@@ -125,6 +125,48 @@ fn friction_that_changes_by_nothing_is_constant() {
     }
 }
 
+/// Springs by hand, few and many: a companion tells how far off they are.
+#[test]
+fn springs_by_hand_are_told_by_how_much_they_are_off() {
+    let rising = history(1.2);
+    for (load, control, friction, springs) in [
+        (NORMAL, "", COULOMB, 12),
+        (NORMAL, RIG, COULOMB, 20),
+        (PRESSED, "", rising.as_str(), 12),
+        (PRESSED, FORCE, COULOMB, 70),
+        (NORMAL, "", COULOMB, 70),
+    ] {
+        let at = |springs: usize| run(&scene(load, control, friction, "", "tau = 1.5", &on(springs)));
+        let (few, many) = (at(springs), at(240));
+        let off = (few.last().wear_volume / many.last().wear_volume - 1.0).abs();
+        let estimate = few.error_estimate().expect("an estimate");
+        println!("{springs} springs, {load} {control}: {estimate:.1e}, volume off by {off:.1e}");
+        assert!(estimate > 0.5 * off && estimate < 0.3, "{load} {control}: {estimate:e} for {off:e}");
+    }
+}
+
+/// Friction that falls with the energy it dissipates, or falls and rises and ends at its smallest, beside a normal oscillation.
+#[test]
+fn friction_that_falls_beside_a_normal_oscillation_keeps_the_balance_of_energy() {
+    let oscillation =
+        "[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1.5707963";
+    let both_ways = table("[1.0, 1.4, 0.8]");
+    for friction in [by_energy(0.4), both_ways] {
+        let at = |springs: usize| {
+            let numerics = format!("{}\nsubsteps = 192", on(springs));
+            let results = run(&scene(PRESSED, "", &friction, oscillation, "tau = 2", &numerics));
+            let last = results.last();
+            (last.wear_volume, PER_ENERGY * last.dissipated_energy / last.wear_volume - 1.0)
+        };
+        let [few, many] = [30, 120].map(at);
+        let off = few.0 / many.0 - 1.0;
+        println!("{off:.1e}, energy {:.1e} and {:.1e}: {friction}", few.1, many.1);
+        // Measured: 1.1e-3 at most, 1.1e-3 and 3e-5.
+        assert!(off.abs() < 3e-3, "{friction}: {off:e}");
+        assert!(many.1.abs() < 2e-4 && many.1.abs() < 0.2 * few.1.abs(), "{friction}: {few:?} {many:?}");
+    }
+}
+
 /// A rig lies between the amplitudes of displacement and of force.
 #[test]
 fn under_a_held_normal_force_a_stiff_rig_holds_the_amplitude_and_a_soft_one_the_force() {

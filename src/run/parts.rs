@@ -128,7 +128,11 @@ impl Parts {
         check_regime(scene, &contact)?;
         let schedule = match known {
             Some(schedule) => schedule.clone(),
-            None => Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?,
+            None => {
+                let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
+                let implicit = numerics.stepper == StepperChoice::Implicit;
+                if implicit { schedule } else { schedule.for_explicit_steps() }
+            }
         };
         let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
         check_stepper(numerics.stepper, &model)?;

@@ -158,7 +158,8 @@ impl Recorder {
         onlookers: &mut dyn Observer,
     ) -> Result<Outcome> {
         let chosen = scene.numerics().springs.is_none();
-        self.companions = chosen.then(|| Companions::new(scene, simulation, limited));
+        let compared = chosen || !has_balance(simulation);
+        self.companions = compared.then(|| Companions::new(scene, simulation, limited));
         let bounded = chosen && scene.numerics().stepper == Stepper::Implicit;
         let [after_long, after_no_end] = cost::OF_LAST_ATTEMPTS;
         let part = match self.attempt.refinements.cmp(&budget::REFINEMENTS) {
@@ -173,11 +174,11 @@ impl Recorder {
         let most = || (part * cost::most_work(model)).min(cost::work_left(self.attempt.work));
         self.most_work = if bounded { most() } else { f64::INFINITY };
         (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
-        let coarsening = chosen.then(|| Coarsening::new(scene, simulation, part));
+        let coarsening = compared.then(|| Coarsening::new(scene, simulation, part));
         let (stop, too_long) = (Arc::clone(&self.stop), Arc::clone(&self.would_take_too_long));
         let run_companions = || {
             let found = coarsening.map(|it| it.run(scene, store, &stop))?;
-            too_long.store(first && found.are_dear(), atomic::Ordering::Relaxed);
+            too_long.store(chosen && first && found.are_dear(), atomic::Ordering::Relaxed);
             Some(found)
         };
         let (outcome, found) = beside(|| simulation.run(&mut [&mut *self, onlookers]), run_companions);
@@ -218,7 +219,7 @@ impl Recorder {
         checkpoint: &Checkpoint,
     ) -> Option<usize> {
         let (accuracy, springs) = (scene.numerics().accuracy, simulation.model().springs());
-        let companions = self.companions.as_ref()?;
+        let companions = self.companions.as_ref().filter(|_| scene.numerics().springs.is_none())?;
         let wanted = match outcome {
             Ok(Outcome::Interrupted) => None,
             // The companion of a finer run may come to an end.
@@ -238,7 +239,7 @@ impl Recorder {
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost.
     pub(super) fn looks_for_an_end(&self, simulation: &Simulation) -> bool {
-        self.companions.is_some() && !simulation.model().loses_stick(simulation.state())
+        self.accuracy.is_some() && !simulation.model().loses_stick(simulation.state())
     }
 
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
@@ -298,16 +299,23 @@ fn beside<A, B: Send>(here: impl FnOnce() -> A, there: impl FnOnce() -> B + Send
 ///
 /// Where worn volume and dissipated energy are in proportion, as under Archard's law and Coulomb's friction (`μ_f/k_w`), that volume is the
 /// energy's, a balance that holds for the continuous contact between springs and surface. Else it is the integral of what the surface
-/// loses in each cycle, and tells of the time stepping alone. What the springs do not see of a waviness is in neither. Where the edge of stick
-/// moves neither sees the error of its place, and there is no estimate.
+/// loses in each cycle, and tells of the time stepping alone. What the springs do not see of a waviness is in neither. None where there is no such
+/// [balance](has_balance).
 fn balance_error(simulation: &Simulation) -> Option<f64> {
     let (model, state) = (simulation.model(), simulation.state());
-    let tangential = model.schedule().conditions().tangential_control != TangentialControl::Displacement;
-    if tangential || state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
+    if !has_balance(simulation) {
         return None;
     }
     let by_depth = model.wear_volume(simulation.fields());
     let whole = if model.gross().is_some() { by_depth } else { model.limit_volume() };
     let by_rate = (state.volume_by_rate - by_depth).abs() / whole;
     Some(by_rate.max(model.core_uncertainty()).max(model.unseen_depth().unwrap_or(0.0)))
+}
+
+/// Whether the two volumes tell the error: where the edge of stick moves neither sees that of its place, nor that of an amplitude which follows from a balance
+/// of forces.
+fn has_balance(simulation: &Simulation) -> bool {
+    let (model, _) = simulation.first();
+    let tangential = model.schedule().conditions().tangential_control != TangentialControl::Displacement;
+    !tangential && model.moving().is_none()
 }

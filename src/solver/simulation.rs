@@ -543,10 +543,12 @@ impl Simulation {
         }
         // Steppers look at their ends; the first cycle of a block is where springs come to slip.
         state.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
-        let (mut fields, mut cycle, mut rate) = (fields, cycle, rate);
+        let (mut fields, mut cycle, mut rate, mut depth) = (fields, cycle, rate, depth);
         if target.is_some() {
             state = self.model.begin_block(state)?;
             fields = self.model.fields(&state);
+            // On a mesh that begins anew the depth between springs is another by as much as they leave open.
+            depth = self.model.depth_on_springs(&state, &fields);
             cycle = cycle_of(&self.model, &state, &fields, state.cycles);
             rate = rate_of_wear(&self.model, &fields, &cycle);
         }

@@ -49,7 +49,7 @@ pub(super) struct Coarser<'a> {
     /// The schedule of the run, where that has as many substeps.
     pub schedule: Option<&'a Schedule>,
     /// Steps after which it is lost, if it chooses them by itself.
-    pub most_steps: u64,
+    pub most_steps: f64,
     /// Work, as [`work_so_far`], after which the run would take too long.
     pub most_work: f64,
     pub store: &'a OperatorStore,
@@ -94,7 +94,7 @@ impl Companion {
         let Ok(mut simulation) = (Parts { model, ..parts }).begin() else { return Err(Lost::NoEnd) };
         // Explicit steps are as many as cycles or stiffness ask for.
         let implicit = numerics.stepper == Stepper::Implicit;
-        let most_steps = if implicit { coarser.most_steps } else { u64::MAX };
+        let most_steps = if implicit { coarser.most_steps } else { f64::INFINITY };
         let most_work = if implicit { coarser.most_work } else { f64::INFINITY };
         if unsampled.is_some() && work_of_looks(&simulation) > most_work {
             return Err(Lost::Dear);
@@ -130,13 +130,14 @@ struct Seen {
     worn: Vec<Worn>,
     unsampled: Option<Unsampled>,
     stop: Arc<AtomicBool>,
-    most_steps: u64,
+    most_steps: f64,
     most_work: f64,
 }
 
 impl Seen {
     fn goes_on(&self, simulation: &Simulation) -> Flow {
-        let lost = simulation.progress().steps > self.most_steps || work_so_far(simulation) > self.most_work;
+        let lost =
+            simulation.progress().steps as f64 > self.most_steps || work_so_far(simulation) > self.most_work;
         if lost || self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
     }
 }

@@ -36,6 +36,14 @@ const ERROR_PER_DIFFERENCE: [[f64; 2]; 3] = [[1.3, 4.0], [1.0, 3.0], [0.4, 3.0]]
 /// Part of the tolerance of the time stepping that is the least error told: as much is of steps, and companion and run may share it.
 const LEAST_OF_TIME: f64 = 0.15;
 
+/// Springs by hand below which the companion is a finer one, and the order with which the difference from it is taken to fall.
+const FEW_BY_HAND: usize = 60;
+const ORDER_OF_FINER: f64 = 2.0;
+
+/// Largest order believed of more springs by hand, which no accuracy bounds from below: profiles next to edges and kinks were up to eight times as far off as second order
+/// would have it.
+const ORDER_BY_HAND: f64 = 1.0;
+
 /// Least ratio of the springs that tells anything: a mesh may have to be raised to carry the companion.
 const LEAST_RATIO: f64 = 1.2;
 
@@ -54,7 +62,7 @@ const SHARE_OF_STICK: f64 = 2.0;
 
 /// Steps after which a companion is lost, with a known order and without: at the round-off of a coarse mesh a rate of nearly nothing may never be
 /// reached.
-const MOST_STEPS: [u64; 2] = [2000, 4000];
+const MOST_STEPS: [f64; 2] = [2000.0, 4000.0];
 
 /// Work of a companion over that of the run, about, beyond which the run would take too long.
 const OF_COMPANION: f64 = 0.2;
@@ -68,6 +76,8 @@ pub(in crate::run) struct Companions {
     order: f64,
     /// Whether the contact is in gross slip, where the order is known and one companion serves.
     gross: bool,
+    /// Whether the companion is a finer one.
+    finer: bool,
     /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
     every: usize,
     /// Those radii over the contact radius, where the edge of stick moves, or is where a sampled path says.
@@ -88,6 +98,10 @@ pub(in crate::run) struct Coarsening {
     smooth: bool,
     /// Whether one companion serves.
     alone: bool,
+    /// Whether that is a finer one.
+    finer: bool,
+    /// Whether springs are given by hand, so that companions take as long as they take.
+    by_hand: bool,
     /// Whether springs stick again after gross slip, so that it is the springs over the slip annulus that are to be fewer.
     sticks_again: bool,
     /// Of the work of a run that this one may take.
@@ -110,11 +124,14 @@ impl Coarsening {
         let sticks_again = model.gross().is_some() && simulation.sticks_again();
         let smooth = is_smooth(scene, model);
         let substeps = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
+        let finer = compares_with_finer(scene, model);
         Self {
             springs: model.springs(),
             tolerance,
             smooth,
-            alone: smooth || model.gross().is_some() && !sticks_again,
+            alone: smooth || finer || model.gross().is_some() && !sticks_again,
+            finer,
+            by_hand: numerics.springs.is_some(),
             sticks_again,
             part,
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
@@ -126,13 +143,19 @@ impl Coarsening {
     /// Runs the companions.
     pub(in crate::run) fn run(&self, scene: &Scene, store: &OperatorStore, stop: &Arc<AtomicBool>) -> Found {
         let numerics = scene.numerics();
+        let [most_work, most_steps] = match self.by_hand {
+            true => [f64::INFINITY, f64::INFINITY],
+            false => [self.part * MOST_WORK * OF_COMPANION, MOST_STEPS[usize::from(!self.smooth)]],
+        };
         let coarser = |steps: i32| {
+            let steps = if self.finer { -steps } else { steps };
             let coarser = |value: f64| (value * COARSER.powi(steps)).min(COARSEST);
             let fewer = |count: usize| (count as f64 / RATIO.powi(steps)).ceil() as usize;
             Companion::run(&Coarser {
                 scene,
                 numerics: Numerics {
                     accuracy: if self.smooth { coarser(numerics.accuracy) } else { numerics.accuracy },
+                    springs: None,
                     tolerance: Some(coarser(self.tolerance)),
                     substeps: self.substeps.map(fewer).or(numerics.substeps),
                     ..*numerics
@@ -144,9 +167,9 @@ impl Coarsening {
                 .max(FEWEST),
                 offsets: &self.offsets,
                 schedule: self.schedule.as_ref(),
-                samples: steps == 1 && self.substeps.is_none(),
-                most_work: self.part * MOST_WORK * OF_COMPANION,
-                most_steps: MOST_STEPS[usize::from(!self.smooth)],
+                samples: steps.abs() == 1 && self.substeps.is_none(),
+                most_work,
+                most_steps,
                 store,
                 stop,
             })
@@ -169,6 +192,12 @@ impl Found {
     pub(in crate::run) fn are_dear(&self) -> bool {
         matches!(self.first, Err(Lost::Dear))
     }
+}
+
+/// Whether the companion of a run is a finer one: of springs given by hand that are so few that the differences of still fewer tell nothing, and that more take no
+/// time.
+fn compares_with_finer(scene: &Scene, model: &Model) -> bool {
+    scene.numerics().springs.is_some() && model.gross().is_none() && model.springs() < FEW_BY_HAND
 }
 
 /// Whether the order of convergence is known.
@@ -197,6 +226,7 @@ impl Companions {
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
         let recedes = model.moving().is_some_and(MovingStick::recedes);
         let order = match held || model.slides() && !gross {
+            _ if scene.numerics().springs.is_some() => ORDER_BY_HAND,
             _ if recedes => ORDER_RECEDING,
             true => ORDER_INWARDS,
             false => ORDER,
@@ -210,6 +240,7 @@ impl Companions {
             smooth,
             order,
             gross,
+            finer: compares_with_finer(scene, model),
             every,
             radii,
             limit: (limited || smooth)
@@ -256,6 +287,11 @@ impl Companions {
             && matches!(simulation.plan().end, End::Rate(_))
             && matches!(simulation.outcome(), Some(Outcome::Rate | Outcome::WornOut));
         let nearest = gap(&worn, &first.seen, spent && first.spent, |a, b| self.apart(a, b, scale))?;
+        if self.finer {
+            let springs = nearest / (1.0 - ratio.powf(ORDER_OF_FINER));
+            let springs = if ratio < 1.0 && springs.is_finite() { springs } else { UNKNOWN };
+            return Some(Shares { springs, order: ORDER_OF_FINER, left_out, ..Shares::default() });
+        }
         let finite = |value: f64| if value.is_finite() { value } else { UNKNOWN };
         if self.smooth {
             return by_known_order(simulation, ratio, nearest);

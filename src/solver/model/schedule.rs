@@ -125,6 +125,8 @@ pub struct Schedule {
     /// Factor on friction along the energy dissipated, J/m².
     friction_along_energy: History,
     largest_indentation: f64,
+    /// Whether steps follow an edge of stick that jumps between blocks.
+    follows_jumps: bool,
 }
 
 impl Schedule {
@@ -211,7 +213,25 @@ impl Schedule {
         }
         let friction_along_energy = conditions.friction.along_energy();
         let conditions = conditions.clone();
-        Ok(Self { conditions, clock_rate, ends, loadings, friction_along_energy, largest_indentation })
+        Ok(Self {
+            conditions,
+            clock_rate,
+            ends,
+            loadings,
+            friction_along_energy,
+            largest_indentation,
+            follows_jumps: true,
+        })
+    }
+
+    /// The same for explicit steps, which do not follow an edge of stick that jumps between blocks: the mesh begins where that is innermost.
+    pub(crate) fn for_explicit_steps(self) -> Self {
+        Self { follows_jumps: false, ..self }
+    }
+
+    /// Whether steps follow an edge of stick that jumps between blocks.
+    pub(super) fn follows_jumps(&self) -> bool {
+        self.follows_jumps
     }
 
     /// Largest indentation of the run at which cycles begin, m.

@@ -88,6 +88,8 @@ pub(super) struct RestingContact<'a> {
     newton: &'a mut Newton,
     tried: &'a mut Tried,
     at: Unknowns,
+    /// Energy that friction dissipates in a cycle, J, in the stage solved last; zero where nothing goes by it.
+    dissipation: f64,
 }
 
 impl<'a> RestingContact<'a> {
@@ -98,7 +100,32 @@ impl<'a> RestingContact<'a> {
         newton: &'a mut Newton,
         tried: &'a mut Tried,
     ) -> Self {
-        Self { model, state, tolerance, newton, tried, at: Unknowns::of(state) }
+        Self { model, state, tolerance, newton, tried, at: Unknowns::of(state), dissipation: 0.0 }
+    }
+
+    /// Newton's method. Friction follows the energy, J, that it has dissipated at the end of the stage, of which `energy` is without that of the stage.
+    fn converged(&mut self, target: &Target, energy: f64, evaluations: &mut u64) -> Option<()> {
+        let (model, tolerance) = (self.model, self.tolerance);
+        let mut last = f64::NAN;
+        for _ in 0..ENERGY_CORRECTIONS {
+            let dissipated = energy + target.step * self.dissipation;
+            let loading = model.after_energy(target.loading.clone(), dissipated);
+            let coefficient = loading.friction.reference_coefficient();
+            if (coefficient / last - 1.0).abs() <= SAME_FRICTION {
+                return Some(());
+            }
+            last = coefficient;
+            let target = Target { loading, ..target.clone() };
+            let mut stage = RestingStage { model, target, bearing: None, tolerance, tried: self.tried };
+            if !self.newton.solve(&mut stage, &mut self.at, evaluations) {
+                return None;
+            }
+            if *model.schedule().friction_along_energy() == History::Constant {
+                return Some(());
+            }
+            self.dissipation = self.tried.cycle.dissipation;
+        }
+        None
     }
 
     /// First guess of a stage: at the rates of the last step as long as that is a contact, then on the straight line from the state through the
@@ -148,11 +175,7 @@ impl Stages for RestingContact<'_> {
         let target = target(self.model, self.state, &gathered, index, cycles);
         let step = target.step;
         self.guess(index, cycles);
-        let (model, tolerance) = (self.model, self.tolerance);
-        let mut stage = RestingStage { model, target, bearing: None, tolerance, tried: self.tried };
-        if !self.newton.solve(&mut stage, &mut self.at, evaluations) {
-            return None;
-        }
+        self.converged(&target, gathered[self.model.springs() + 1], evaluations)?;
         let Tried { fields, cycle } = &*self.tried;
         let now = fields.log_slip.iter().chain([&self.at.slip_area]);
         Some(slopes(now, &gathered, step).chain([cycle.dissipation, cycle.volume]).collect())

@@ -22,6 +22,7 @@ impl Stepper for EveryCycle {
         let fields = &mut self.fields;
         model.evaluate(state.slip_area, &state.compression, fields);
         let loading = model.schedule().loading(state.cycles, state.cycles);
+        let loading = model.after_energy(loading, state.dissipated_energy);
         let cycle = model.cycle(&loading, &state.compression, fields);
         let mut worn = fields.log_slip.clone();
         for (log_slip, growth) in worn.iter_mut().zip(&cycle.growth) {

@@ -1,10 +1,11 @@
 //! A jump of the edge of stick between two blocks.
 
 use super::StickEdge;
+use crate::contact::slip_depth::UnwornValues;
 use crate::error::Result;
-use crate::numerics::roots::bracketed;
+use crate::numerics::roots::{bracketed, next_to};
 use crate::solver::model::schedule::{AmplitudeControl, CycleLoading};
-use crate::solver::model::{Model, Past, State, StickZone};
+use crate::solver::model::{Fields, Model, Past, State, StickZone};
 
 /// Steps of the integrals over the ground that comes to rest, or that leaves it, in a jump of the edge of stick.
 const JUMP_STEPS: usize = 1000;
@@ -171,22 +172,26 @@ impl Model {
             }
         }
         let next = StickZone { stick_area: new, slip_compression: compression, stick_load: load };
+        let (mut fields, moved_area) = (self.fields(&state), slip_area - (new - old));
         // Slip is what is carried over: small numbers next to the edge of stick, where compressions differ by little.
-        let slip_area = slip_area - (new - old);
-        let mut fields = self.fields(&state);
-        self.evaluate_at(&next, slip_area, &state.compression, &mut fields);
-        let nodes = &self.annulus().operators.abel.nodes()[1..];
-        let (radius, at_edge) = (new.sqrt(), ground.raised(new));
-        let slipping = nodes.iter().map(|x| {
-            let rise = profile.rise(radius, slip_area * x) + ground.raised(new + slip_area * x) - at_edge;
-            rise.max(0.0)
-        });
-        let slip = self.carried(&fields, slipping);
-        // What is left behind is by another quadrature than the slip: the contact edge stays where it is.
-        let behind = moving.left_behind(&left_behind, new + slip_area);
-        let off = self.mismatch_at(&next, slip_area, |i, _| slip[i]) - behind;
-        left_behind.iter_mut().for_each(|value| *value += off);
-        let moved = self.compression_at(&next, slip_area, |i, _| slip[i]);
+        let (slip_area, moved) = if new < old && stick.places_at_rest.is_empty() {
+            self.on_unworn_ground(&next, &fields, moved_area)
+        } else {
+            self.evaluate_at(&next, moved_area, &state.compression, &mut fields);
+            let nodes = &self.annulus().operators.abel.nodes()[1..];
+            let (radius, at_edge) = (new.sqrt(), ground.raised(new));
+            let slipping = nodes.iter().map(|x| {
+                let rise =
+                    profile.rise(radius, moved_area * x) + ground.raised(new + moved_area * x) - at_edge;
+                rise.max(0.0)
+            });
+            let slip = self.carried(&fields, slipping);
+            // What is left behind is by another quadrature than the slip: the contact edge stays where it is.
+            let behind = moving.left_behind(&left_behind, new + moved_area);
+            let off = self.mismatch_at(&next, moved_area, |i, _| slip[i]) - behind;
+            left_behind.iter_mut().for_each(|value| *value += off);
+            (moved_area, self.compression_at(&next, moved_area, |i, _| slip[i]))
+        };
         let next = State {
             slip_area,
             compression_rate: vec![0.0; moved.len()],
@@ -207,6 +212,34 @@ impl Model {
             ..state
         };
         Ok(if moving.in_blocks { self.close_force(next) } else { next })
+    }
+
+    /// Slip area, m², and compressions, m, of a mesh that begins anew within unworn ground: the depth worn at each place stays,
+    ///
+    /// ```text
+    /// S = S_0 + w
+    /// ```
+    ///
+    /// # Arguments
+    /// * `fields` -- of the mesh before
+    /// * `guess` -- slip area of the contact edge before
+    fn on_unworn_ground(&self, next: &StickZone, fields: &Fields, guess: f64) -> (f64, Vec<f64>) {
+        let before = &fields.stick_zone;
+        let nodes = &self.annulus().operators.abel.nodes()[1..];
+        let worn = |z: f64| {
+            let from = next.stick_area - before.stick_area + z;
+            let x = from / fields.slip_area;
+            if x <= 0.0 || x >= 1.0 {
+                return 0.0;
+            }
+            let unworn = self.unworn_at(before, from).slip;
+            // Within the first cell slip may have grown by any factor, which no polynomial extrapolates.
+            unworn * self.between_springs(&fields.log_slip, x.max(nodes[0])).exp_m1()
+        };
+        let slip =
+            |slip_area: f64| move |i: usize, unworn: &UnwornValues| unworn.slip + worn(slip_area * nodes[i]);
+        let slip_area = next_to(|slip_area| self.mismatch_at(next, slip_area, slip(slip_area)), guess);
+        (slip_area, self.compression_at(next, slip_area, slip(slip_area)))
     }
 
     /// Squared radius, m², at which stick ends where a balance of tangential forces begins anew on the profile as it is: the load within, beyond that of
