@@ -34,6 +34,10 @@ const ITERATIONS: usize = 30;
 /// Most work of a run whose springs the program chooses, as [`work_so_far`]: some eight seconds. What would be more is made on fewer springs, and told.
 pub(super) const MOST_WORK: f64 = 8e9;
 
+/// Work of a companion over that of the run, about, beyond which the run would take too long; and what a run that is then left has taken, as long as that companion.
+pub(in crate::run) const OF_COMPANION: f64 = 0.2;
+pub(super) const WORK_OF_LEFT: u64 = (2.0 * OF_COMPANION * MOST_WORK) as u64;
+
 /// The same for a run on so few springs that none are left out.
 const MOST_WORK_OF_LAST: f64 = 1.2e10;
 
@@ -100,15 +104,20 @@ fn tries(progress: &Progress, model: &Model) -> f64 {
     tried.max(progress.rate_evaluations as f64 / evaluations(model, model.springs() as f64))
 }
 
-/// Work of a run so far without its companions, nanoseconds of one core, about.
+/// Work of a run so far without its companions, nanoseconds of one core, about, by what a step takes of the model that it began with.
 pub(super) fn work_so_far(simulation: &Simulation) -> f64 {
-    let (model, progress) = (simulation.model(), simulation.progress());
-    tries(progress, model) * work_of_step(model, model.springs() as f64) + progress.resolved_work as f64
+    work_by(simulation.first().0, simulation)
 }
 
-/// Work of an attempt so far with its companions.
+/// Work of an attempt so far with its companions, by what a step takes of the model that it came to.
 pub(super) fn work_of(simulation: &Simulation) -> u64 {
-    (WITH_COMPANION * work_so_far(simulation)) as u64
+    (WITH_COMPANION * work_by(simulation.model(), simulation)) as u64
+}
+
+fn work_by(steps_of: &Model, simulation: &Simulation) -> f64 {
+    let progress = simulation.progress();
+    let step = work_of_step(steps_of, steps_of.springs() as f64);
+    tries(progress, simulation.model()) * step + progress.resolved_work as f64
 }
 
 /// Most work of an attempt, without its companions, after others that took so much.

@@ -246,6 +246,7 @@ fn to_the_end(
         if recorder.would_take_too_long() {
             if let Some(found) = coarser(&stepping) {
                 (stepping, limit) = found;
+                recorder.attempt.work += cost::WORK_OF_LEFT;
                 recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
                 continue;
             }

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use super::super::budget::{
     CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before, springs_to_stick_again,
 };
-use super::super::cost::MOST_WORK;
+use super::super::cost::{MOST_WORK, OF_COMPANION};
 use super::super::parts::resolution;
 use super::companion::{Coarser, Companion, Lost, Worn};
 use super::substeps::larger;
@@ -63,9 +63,6 @@ const SHARE_OF_STICK: f64 = 2.0;
 /// Steps after which a companion is lost, with a known order and without: at the round-off of a coarse mesh a rate of nearly nothing may never be
 /// reached.
 const MOST_STEPS: [f64; 2] = [2000.0, 4000.0];
-
-/// Work of a companion over that of the run, about, beyond which the run would take too long.
-const OF_COMPANION: f64 = 0.2;
 
 /// Coarser runs of a scene.
 #[derive(Debug)]

@@ -7,12 +7,12 @@ use super::motion::Motion;
 use super::schedule::CycleLoading;
 use crate::contact::spring::searched_stick_compression;
 
-/// Nanoseconds of one core, as measured on a busy machine: of a substep through which a spring is passed at constant indentation, and where it is pressed and
+/// Nanoseconds of one core: of a substep through which a spring is passed at constant indentation, and where it is pressed and
 /// lifted; of a column of slip at a spring, by what is done with it there, and by each other spring that it is carried to; and of a column of loads there.
-const BY_SUBSTEP: [f64; 2] = [20.0, 65.0];
-const BY_COLUMN: f64 = 60.0;
-const BY_PAIR: f64 = 0.13;
-const BY_LOAD: f64 = 40.0;
+const BY_SUBSTEP: [f64; 2] = [15.0, 50.0];
+const BY_COLUMN: f64 = 45.0;
+const BY_PAIR: f64 = 0.1;
+const BY_LOAD: f64 = 30.0;
 
 /// Work counted so far, nanoseconds of one core, about. Whole numbers of what was done make it, so that it is the same on every machine.
 #[derive(Debug, Default)]
