@@ -6,7 +6,7 @@ use crate::solver::model::{Model, State};
 use crate::solver::stepper::Sdirk;
 
 /// First step after a hand-over, over the cycles before.
-const SETTLED_IN: f64 = 1e-3;
+const SETTLED_IN: f64 = 0.1;
 
 /// How a run goes on once springs stick again after gross slip.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,15 +9,12 @@
 
 use std::f64::consts::PI;
 
-use super::{Gross, Whole};
+use super::Gross;
 use crate::contact::InitialContact;
-use crate::contact::indenter::Indenter;
 use crate::contact::stick_slip::Regime;
 use crate::error::Result;
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
-use crate::numerics::roots::bracketed;
-use crate::numerics::whole_contact::WholeContact;
 use crate::solver::model::moving::StickEdge;
 use crate::solver::model::schedule::Schedule;
 use crate::solver::model::{Model, Past, State, StickZone};
@@ -34,68 +31,6 @@ const CORE: f64 = 0.03;
 
 /// Grading below which the mesh of gross slip holds the compressions less well than that of an edge of stick.
 const SOFT: f64 = -0.5;
-
-/// Part of the slip annulus from which on the wear depth is taken from the polynomials over the whole contact.
-const SEAM: f64 = 0.9;
-
-/// Slip area that is looked for on the finer mesh, over that on the mesh of gross slip, or the other way round.
-const NEARLY: f64 = 0.99;
-
-/// Places, by the logarithm of their distance from the contact edge, at which the wear depth there is looked at, and the least distance over the area of the
-/// contact.
-const PLACES: usize = 60;
-const NEAREST: f64 = 1e-6;
-
-/// Wear depth towards the contact edge, by the polynomials over the whole contact.
-///
-/// Ground that came in wears by the pressure there, `p ~ h^ν` with `h = 1 - ξ`, so that the depth rises as `h^(1+ν)` at the edge, and more slowly farther in. Polynomials
-/// swing about that by some 1e-6 of the indentation: from where they do, the power stands for them. On the finer mesh the contact edge would stay where it is else.
-struct WornEdge<'a> {
-    mesh: &'a WholeContact,
-    whole: &'a Whole,
-    indenter: &'a Indenter,
-    /// `1 + ν`.
-    power: f64,
-    /// `h` from which on, outwards, the power holds, and the depth there, m.
-    from: [f64; 2],
-}
-
-impl<'a> WornEdge<'a> {
-    fn new(contact: &'a InitialContact, mesh: &'a WholeContact, whole: &'a Whole) -> Self {
-        let power = 1.5 + 0.5 * contact.half_space().grading();
-        let mut edge = Self { mesh, whole, indenter: contact.indenter(), power, from: [0.0; 2] };
-        let ratio = (NEAREST / (1.0 - SEAM)).powf((PLACES as f64).recip());
-        let mut inner = [1.0 - SEAM, edge.by_polynomials(1.0 - SEAM)];
-        let mut steepest = 0.0_f64;
-        for _ in 0..PLACES {
-            let distance = inner[0] * ratio;
-            let depth = edge.by_polynomials(distance);
-            let steepness = (depth / inner[1]).ln() / ratio.ln();
-            steepest = steepest.max(steepness);
-            if !(steepness <= power && steepness >= 0.5 * steepest) {
-                break;
-            }
-            inner = [distance, depth];
-        }
-        edge.from = inner;
-        edge
-    }
-
-    /// At a squared radius, m².
-    fn at(&self, squared: f64) -> f64 {
-        let [from, depth] = self.from;
-        match 1.0 - squared / self.whole.area {
-            distance if distance >= from => self.by_polynomials(distance),
-            distance => depth * (distance.max(0.0) / from).powf(self.power),
-        }
-    }
-
-    fn by_polynomials(&self, distance: f64) -> f64 {
-        let fraction = 1.0 - distance;
-        let elastic = self.mesh.value(&self.whole.elastic, self.mesh.coordinate(fraction));
-        self.whole.indentation - elastic - self.indenter.profile((fraction * self.whole.area).sqrt())
-    }
-}
 
 /// Whether the edge of springs that stick again is followed.
 fn is_followed(schedule: &Schedule) -> bool {
@@ -177,48 +112,25 @@ impl Model {
         });
         let more: Vec<[f64; 2]> = more.collect();
         let nu = 1.0 - self.mu();
-        let behind = |squared: f64| {
-            let carried = more.iter().map(|[x, value]| value * (squared / whole.area - x).powf(-nu));
-            height - depth + (PI * nu).sin() / PI * carried.sum::<f64>()
-        };
+        let mut left_behind: Vec<f64> = moving
+            .stations()
+            .map(|squared| {
+                let carried = more.iter().map(|[x, value]| value * (squared / whole.area - x).powf(-nu));
+                height - depth + (PI * nu).sin() / PI * carried.sum::<f64>()
+            })
+            .collect();
         let mut all = state.compression.clone();
         all.push(0.0);
         let slipping = |offset: f64| {
             let at = mesh.coordinate((zone.stick_area + offset) / whole.area);
             zone.slip_compression - mesh.value(&all, at)
         };
-        let slip_at = |offset: f64| to.unworn().carried(zone.stick_area, offset, slipping);
-        let unworn_at =
-            |offset: f64| to.unworn().at_stick(zone.stick_area, zone.slip_compression, offset).slip;
-        // Towards the contact edge by the polynomials over the whole contact, which are exact there; both agree where one goes over to the other.
-        let worn = WornEdge::new(&self.contact, mesh, &whole);
-        let seam = SEAM * slip_area;
-        let at_seam = zone.stick_area + seam;
-        let off = slip_at(seam) - unworn_at(seam) - worn.at(at_seam) - behind(at_seam);
-        let mut left_behind: Vec<f64> = moving.stations().map(|squared| behind(squared) + off).collect();
-        // Between the stations it is a polynomial: slip must not jump at the contact edge.
-        let jump = moving.left_behind(&left_behind, whole.area) - behind(whole.area) - off;
-        left_behind.iter_mut().for_each(|value| *value -= jump);
-        let nodes = &to.operators().nodes()[1..];
-        let on_springs = |slip_area: f64| -> Vec<f64> {
-            let slip = |x: &f64| {
-                let offset = slip_area * x;
-                if offset < seam {
-                    return slip_at(offset);
-                }
-                let squared = zone.stick_area + offset;
-                unworn_at(offset) + behind(squared) + off + worn.at(squared)
-            };
-            nodes.iter().map(slip).collect()
-        };
-        // The contact edge is where the finer mesh has it.
-        let mismatch = |slip_area: f64| {
-            let slip = on_springs(slip_area);
-            let behind = moving.left_behind(&left_behind, zone.stick_area + slip_area);
-            to.mismatch_at(&zone, slip_area, |i, _| slip[i]) - behind
-        };
-        let slip_area = bracketed(mismatch, NEARLY * slip_area, slip_area / NEARLY, 0.0).ok()?;
-        let slip = on_springs(slip_area);
+        let slip_at = |x: &f64| to.unworn().carried(zone.stick_area, slip_area * x, slipping);
+        let slip: Vec<f64> = to.operators().nodes()[1..].iter().map(slip_at).collect();
+        // By another quadrature than the slip: the contact edge stays where it is.
+        let behind = moving.left_behind(&left_behind, whole.area);
+        let off = to.mismatch_at(&zone, slip_area, |i, _| slip[i]) - behind;
+        left_behind.iter_mut().for_each(|value| *value += off);
         let compression = to.compression_at(&zone, slip_area, |i, _| slip[i]);
         let stick = StickEdge {
             area: zone.stick_area,
