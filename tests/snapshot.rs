@@ -109,6 +109,7 @@ fn checkpoint() -> Checkpoint {
             dissipated_energy: -0.0,
             volume_by_rate: 1e-17 / 3.0,
             least_stick_radius: f64::INFINITY,
+            resting_area: 1e-7 / 3.0,
             stick: Some(StickEdge {
                 area: 1e-9 / 3.0,
                 depth: -0.0,

@@ -240,7 +240,7 @@ pub(super) const LOOP_CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
 ];
 
 /// Scalars of the checkpoint, real.
-pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 10] = [
+pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 11] = [
     field(
         quantity("cycles", "1", "number of fretting cycles done"),
         |it| &it.state.cycles,
@@ -260,6 +260,15 @@ pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 10] = [
         quantity("least_stick_radius", "m", "radius within which no spring has slipped so far"),
         |it| &it.state.least_stick_radius,
         |it| &mut it.state.least_stick_radius,
+    ),
+    field(
+        quantity(
+            "resting_area",
+            "m2",
+            "square of the radius within which no spring slips in the block under way",
+        ),
+        |it| &it.state.resting_area,
+        |it| &mut it.state.resting_area,
     ),
     field(
         quantity(

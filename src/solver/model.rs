@@ -13,6 +13,7 @@
 mod construction;
 mod cycle;
 mod derivatives;
+mod edge_in_block;
 mod envelope;
 mod first_force;
 mod gross;
@@ -75,6 +76,8 @@ pub struct State {
     pub slip_area_rate: f64,
     /// Mean rates of the compressions in the last step, m per cycle, shape `(springs - 1,)`; zero at the start.
     pub compression_rate: Vec<f64>,
+    /// Squared radius, m², within which no spring slips as long as the block under way lasts; zero where compressions alone decide.
+    pub resting_area: f64,
     /// The edge of stick, where that moves.
     pub stick: Option<StickEdge>,
     /// The times before, for a multistep method.
@@ -287,6 +290,7 @@ impl Model {
             volume_by_rate: 0.0,
             least_stick_radius: f64::INFINITY,
             slip_area_rate: 0.0,
+            resting_area: self.first_resting_area(),
             stick,
             past: Past::default(),
         }))

@@ -75,16 +75,16 @@ impl Model {
         fields: &Fields,
         slopes: bool,
     ) -> Motion {
-        if let Some(steps) = &loading.steps {
-            return self.stepped_motion(loading, steps, compression, slopes);
-        }
-        match &loading.path {
-            Some(path) if loading.control == AmplitudeControl::Displacement => {
+        let mut motion = match (&loading.steps, &loading.path) {
+            (Some(steps), _) => self.stepped_motion(loading, steps, compression, slopes),
+            (None, Some(path)) if loading.control == AmplitudeControl::Displacement => {
                 self.resolved_motion(loading, path, compression, slopes)
             }
-            Some(path) => self.balanced_motion(loading, path, compression, fields, slopes),
-            None => self.closed_form_motion(loading, compression, fields, slopes),
-        }
+            (None, Some(path)) => self.balanced_motion(loading, path, compression, fields, slopes),
+            (None, None) => self.closed_form_motion(loading, compression, fields, slopes),
+        };
+        self.keep_at_rest(loading, fields, &mut motion);
+        motion
     }
 
     /// Tangential oscillation at constant indentation: `4 σ(q)` in a single step.

@@ -447,7 +447,7 @@ impl Model {
 
     /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
-        let loading = self.after_energy(loading, state.dissipated_energy);
+        let loading = self.after_energy(self.held_at_rest(state, loading), state.dissipated_energy);
         match (self.moving().map(|moving| moving.cause), &state.stick) {
             (Some(Cause::Tangential), Some(stick)) => {
                 self.displaced(loading, self.contact.indentation() - stick.depth)
@@ -464,13 +464,14 @@ impl Model {
 
     /// What acts when friction has dissipated some energy, J.
     pub fn after_energy(&self, loading: CycleLoading, energy: f64) -> CycleLoading {
-        match self.schedule.friction_along_energy() {
+        let loading = match self.schedule.friction_along_energy() {
             History::Constant => loading,
             history => {
                 let area = PI * self.contact.contact_radius().powi(2);
                 CycleLoading { friction: loading.friction.scaled(history.at(energy / area)), ..loading }
             }
-        }
+        };
+        self.where_friction_changes(loading)
     }
 
     /// What acts when springs begin to slip at this compression, m: the amplitude of the contact that a balance of forces has decided.

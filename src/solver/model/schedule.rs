@@ -59,6 +59,8 @@ pub struct CycleLoading {
     pub cycles_per_period: f64,
     /// Settled cycles that this one wears as much as: `FROM_REST` in the first cycle from rest, else one.
     pub share: f64,
+    /// Squared radius, m², within which no spring slips whatever its compression, see [`State::resting_area`](super::State).
+    pub resting_area: f64,
 }
 
 /// Settled cycles that the first one from rest wears as much as. The first loading moves every spring as a quarter of a settled cycle does: it
@@ -172,6 +174,7 @@ impl Schedule {
                 steps: None,
                 cycles_per_period: 1.0,
                 share: 1.0,
+                resting_area: 0.0,
             };
             let mut depth = indentation;
             if resolved {
@@ -258,6 +261,11 @@ impl Schedule {
             loading.wear = loading.wear.scaled(factor(&self.conditions.wear_history));
         }
         loading
+    }
+
+    /// Whether one block, or one pass of it, ends between two times, cycles.
+    pub fn begins_block(&self, before: f64, now: f64) -> bool {
+        self.block(before) != self.block(now)
     }
 
     /// Whether a time, cycles, is within a first cycle that wears from rest.

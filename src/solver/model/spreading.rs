@@ -46,7 +46,12 @@ impl Model {
             column.iter_mut().zip(&slopes).for_each(|(to, slope)| *to *= slope);
         }
         let mut spread = Mat::zeros(n, inner);
-        product(&mut spread, self.averages(fields, spreading).as_ref(), touching.as_ref(), 1.0);
+        product(
+            &mut spread,
+            self.averages(loading, compression, fields, spreading).as_ref(),
+            touching.as_ref(),
+            1.0,
+        );
         for i in 0..n {
             let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
             (0..inner).for_each(|j| spread[(i, j)] *= filled);
@@ -55,8 +60,15 @@ impl Model {
     }
 
     /// Spreads pressures at the springs, shape `(springs, steps)`, by [`Model::averages`], without that matrix.
-    pub(super) fn spread(&self, fields: &Fields, spreading: Spreading, pressure: &mut Mat<f64>) {
-        let [radii, widths] = self.widths(fields);
+    pub(super) fn spread(
+        &self,
+        loading: &CycleLoading,
+        compression: &[f64],
+        fields: &Fields,
+        spreading: Spreading,
+        pressure: &mut Mat<f64>,
+    ) {
+        let [radii, widths] = self.widths(loading, compression, fields);
         let n = radii.len();
         // Of each pair of springs the weight is found once: columns of the pressures beside one for the sums of the weights.
         let steps = pressure.ncols();
@@ -82,18 +94,21 @@ impl Model {
             }
         }
         for i in 0..n {
-            let kept = spreading.kept(radii[n - 1] - radii[i]) / spread[(i, steps)];
+            let kept = part_of(spreading.kept(radii[n - 1] - radii[i]), spread[(i, steps)]);
             (0..steps).for_each(|m| pressure[(i, m)] = kept * spread[(i, m)]);
         }
     }
 
-    /// Radii of the springs, and of the rings that they stand for the widths, m.
-    fn widths(&self, fields: &Fields) -> [Vec<f64>; 2] {
+    /// Radii of the springs, and of the rings that they stand for the widths where springs slip, m: debris lies there alone.
+    fn widths(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> [Vec<f64>; 2] {
         let radii = self.spring_radii(fields);
         let (last, inside) = (radii.len() - 1, fields.stick_zone.stick_area.sqrt());
+        let slips = self.slipping_from(loading, compression, fields);
         let width = |j: usize| {
             let before = if j == 0 { inside } else { radii[j - 1] };
-            0.5 * (radii[(j + 1).min(last)] - before)
+            let [from, to] =
+                [before, radii[(j + 1).min(last)]].map(|next| (0.5 * (radii[j] + next)).max(slips));
+            to - from
         };
         let widths = (0..=last).map(width).collect();
         [radii, widths]
@@ -101,8 +116,14 @@ impl Model {
 
     /// Averages along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well inside and to nothing
     /// there: else ground would wear where no pressure is at all.
-    pub(super) fn averages(&self, fields: &Fields, spreading: Spreading) -> Mat<f64> {
-        let [radii, widths] = self.widths(fields);
+    pub(super) fn averages(
+        &self,
+        loading: &CycleLoading,
+        compression: &[f64],
+        fields: &Fields,
+        spreading: Spreading,
+    ) -> Mat<f64> {
+        let [radii, widths] = self.widths(loading, compression, fields);
         let n = radii.len();
         let mut weights = Mat::zeros(n, n);
         for j in 0..n {
@@ -116,11 +137,16 @@ impl Model {
         }
         for i in 0..n {
             let sum: f64 = weights.row(i).iter().sum();
-            let kept = spreading.kept(radii[n - 1] - radii[i]);
+            let kept = part_of(spreading.kept(radii[n - 1] - radii[i]), sum);
             for j in 0..n {
-                weights[(i, j)] *= kept / sum;
+                weights[(i, j)] *= kept;
             }
         }
         weights
     }
+}
+
+/// A part over the sum of weights; none where springs are too far from all that slip.
+fn part_of(part: f64, sum: f64) -> f64 {
+    if sum > 0.0 { part / sum } else { 0.0 }
 }

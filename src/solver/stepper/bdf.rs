@@ -73,7 +73,7 @@ impl Stepper for Bdf {
             slip_area: gathered.slip_area,
             step: times.step(past.order),
             cycles: now,
-            loading: model.schedule().loading(state.cycles, now),
+            loading: model.loading(state, now),
         };
         self.take_up_factors(model, state, &target);
         let step = target.step;

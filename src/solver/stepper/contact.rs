@@ -57,7 +57,7 @@ fn target(model: &Model, state: &State, gathered: &[f64], index: usize, cycles: 
         slip_area: gathered[springs],
         step: ALEXANDER.diagonal * cycles,
         cycles: now,
-        loading: model.schedule().loading(state.cycles, now),
+        loading: model.loading(state, now),
     }
 }
 
@@ -75,6 +75,7 @@ fn state_after(state: &State, at: Unknowns, quantities: &[f64], stick_radius: f6
         slip_area_rate: (at.slip_area - state.slip_area) / cycles,
         compression_rate: slopes(&at.compression, &state.compression, cycles).collect(),
         compression: at.compression,
+        resting_area: state.resting_area,
         stick: state.stick.clone(),
         past: state.past.clone(),
     }

@@ -29,7 +29,7 @@ impl Stepper for CycleJump {
         let mut at = state.clone();
         for weights in BOGACKI_SHAMPINE.stages {
             at = advance(state, cycles, weights, &stages);
-            let loading = model.schedule().loading(state.cycles, at.cycles);
+            let loading = model.loading(state, at.cycles);
             let loading = model.after_energy(loading, at.dissipated_energy);
             if !(at.slip_area > 0.0 && at.slip_area < model.unworn().largest_slip_area()) {
                 return Ok(Trial::failed(stages.len() as u64));

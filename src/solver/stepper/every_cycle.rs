@@ -21,7 +21,7 @@ impl Stepper for EveryCycle {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let fields = &mut self.fields;
         model.evaluate(state.slip_area, &state.compression, fields);
-        let loading = model.schedule().loading(state.cycles, state.cycles);
+        let loading = model.loading(state, state.cycles);
         let loading = model.after_energy(loading, state.dissipated_energy);
         let cycle = model.cycle(&loading, &state.compression, fields);
         let mut worn = fields.log_slip.clone();

@@ -78,13 +78,16 @@ impl StickEdge {
 }
 
 impl Model {
-    /// The state in which a new block begins: where the edge of stick jumps, the mesh begins anew there.
+    /// The state in which a new block begins, if one does since `before`, cycles: where the edge of stick jumps, the mesh begins anew there.
     ///
     /// Outwards the ground that comes to rest is kept. Inwards it is given back to the springs; within all that ever came to rest it is unworn.
     ///
     /// # Errors
     /// [`Error::NotConverged`](crate::Error::NotConverged) if no spring has the compression at which stick would end.
-    pub fn begin_block(&self, state: State) -> Result<State> {
+    pub fn begin_block(&self, state: State, before: f64) -> Result<State> {
+        if self.schedule.begins_block(before, state.cycles) && self.follows_ground_at_rest() {
+            return Ok(self.with_resting_area(state));
+        }
         let (Some(moving), Some(stick)) = (self.moving(), &state.stick) else { return Ok(state) };
         if !moving.jumps && !moving.in_blocks {
             return Ok(state);
