@@ -43,7 +43,7 @@ impl Spreading {
     /// 1 - exp(-(a - r)/length)
     /// ```
     pub fn kept(self, distance: f64) -> f64 {
-        -(-distance / self.length).exp_m1()
+        -(-distance.max(0.0) / self.length).exp_m1()
     }
 
     /// How far debris fills the gap under a spring of some compression, m, and the derivative, where `q_c` is the compression at the edge of

@@ -146,7 +146,7 @@ impl Model {
             work: energy(|spring| spring.work),
             volume,
             amplitude: motion.amplitude,
-            stick_radius: self.stick_radius(loading, &motion, fields),
+            stick_radius: self.stick_radius(&motion, fields),
         }
     }
 
@@ -215,7 +215,7 @@ impl Model {
             let mean = self.contact.mean_pressure();
             pressure =
                 Mat::from_fn(n, pressure.ncols(), |i, m| spreading.passed_on(pressure[(i, m)], mean).0);
-            self.spread(loading, compression, fields, spreading, &mut pressure);
+            self.spread(loading, motion.at_rest, compression, fields, spreading, &mut pressure);
             for i in 0..n {
                 let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
                 (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
@@ -516,14 +516,14 @@ impl Model {
     }
 
     /// Radius of the innermost spring that slips; the mesh begins where the first one does.
-    fn stick_radius(&self, loading: &CycleLoading, motion: &Motion, fields: &Fields) -> f64 {
+    fn stick_radius(&self, motion: &Motion, fields: &Fields) -> f64 {
         let slips = |j: &usize| (0..motion.slip.ncols()).any(|m| motion.slip[(*j, m)] != 0.0);
         let before = match (0..motion.slip.nrows()).find(slips) {
             // The nodes begin at the edge of the mesh, with no spring.
             Some(j) => self.annulus().operators.abel.nodes()[j],
             None => 1.0,
         };
-        (fields.stick_zone.stick_area + fields.slip_area * before).max(loading.resting_area).sqrt()
+        (fields.stick_zone.stick_area + fields.slip_area * before).max(motion.at_rest.area).sqrt()
     }
 }
 

@@ -5,7 +5,7 @@
 //! ahead. Where wear goes by a root of slip, that little would grow into a front of slip that creeps inwards, on any number of springs.
 
 use super::motion::{Energies, Motion};
-use super::schedule::CycleLoading;
+use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model, State, StickZone};
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
@@ -13,6 +13,15 @@ use crate::numerics::roots::bracketed;
 
 /// Squared radii that differ by less than this part are the same by two ways.
 const SAME_PLACE: f64 = 1e-12;
+
+/// Ground that rests in a cycle.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct AtRest {
+    /// Squared radius, m², within which no spring slips whatever its compression; zero where compressions alone decide.
+    pub area: f64,
+    /// Compression below which springs slip, m, where that changes within a block.
+    pub limit: Option<f64>,
+}
 
 impl Model {
     /// What acts at `cycles` in a step that begins in a state, with friction as it was before any energy was dissipated.
@@ -22,7 +31,7 @@ impl Model {
 
     /// A loading, with the ground that rests under it in a state.
     pub(super) fn held_at_rest(&self, state: &State, loading: CycleLoading) -> CycleLoading {
-        let resting_area = match (self.follows_ground_at_rest(), self.friction_changes()) {
+        let resting_area = match (self.follows_ground_at_rest(), self.limit_changes()) {
             (false, _) => 0.0,
             (true, false) => state.resting_area,
             (true, true) => state.least_stick_radius.powi(2),
@@ -33,14 +42,14 @@ impl Model {
     /// Whether the mesh begins where springs slip in some cycle, and those that slip in others are found by their compressions at an indentation that is held.
     pub(super) fn follows_ground_at_rest(&self) -> bool {
         let conditions = self.schedule.conditions();
-        let changes = !conditions.blocks.is_empty() || self.friction_changes();
-        let held = conditions.tangential_control == TangentialControl::Displacement
-            && !conditions.holds_normal_force;
-        changes && held && self.moving().is_none() && self.gross().is_none()
+        let changes = !conditions.blocks.is_empty() || self.limit_changes();
+        changes && !conditions.holds_normal_force && self.moving().is_none() && self.gross().is_none()
     }
 
-    fn friction_changes(&self) -> bool {
+    /// Whether the compression below which springs slip changes within a block.
+    fn limit_changes(&self) -> bool {
         *self.schedule.friction_change() != History::Constant
+            || self.schedule.conditions().tangential_control != TangentialControl::Displacement
     }
 
     /// A state with the ground that rests in the block that begins with it.
@@ -62,13 +71,18 @@ impl Model {
         if self.follows_ground_at_rest() { self.beyond_mesh(unworn()) } else { 0.0 }
     }
 
-    /// While friction changes, ground that never slipped rests as far as the unworn profile bears it.
-    pub(super) fn where_friction_changes(&self, loading: CycleLoading) -> CycleLoading {
-        if loading.resting_area == 0.0 || !self.friction_changes() {
-            return loading;
+    /// The ground that rests in a cycle of an amplitude of the contact, m. Where the limit of slip changes, that is ground that has never slipped, as far as the unworn
+    /// profile bears it.
+    pub(super) fn at_rest_in(&self, loading: &CycleLoading, amplitude: f64) -> AtRest {
+        if !self.follows_ground_at_rest() || !self.limit_changes() {
+            return AtRest { area: loading.resting_area, limit: None };
         }
-        let edge = loading.resting_area.min(self.unworn_area_above(self.limit_of(&loading)));
-        CycleLoading { resting_area: self.beyond_mesh(edge), ..loading }
+        let limit = match loading.control {
+            AmplitudeControl::Displacement => self.limit_of(loading),
+            _ => self.limit_of(&loading.clone().displaced(amplitude)),
+        };
+        let edge = loading.resting_area.min(self.unworn_area_above(limit));
+        AtRest { area: self.beyond_mesh(edge), limit: Some(limit) }
     }
 
     /// Zero for what begins with the mesh.
@@ -92,50 +106,80 @@ impl Model {
 
     /// Squared radius, m², of the innermost place whose compression is below a limit, m.
     fn first_below(&self, limit: f64, zone: &StickZone, slip_area: f64, compression: &[f64]) -> f64 {
-        let nodes = &self.annulus().operators.abel.nodes()[1..];
-        let mut on_springs = compression.to_vec();
-        on_springs.push(0.0);
-        let at = |x: f64| match x < nodes[0] {
-            true => zone.slip_compression + (on_springs[0] - zone.slip_compression) * x / nodes[0],
-            false => self.between_springs(&on_springs, x),
-        };
-        let place = match on_springs.iter().position(|q| *q < limit) {
+        let springs = OnSprings::new(self, zone, compression);
+        let at_edge_of_mesh = limit >= zone.slip_compression && springs.compression[0] < limit;
+        let place = match springs.compression.iter().position(|q| *q < limit) {
+            _ if at_edge_of_mesh => 0.0,
+            Some(j) => springs.crossing(j, limit),
             None => 1.0,
-            Some(0) if limit >= zone.slip_compression => 0.0,
-            Some(j) => {
-                let before = if j == 0 { 0.0 } else { nodes[j - 1] };
-                bracketed(|x| at(x) - limit, before, nodes[j], 0.0).unwrap_or(before)
-            }
         };
         zone.stick_area + slip_area * place
     }
 
-    /// Radius, m, from which on springs slip, where debris lies.
-    pub(super) fn slipping_from(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> f64 {
-        let (zone, rests) = (&fields.stick_zone, loading.resting_area);
-        let edge = match self.follows_ground_at_rest() && self.friction_changes() {
-            true => self.first_below(self.limit_of(loading), zone, fields.slip_area, compression).max(rests),
-            false => rests.max(zone.stick_area),
+    /// Radii, m, between which springs slip in a cycle, where debris lies: from the edge of stick to that of the contact.
+    pub(super) fn slipping_between(
+        &self,
+        loading: &CycleLoading,
+        at_rest: AtRest,
+        compression: &[f64],
+        fields: &Fields,
+    ) -> [f64; 2] {
+        let zone = &fields.stick_zone;
+        let from = match at_rest.limit {
+            Some(limit) => self.first_below(limit, zone, fields.slip_area, compression),
+            None => zone.stick_area,
         };
-        edge.sqrt()
+        let to = match loading.least_lift() {
+            0.0 => 1.0,
+            lift => {
+                let springs = OnSprings::new(self, zone, compression);
+                springs
+                    .compression
+                    .iter()
+                    .rposition(|q| *q >= lift)
+                    .map_or(0.0, |j| springs.crossing(j + 1, lift))
+            }
+        };
+        [from.max(at_rest.area), zone.stick_area + fields.slip_area * to].map(f64::sqrt)
     }
 
-    /// How many springs, from the edge of the mesh outwards, stick for as long as the block lasts.
-    pub(super) fn resting_springs(&self, loading: &CycleLoading, fields: &Fields) -> usize {
-        if loading.resting_area == 0.0 {
-            return 0;
+    /// Takes the slip away that errors of their compressions give to springs that rest.
+    pub(super) fn keep_at_rest(&self, fields: &Fields, motion: &mut Motion) {
+        if motion.at_rest.area == 0.0 {
+            return;
         }
-        let nodes = &self.annulus().operators.abel.nodes()[1..];
-        nodes.partition_point(|x| fields.stick_zone.stick_area + fields.slip_area * x <= loading.resting_area)
-    }
-
-    /// Takes the slip away that errors of their compressions give to springs that stick for as long as the block lasts.
-    pub(super) fn keep_at_rest(&self, loading: &CycleLoading, fields: &Fields, motion: &mut Motion) {
-        let resting = self.resting_springs(loading, fields).min(motion.energies.len());
+        let nodes = &self.annulus().operators.abel.nodes()[1..=motion.energies.len()];
+        let place = |x: &f64| fields.stick_zone.stick_area + fields.slip_area * x;
+        let resting = nodes.partition_point(|x| place(x) <= motion.at_rest.area);
         motion.energies[..resting].fill(Energies::default());
         for part in [&mut motion.slip, &mut motion.slip_slope] {
             let rows = resting.min(part.nrows());
             part.subrows_mut(0, rows).fill(0.0);
         }
+    }
+}
+
+/// Compressions along the mesh, the contact edge included.
+struct OnSprings<'a> {
+    model: &'a Model,
+    /// At the edge of the mesh, m.
+    before: f64,
+    compression: Vec<f64>,
+}
+
+impl<'a> OnSprings<'a> {
+    fn new(model: &'a Model, zone: &StickZone, compression: &[f64]) -> Self {
+        Self { model, before: zone.slip_compression, compression: [compression, &[0.0]].concat() }
+    }
+
+    /// Place between a spring and the one before at which the compression passes a value, m.
+    fn crossing(&self, spring: usize, value: f64) -> f64 {
+        // The nodes begin at the edge of the mesh, with no spring.
+        let nodes = self.model.annulus().operators.abel.nodes();
+        let at = |x: f64| match x < nodes[1] {
+            true => self.before + (self.compression[0] - self.before) * x / nodes[1],
+            false => self.model.between_springs(&self.compression, x),
+        };
+        bracketed(|x| at(x) - value, nodes[spring], nodes[spring + 1], 0.0).unwrap_or(nodes[spring])
     }
 }

@@ -2,6 +2,7 @@
 
 use faer::Mat;
 
+use super::edge_in_block::AtRest;
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
 use crate::contact::spring::{Response, Shakedown, SpringCycle, Steps, steady_cycle};
@@ -38,6 +39,8 @@ pub(super) struct Motion {
     pub load_slope: Mat<f64>,
     /// Where the amplitude depends on the compressions.
     pub amplitude_slope: Option<AmplitudeSlope>,
+    /// Springs that do not slip whatever their compression.
+    pub at_rest: AtRest,
 }
 
 /// Energies of one spring in one period, over its normal stiffness, m².
@@ -83,7 +86,8 @@ impl Model {
             (None, Some(path)) => self.balanced_motion(loading, path, compression, fields, slopes),
             (None, None) => self.closed_form_motion(loading, compression, fields, slopes),
         };
-        self.keep_at_rest(loading, fields, &mut motion);
+        motion.at_rest = self.at_rest_in(loading, motion.amplitude);
+        self.keep_at_rest(fields, &mut motion);
         motion
     }
 
@@ -143,6 +147,7 @@ impl Model {
                 self.slope(|q| bearing.of(q, loading.lift), compression[j])
             }),
             amplitude_slope,
+            at_rest: AtRest::default(),
         }
     }
 
@@ -185,6 +190,7 @@ impl Model {
             slip_slope: Mat::zeros(if slopes { inner } else { 0 }, columns),
             load_slope: Mat::zeros(0, 0),
             amplitude_slope: None,
+            at_rest: AtRest::default(),
         };
         for (j, q) in compression.iter().enumerate() {
             motion.energies.push(springs.pass(q.max(0.0), &mut values, &mut slope));
@@ -258,6 +264,7 @@ impl Model {
             slip_slope: Mat::zeros(rows, columns),
             load_slope: Mat::zeros(rows, columns),
             amplitude_slope: None,
+            at_rest: AtRest::default(),
         };
         // Springs without compression are never loaded.
         let [mut values, mut after] = [(); 2].map(|()| vec![0.0; columns]);

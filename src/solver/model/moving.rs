@@ -308,6 +308,7 @@ pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) 
     let coulomb = conditions.friction.coefficient().is_some();
     Ok(conditions.tangential_control != TangentialControl::Displacement
         && conditions.blocks.iter().all(|block| block.amplitude_factor > 0.0 && coulomb)
+        && conditions.blocks.iter().all(|block| block.indentation_factor == 1.0)
         && !slides_at_once(schedule, contact)?)
 }
 
@@ -464,14 +465,13 @@ impl Model {
 
     /// What acts when friction has dissipated some energy, J.
     pub fn after_energy(&self, loading: CycleLoading, energy: f64) -> CycleLoading {
-        let loading = match self.schedule.friction_along_energy() {
+        match self.schedule.friction_along_energy() {
             History::Constant => loading,
             history => {
                 let area = PI * self.contact.contact_radius().powi(2);
                 CycleLoading { friction: loading.friction.scaled(history.at(energy / area)), ..loading }
             }
-        };
-        self.where_friction_changes(loading)
+        }
     }
 
     /// What acts when springs begin to slip at this compression, m: the amplitude of the contact that a balance of forces has decided.

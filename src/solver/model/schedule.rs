@@ -84,6 +84,12 @@ impl CycleLoading {
         }
     }
 
+    /// By how much the indenter is lifted from its largest indentation of the run where it is deepest in this cycle, m.
+    pub fn least_lift(&self) -> f64 {
+        let lifts = self.path.iter().flat_map(|path| path.points.iter().map(|point| point.lift));
+        lifts.min_by(f64::total_cmp).unwrap_or(self.lift)
+    }
+
     /// The same to and fro by an amplitude of the contact, m, that a balance of forces has decided.
     pub fn displaced(self, amplitude: f64) -> Self {
         let factor = amplitude / self.amplitude;

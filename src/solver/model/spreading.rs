@@ -3,6 +3,7 @@
 use faer::Mat;
 
 use super::cycle::product;
+use super::edge_in_block::AtRest;
 use super::motion::Motion;
 use super::schedule::CycleLoading;
 use super::{Fields, Model};
@@ -48,7 +49,7 @@ impl Model {
         let mut spread = Mat::zeros(n, inner);
         product(
             &mut spread,
-            self.averages(loading, compression, fields, spreading).as_ref(),
+            self.averages(loading, motion.at_rest, compression, fields, spreading).as_ref(),
             touching.as_ref(),
             1.0,
         );
@@ -63,12 +64,13 @@ impl Model {
     pub(super) fn spread(
         &self,
         loading: &CycleLoading,
+        at_rest: AtRest,
         compression: &[f64],
         fields: &Fields,
         spreading: Spreading,
         pressure: &mut Mat<f64>,
     ) {
-        let [radii, widths] = self.widths(loading, compression, fields);
+        let ([radii, widths], edge) = self.widths(loading, at_rest, compression, fields);
         let n = radii.len();
         // Of each pair of springs the weight is found once: columns of the pressures beside one for the sums of the weights.
         let steps = pressure.ncols();
@@ -94,24 +96,30 @@ impl Model {
             }
         }
         for i in 0..n {
-            let kept = part_of(spreading.kept(radii[n - 1] - radii[i]), spread[(i, steps)]);
+            let kept = part_of(spreading.kept(edge - radii[i]), spread[(i, steps)]);
             (0..steps).for_each(|m| pressure[(i, m)] = kept * spread[(i, m)]);
         }
     }
 
-    /// Radii of the springs, and of the rings that they stand for the widths where springs slip, m: debris lies there alone.
-    fn widths(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> [Vec<f64>; 2] {
+    /// Radii of the springs, and of the rings that they stand for the widths where springs slip, m: debris lies there alone; and where the contact ends.
+    fn widths(
+        &self,
+        loading: &CycleLoading,
+        at_rest: AtRest,
+        compression: &[f64],
+        fields: &Fields,
+    ) -> ([Vec<f64>; 2], f64) {
         let radii = self.spring_radii(fields);
         let (last, inside) = (radii.len() - 1, fields.stick_zone.stick_area.sqrt());
-        let slips = self.slipping_from(loading, compression, fields);
+        let [slips, ends] = self.slipping_between(loading, at_rest, compression, fields);
         let width = |j: usize| {
             let before = if j == 0 { inside } else { radii[j - 1] };
             let [from, to] =
-                [before, radii[(j + 1).min(last)]].map(|next| (0.5 * (radii[j] + next)).max(slips));
+                [before, radii[(j + 1).min(last)]].map(|next| (0.5 * (radii[j] + next)).max(slips).min(ends));
             to - from
         };
         let widths = (0..=last).map(width).collect();
-        [radii, widths]
+        ([radii, widths], ends)
     }
 
     /// Averages along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well inside and to nothing
@@ -119,11 +127,12 @@ impl Model {
     pub(super) fn averages(
         &self,
         loading: &CycleLoading,
+        at_rest: AtRest,
         compression: &[f64],
         fields: &Fields,
         spreading: Spreading,
     ) -> Mat<f64> {
-        let [radii, widths] = self.widths(loading, compression, fields);
+        let ([radii, widths], edge) = self.widths(loading, at_rest, compression, fields);
         let n = radii.len();
         let mut weights = Mat::zeros(n, n);
         for j in 0..n {
@@ -137,7 +146,7 @@ impl Model {
         }
         for i in 0..n {
             let sum: f64 = weights.row(i).iter().sum();
-            let kept = part_of(spreading.kept(radii[n - 1] - radii[i]), sum);
+            let kept = part_of(spreading.kept(edge - radii[i]), sum);
             for j in 0..n {
                 weights[(i, j)] *= kept;
             }
