@@ -240,7 +240,8 @@ fn to_the_end(
             if is_last {
                 return None;
             }
-            if cost::is_nearly_spent(work) {
+            // In gross slip the last resort has no fewer springs than these.
+            if stepping.model().gross().is_none() && cost::is_nearly_spent(work) {
                 return last_resort(stepping).map(|found| (found, budget::LAST_RESORT));
             }
             let springs = stepping.first().0.springs();
