@@ -163,3 +163,22 @@ fn what_is_ill_posed_or_incomplete_is_refused_with_the_reason() {
         assert!(error.contains(expected), "{expected:?} in {error}");
     }
 }
+
+#[test]
+fn dimensionless_time_goes_by_the_coefficient_in_both_scopes() {
+    let tau = |law: &str| {
+        let scene = read(law, "frequency = \"1 Hz\"").expect("a scene");
+        scene.contact().expect("a contact").tau_per_cycle()
+    };
+    let constant = "abrasive_coefficient = 2e-14\nadhesive_coefficient = 2e-14\ndecay = 1e-9\n";
+    let [local, global] = ["local", "global"].map(|scope| tau(&format!("{constant}scope = \"{scope}\"")));
+    // k_w = α μ_f
+    let text = "[indenter.sphere]\nradius = \"10 mm\"\n[half_space]\ngrading = 0\nmodulus = \"210 GPa\"\npoisson_ratio = 0.3\n\
+        [friction.coulomb]\ncoefficient = 0.6\n[wear.dissipated-energy]\ncoefficient = 2e-14\n\
+        [loading]\nindentation = \"2 um\"\nstick_ratio = 0.7\ncycles = 1e4\n";
+    let scene = Scene::from_toml(text, "scene.toml").expect("a scene");
+    let expected = scene.contact().expect("a contact").tau_per_cycle();
+    for tau in [local, global] {
+        assert!((tau / expected - 1.0).abs() < 1e-12, "{tau:e} for {expected:e}");
+    }
+}

@@ -34,9 +34,8 @@ const ITERATIONS: usize = 30;
 /// Most work of a run whose springs the program chooses, as [`work_so_far`]: some eight seconds. What would be more is made on fewer springs, and told.
 pub(super) const MOST_WORK: f64 = 8e9;
 
-/// Work of a companion over that of the run, about, beyond which the run would take too long; and what a run that is then left has taken, as long as that companion.
+/// Work of a companion over that of the run, about, beyond which the run would take too long.
 pub(in crate::run) const OF_COMPANION: f64 = 0.2;
-pub(super) const WORK_OF_LEFT: u64 = (2.0 * OF_COMPANION * MOST_WORK) as u64;
 
 /// The same for a run on so few springs that none are left out.
 const MOST_WORK_OF_LAST: f64 = 1.2e10;
@@ -47,6 +46,13 @@ const LEAST_PART: f64 = 0.05;
 
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
 pub(super) const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];
+
+/// Work of an attempt that is left: to begin it, over [`MOST_WORK`], and over that of its companion.
+const OF_LEFT: [f64; 2] = [0.05, 2.5];
+
+/// Least part of [`MOST_WORK`] that the last resort may take, and the part of [`MOST_WORK_OF_ALL`] beyond which it is what follows on an attempt that takes too long.
+const OF_LAST_RESORT: f64 = 0.3;
+const NEARLY_ALL: f64 = 0.4;
 
 /// Springs of a run that takes too long when it is made anew over those before, and fewest with which it is.
 const FEWER: f64 = 0.6;
@@ -60,30 +66,35 @@ const EVALUATIONS_BY_BACKWARD_DIFFERENTIATION: f64 = 3.0;
 const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
 /// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves, and in gross slip, where its sums are over the whole contact; by pair of springs over which wear
-/// spreads; of the factors, by triple of springs; and of a step in any case, in gross slip and elsewhere. Periods that are resolved are counted as they are passed.
+/// spreads; of the factors, by triple of springs, without and with slopes that are products of matrices; and of a step in any case, in gross slip and elsewhere. Periods that are resolved are counted as they are passed.
 const BY_SPRING: [f64; 2] = [150.0, 500.0];
 const BY_SPRING_IN_GROSS_SLIP: f64 = 1000.0;
 const BY_SPREADING: f64 = 30.0;
-const BY_TRIPLE: f64 = 0.05;
+const BY_TRIPLE: [f64; 2] = [0.05, 0.35];
 const OVERHEAD: [f64; 2] = [4e3, 2e4];
 
 /// Power of the springs with which the work of resolved periods grows.
 const OF_RESOLVED: f64 = 1.5;
 
-/// How much longer it takes where a profile is a table.
-const OF_TABLE: f64 = 4.0;
+/// How much longer it takes where a profile is a table, without and with an edge of stick that moves: slip of the unworn contact is then by quadrature in each
+/// evaluation.
+const OF_TABLE: [f64; 2] = [4.0, 12.0];
 
 /// Work of a step that is tried, nanoseconds of one core, about, but for that of the periods that are resolved. The same on every machine, so that a run and one that
 /// was interrupted take the same way.
 fn work_of_step(model: &Model, springs: f64) -> f64 {
     let schedule = model.schedule();
     let moves = usize::from(model.moving().is_some());
+    let multiplies = model.gross().is_none() && !schedule.wears_by_pressure_alone();
     let [of_whole, elsewhere] = OVERHEAD;
     let overhead = if model.gross().is_some() { of_whole } else { elsewhere };
-    let table = if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE } else { 1.0 };
+    let table =
+        if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE[moves] } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
     let once = if model.gross().is_some() { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
-    overhead + evaluations(model, springs) * springs * (table * once + spread) + BY_TRIPLE * springs.powi(3)
+    overhead
+        + evaluations(model, springs) * springs * (table * once + spread)
+        + BY_TRIPLE[usize::from(multiplies)] * springs.powi(3)
 }
 
 /// Evaluations of a step on so many springs.
@@ -124,6 +135,23 @@ fn work_by(steps_of: &Model, simulation: &Simulation) -> f64 {
 pub(super) fn work_left(work: u64) -> f64 {
     let left = (MOST_WORK_OF_ALL - work as f64) / WITH_COMPANION;
     left.max(LEAST_PART * MOST_WORK)
+}
+
+/// Work of an attempt that was left when its companion, which took so much, told that it would take too long: the run beside it took somewhat longer. How far it came depends
+/// on the machine, so that what it took is not asked.
+pub(super) fn work_of_left(companion: u64) -> u64 {
+    let [begun, per_companion] = OF_LEFT;
+    (begun * MOST_WORK + per_companion * companion as f64) as u64
+}
+
+/// Most work of the last resort, which has no companions, after others that took so much.
+pub(super) fn work_of_last_resort(work: u64) -> f64 {
+    (MOST_WORK_OF_ALL - work as f64).max(OF_LAST_RESORT * MOST_WORK)
+}
+
+/// Whether attempts have taken so much that what is left is for the last resort.
+pub(super) fn is_nearly_spent(work: u64) -> bool {
+    work as f64 > NEARLY_ALL * MOST_WORK_OF_ALL
 }
 
 /// Springs with which to make a run anew that found no end on these; none if they would be too few. Polynomials over the whole contact swing the more, the more
@@ -173,7 +201,7 @@ pub struct Expected {
 ///
 /// # Errors
 /// [`Error::Inconsistent`] beyond [`MOST_STEPS`]; those of a step of one cycle where the method makes one of every cycle.
-pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<()> {
+pub(super) fn check(choice: Choice, by_hand: bool, simulation: &mut Simulation) -> Result<()> {
     let breaks = breaks(simulation);
     if breaks > MOST_STEPS || breaks.is_nan() {
         let why = format!(
@@ -182,7 +210,7 @@ pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<()> {
         return Err(Error::Inconsistent { what: "loading.blocks", why });
     }
     if choice == Choice::Implicit {
-        return Ok(());
+        return if by_hand { Ok(()) } else { check_blocks(simulation) };
     }
     let steps = fewest_steps(choice, simulation);
     if steps > MOST_STEPS || steps.is_nan() {
@@ -195,6 +223,21 @@ pub(super) fn check(choice: Choice, simulation: &mut Simulation) -> Result<()> {
         return Err(Error::Inconsistent { what: "numerics.stepper", why });
     }
     simulation.try_step(1.0)
+}
+
+/// Refuses more ends of blocks, at each of which a step ends, than any attempt comes to on springs that the program chooses.
+fn check_blocks(simulation: &Simulation) -> Result<()> {
+    let (model, End::Cycles(cycles)) = (simulation.model(), simulation.plan().end) else { return Ok(()) };
+    let breaks = model.schedule().breaks_until(cycles);
+    let most = MOST_WORK_OF_ALL / work_of_step(model, FEWEST as f64);
+    if breaks <= most {
+        return Ok(());
+    }
+    let why = format!(
+        "the run has {breaks:.1e} ends of blocks in it, at each of which a step ends, and comes to at most {most:.1e} of them by itself; make the blocks longer, ask for fewer \
+         cycles, or go on by hand (numerics.springs), however long it takes"
+    );
+    Err(Error::Inconsistent { what: "loading.blocks", why })
 }
 
 /// What a run will take, by the time of one step, and a word about it if that is more than a minute.

@@ -195,7 +195,7 @@ impl Reach {
         let (springs, tolerance) = COARSE;
         let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
         let (sticks_again, most_work) = (Cell::new(false), Cell::new(MOST_WORK));
-        let coarse = |springs: usize, follow: bool| -> Result<Self> {
+        let coarse = |springs: usize, follow: bool| -> Result<std::result::Result<Self, Error>> {
             let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
             let plan = Plan { outputs: vec![], end: parts.plan.end };
             let hand_over = HandOver { springs: springs_to_stick_again(springs), tolerance, expected: false };
@@ -205,26 +205,29 @@ impl Reach {
             most_work.set(most_work.get() - work_so_far(&coarse));
             sticks_again.set(sticks_again.get() || coarse.sticks_again());
             if outcome? == Outcome::Interrupted {
-                return Err(coarse.takes_too_long());
+                return Ok(Err(coarse.reaches_too_slowly()));
             }
-            Ok(Self {
+            Ok(Ok(Self {
                 radius: coarse.model().contact_radius(coarse.state()),
                 sticks_again: sticks_again.get(),
-            })
+            }))
         };
         let [first, fewer] = springs;
-        let mut why = None;
+        let (mut why, mut too_slow) = (None, None);
         for (springs, follow) in [(first, true), (fewer, true), (first, false)] {
             if !follow && !sticks_again.get() {
                 break;
             }
             match coarse(springs, follow) {
                 Err(Error::NotConverged { why: here, .. }) => why = why.or(Some(here)),
-                found => return found,
+                Ok(Err(error)) => too_slow = too_slow.or(Some(error)),
+                Ok(Ok(found)) => return Ok(found),
+                Err(error) => return Err(error),
             }
         }
         if parts.model.wears_without_end() {
-            return Err(Error::Inconsistent { what: "loading", why: why.unwrap_or_default() });
+            let no_end = || Error::Inconsistent { what: "loading", why: why.unwrap_or_default() };
+            return Err(too_slow.unwrap_or_else(no_end));
         }
         let radius = contact.indenter().radius_at_height(contact.indentation());
         Ok(Self { radius, sticks_again: sticks_again.get() })

@@ -37,7 +37,8 @@ impl Ready {
         let mut parts = Parts::new(scene, scene.numerics(), None, None, store)?;
         let limit = parts.limit.take();
         let mut simulation = parts.begin()?;
-        cost::check(scene.numerics().stepper, &mut simulation)?;
+        let numerics = scene.numerics();
+        cost::check(numerics.stepper, numerics.springs.is_some(), &mut simulation)?;
         check_width(&mut simulation)?;
         rim::check(&simulation)?;
         check_energy(&simulation)?;

@@ -98,6 +98,8 @@ pub(super) struct Recorder {
     takes_too_long: bool,
     /// Whether the companions tell that it would take too long; they may do so while it runs.
     would_take_too_long: Arc<AtomicBool>,
+    /// Work that they took to know.
+    work_of_dear: u64,
     pub(super) attempt: Attempt,
 }
 
@@ -122,6 +124,7 @@ impl Recorder {
             most_work: f64::INFINITY,
             takes_too_long: false,
             would_take_too_long: Arc::default(),
+            work_of_dear: 0,
             attempt: Attempt::default(),
         }
     }
@@ -134,6 +137,11 @@ impl Recorder {
     /// Whether the companions of a run tell that it would take too long.
     pub(super) fn would_take_too_long(&self) -> bool {
         self.would_take_too_long.load(atomic::Ordering::Relaxed)
+    }
+
+    /// Work of an attempt that was left since its companions told so.
+    pub(super) fn work_of_left(&self) -> u64 {
+        cost::work_of_left(self.work_of_dear)
     }
 
     /// Whether the file is written where the run ends.
@@ -162,27 +170,32 @@ impl Recorder {
         self.companions = compared.then(|| Companions::new(scene, simulation, limited));
         let bounded = chosen && scene.numerics().stepper == Stepper::Implicit;
         let [after_long, after_no_end] = cost::OF_LAST_ATTEMPTS;
+        let is_last = self.attempt.refinements >= budget::LAST_RESORT;
         let part = match self.attempt.refinements.cmp(&budget::REFINEMENTS) {
             _ if self.attempt.ended_on > 0 => 1.0,
-            _ if self.attempt.refinements >= budget::LAST_RESORT => after_long,
             Ordering::Less => 1.0,
             Ordering::Equal => after_long,
             Ordering::Greater => after_no_end,
         };
         // Also where another model has taken the run up, as before an interruption.
         let (model, _) = simulation.first();
-        let most = || (part * cost::most_work(model)).min(cost::work_left(self.attempt.work));
+        let most = || match is_last {
+            true => cost::work_of_last_resort(self.attempt.work),
+            false => (part * cost::most_work(model)).min(cost::work_left(self.attempt.work)),
+        };
         self.most_work = if bounded { most() } else { f64::INFINITY };
         (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
-        let coarsening = compared.then(|| Coarsening::new(scene, simulation, part));
+        // Nothing is told of the error of the last resort.
+        let coarsening = (compared && !is_last).then(|| Coarsening::new(scene, simulation, part));
         let (stop, too_long) = (Arc::clone(&self.stop), Arc::clone(&self.would_take_too_long));
         let run_companions = || {
             let found = coarsening.map(|it| it.run(scene, store, &stop))?;
-            too_long.store(chosen && first && found.are_dear(), atomic::Ordering::Relaxed);
+            too_long.store(chosen && first && found.dear().is_some(), atomic::Ordering::Relaxed);
             Some(found)
         };
         let (outcome, found) = beside(|| simulation.run(&mut [&mut *self, onlookers]), run_companions);
         if let (Some(companions), Some(found)) = (&mut self.companions, found) {
+            self.work_of_dear = found.dear().unwrap_or(0);
             companions.take(found);
         }
         outcome

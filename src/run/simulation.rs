@@ -231,22 +231,35 @@ fn to_the_end(
         };
         let anew = |springs: usize| made(springs, 0);
         let is_last = recorder.attempt.refinements >= budget::LAST_RESORT;
+        let last_resort = |stepping: &stepping::Simulation| {
+            let springs = budget::SPRINGS_OF_LAST_RESORT[usize::from(stepping.model().gross().is_none())];
+            springs.iter().find_map(|springs| made(*springs, budget::LAST_RESORT).ok())
+        };
         // On fewer springs where these take too long; a mesh may need as many.
-        let coarser = |stepping: &stepping::Simulation| {
+        let coarser = |stepping: &stepping::Simulation, work: u64| {
             if is_last {
                 return None;
             }
+            // In gross slip the last resort has no fewer springs than these.
+            if stepping.model().gross().is_none() && cost::is_nearly_spent(work) {
+                return last_resort(stepping).map(|found| (found, budget::LAST_RESORT));
+            }
             let springs = stepping.first().0.springs();
             let coarser = cost::fewer(springs).and_then(|fewer| anew(fewer).ok());
-            coarser.filter(|(coarser, _)| coarser.model().springs() < springs)
+            let coarser = coarser.filter(|(coarser, _)| coarser.model().springs() < springs);
+            coarser.map(|found| (found, budget::REFINEMENTS))
         };
         let ended_on = recorder.attempt.ended_on as usize;
         let first = ended_on == 0;
         let mut outcome = recorder.run(scene, store, &mut stepping, limit.is_some(), first, onlookers);
         if recorder.would_take_too_long() {
-            if let Some(found) = coarser(&stepping) {
+            let work = recorder.attempt.work + recorder.work_of_left();
+            if let Some((found, refinements)) = coarser(&stepping, work) {
                 (stepping, limit) = found;
-                recorder.attempt.work += cost::WORK_OF_LEFT;
+                if refinements == budget::LAST_RESORT {
+                    recorder.attempt.refinements = refinements;
+                }
+                recorder.attempt.work = work;
                 recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
                 continue;
             }
@@ -254,11 +267,12 @@ fn to_the_end(
         }
         let work = cost::work_of(&stepping);
         if recorder.takes_too_long() {
-            if let Some(found) = (ended_on == 0).then(|| coarser(&stepping)).flatten() {
+            let spent = recorder.attempt.work + work;
+            if let Some((found, refinements)) = (ended_on == 0).then(|| coarser(&stepping, spent)).flatten() {
                 (stepping, limit) = found;
                 recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
-                recorder.attempt.refinements = budget::REFINEMENTS;
-                recorder.attempt.work += work;
+                recorder.attempt.refinements = refinements;
+                recorder.attempt.work = spent;
                 continue;
             }
             outcome = Err(stepping.takes_too_long());
@@ -287,9 +301,7 @@ fn to_the_end(
                 let coarser = fewer.and_then(|it| anew(it).ok());
                 coarser.filter(|(coarser, _)| coarser.model().springs() < springs).or_else(|| {
                     recorder.attempt.refinements = budget::LAST_RESORT - 1;
-                    let springs =
-                        budget::SPRINGS_OF_LAST_RESORT[usize::from(stepping.model().gross().is_none())];
-                    springs.iter().find_map(|springs| made(*springs, budget::LAST_RESORT).ok())
+                    last_resort(&stepping)
                 })
             }
             more => more.and_then(|springs| anew(springs).ok()),

@@ -133,7 +133,9 @@ fn physics(root: &Section, indenter: &Indenter, half_space: &HalfSpace, rows: &R
     friction.refer(|| contact(&motion.loading).map(motion::lengths))?;
     let friction = friction.build()?;
     motion::check(&section, &motion, &*mode, &*friction)?;
-    let reference_wear = match wear.archard_coefficient(Some(coulomb.coefficient)) {
+    // What a law by the contact as a whole makes of the energy is not in that.
+    let in_proportion = wear.archard_coefficient(Some(coulomb.coefficient));
+    let reference_wear = match in_proportion.filter(|_| wear.at_contact(0.0).is_none()) {
         Some(coefficient) => Archard { coefficient },
         None => contact(&motion.loading)?.reference_wear(&*wear),
     };

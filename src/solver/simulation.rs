@@ -545,7 +545,10 @@ impl Simulation {
         state.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
         let (mut fields, mut cycle, mut rate, mut depth) = (fields, cycle, rate, depth);
         if target.is_some() {
+            let (edge, before) = (state.stick.as_ref().map(|it| it.area), self.model.work_counted());
             state = self.model.begin_block(state, self.state.cycles)?;
+            self.model.count_jump(edge, &state);
+            self.progress.resolved_work += self.model.work_counted() - before;
             fields = self.model.fields(&state);
             // On a mesh that begins anew the depth between springs is another by as much as they leave open.
             depth = self.model.depth_on_springs(&state, &fields);

@@ -73,8 +73,8 @@ pub(in crate::run) struct Companion {
 pub(super) enum Lost {
     /// It comes to no end.
     NoEnd,
-    /// It takes longer than leaves time for the run.
-    Dear,
+    /// It takes longer than leaves time for the run; the work that it took to know, as [`work_so_far`].
+    Dear(u64),
 }
 
 impl Companion {
@@ -97,13 +97,13 @@ impl Companion {
         let most_steps = if implicit { coarser.most_steps } else { f64::INFINITY };
         let most_work = if implicit { coarser.most_work } else { f64::INFINITY };
         if unsampled.is_some() && work_of_looks(&simulation) > most_work {
-            return Err(Lost::Dear);
+            return Err(Lost::Dear(work_so_far(&simulation) as u64));
         }
         let stop = Arc::clone(coarser.stop);
         let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_work };
         let outcome = simulation.run(&mut [&mut seen]);
         if work_so_far(&simulation) > most_work {
-            return Err(Lost::Dear);
+            return Err(Lost::Dear(work_so_far(&simulation) as u64));
         }
         match outcome {
             Ok(Outcome::Interrupted) | Err(_) => Err(Lost::NoEnd),

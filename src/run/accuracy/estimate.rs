@@ -185,9 +185,12 @@ pub(in crate::run) struct Found {
 }
 
 impl Found {
-    /// Whether the run would take too long, as its companion did.
-    pub(in crate::run) fn are_dear(&self) -> bool {
-        matches!(self.first, Err(Lost::Dear))
+    /// Where the run would take too long, as its companion did, the work that this one took.
+    pub(in crate::run) fn dear(&self) -> Option<u64> {
+        match self.first {
+            Err(Lost::Dear(work)) => Some(work),
+            _ => None,
+        }
     }
 }
 

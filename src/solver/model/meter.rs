@@ -2,9 +2,9 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::Model;
 use super::motion::Motion;
 use super::schedule::CycleLoading;
+use super::{Model, State};
 use crate::contact::spring::searched_stick_compression;
 
 /// Nanoseconds of one core: of a substep through which a spring is passed at constant indentation, and where it is pressed and
@@ -13,6 +13,10 @@ const BY_SUBSTEP: [f64; 2] = [15.0, 50.0];
 const BY_COLUMN: f64 = 45.0;
 const BY_PAIR: f64 = 0.1;
 const BY_LOAD: f64 = 30.0;
+
+/// Nanoseconds of one core that a jump of the edge of stick between two blocks takes, on a profile in closed form and on one that is a table: what the ground that
+/// it passes has risen by is carried to wherever the contact edge can be.
+const BY_JUMP: [f64; 2] = [1e6, 1e7];
 
 /// Work counted so far, nanoseconds of one core, about. Whole numbers of what was done make it, so that it is the same on every machine.
 #[derive(Debug, Default)]
@@ -52,6 +56,14 @@ impl Model {
         let (compression, substeps) = searched_stick_compression(path, &*loading.friction, ratio);
         self.count_substeps(substeps, !path.is_level());
         compression
+    }
+
+    /// Counts the jump of the edge of stick from a squared radius, m², to where a block begins, if it is one.
+    pub fn count_jump(&self, from: Option<f64>, state: &State) {
+        let table = self.contact.equivalent_profile().end_of_table().is_some();
+        if state.stick.as_ref().map(|it| it.area) != from {
+            self.meter.add(BY_JUMP[usize::from(table)]);
+        }
     }
 
     /// Counts columns of slip and of loads that are carried to the surface, so many times.

@@ -1,7 +1,8 @@
 //! What acts on the contact in each cycle: laws, amplitude and path, by block and by history.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use super::envelope::Envelope;
 use super::first_force::first_force;
 use crate::contact::InitialContact;
 use crate::contact::spring::{Response, Steps, stick_compression};
@@ -135,6 +136,8 @@ pub struct Schedule {
     largest_indentation: f64,
     /// Whether steps follow an edge of stick that jumps between blocks.
     follows_jumps: bool,
+    /// What [`Schedule::envelope`] found for a contact of this indentation and amplitude, m; copies of the schedule share it.
+    envelope: Arc<OnceLock<([f64; 2], Envelope)>>,
 }
 
 impl Schedule {
@@ -155,6 +158,12 @@ impl Schedule {
             end
         });
         let ends: Vec<f64> = ends.collect();
+        // One block after the other that are the same are one without end.
+        let changes = blocks.iter().any(|block| {
+            [block.amplitude_factor, block.indentation_factor]
+                != [blocks[0].amplitude_factor, blocks[0].indentation_factor]
+        });
+        let ends = if changes { ends } else { vec![] };
         let resolved = resolution.resolved || !conditions.mode.is_tangential();
         let friction = conditions.friction.scaled(conditions.friction_history.at(0.0));
         let driven = driven_amplitude(contact, conditions, &*friction)?;
@@ -230,6 +239,7 @@ impl Schedule {
             friction_along_energy,
             largest_indentation,
             follows_jumps: true,
+            envelope: Arc::default(),
         })
     }
 
@@ -241,6 +251,10 @@ impl Schedule {
     /// Whether steps follow an edge of stick that jumps between blocks.
     pub(super) fn follows_jumps(&self) -> bool {
         self.follows_jumps
+    }
+
+    pub(super) fn known_envelope(&self) -> &OnceLock<([f64; 2], Envelope)> {
+        &self.envelope
     }
 
     /// Largest indentation of the run at which cycles begin, m.
@@ -451,6 +465,15 @@ impl Schedule {
     pub fn is_plain(&self) -> bool {
         let Conditions { wear, friction, .. } = &self.conditions;
         self.is_uniform() && !self.resolves() && wear.archard_coefficient(friction.coefficient()).is_some()
+    }
+
+    /// Whether wear is in proportion to pressure and slip, and slip known from the slip depth: the slopes of a cycle are those of the pressure.
+    pub fn wears_by_pressure_alone(&self) -> bool {
+        let Conditions { wear, friction, tangential_control, .. } = &self.conditions;
+        let given = *tangential_control == TangentialControl::Displacement && !self.resolves();
+        given
+            && friction.coefficient().is_some()
+            && wear.archard_coefficient(friction.coefficient()).is_some()
     }
 
     /// Whether nothing makes a kink in wear along the slip annulus. A resolved cycle does: it takes what is pulled as without contact.

@@ -95,6 +95,20 @@ impl Simulation {
         }
     }
 
+    /// The refusal of a run in gross slip of which a coarse one takes more work than a run may by itself.
+    pub fn reaches_too_slowly(&self) -> Error {
+        let (model, progress, cycles) = (&self.model, &self.progress, self.state.cycles);
+        let tau = cycles * model.contact().tau_per_cycle();
+        let why = format!(
+            "in gross slip wear goes on in steps of {:.1e} cycles, of which {} on {} springs lead to cycle {cycles} (τ = {tau:.4e}), and how far the contact comes to reach \
+             would take too long to find; end before (loading.tau = {tau:.3e})",
+            progress.next_step,
+            progress.steps + progress.rejected_steps,
+            model.springs()
+        );
+        Error::Inconsistent { what: "loading", why }
+    }
+
     /// The moment at which a run cannot go on, and what can be done.
     pub(super) fn stuck(&self, why: &str) -> Error {
         let (model, cycles) = (&self.model, self.state.cycles);
