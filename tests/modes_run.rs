@@ -361,14 +361,11 @@ fn simulation(model: Model, last: f64, before: Option<(State, Progress)>) -> Sim
     let stepper = Box::new(Sdirk::new(1e-5));
     match before {
         None => Simulation::new(model, stepper, 1e-5, plan).unwrap(),
-        Some((state, progress)) => Simulation::resume(
-            model,
-            stepper,
-            1e-5,
-            plan,
-            State { cycles: 0.0, ..state },
-            Progress { next_output: 0, ..progress },
-        ),
+        Some((state, progress)) => {
+            let state = model.with_resting_area(State { cycles: 0.0, ..state });
+            let progress = Progress { next_output: 0, ..progress };
+            Simulation::resume(model, stepper, 1e-5, plan, state, progress)
+        }
     }
 }
 

@@ -31,6 +31,9 @@ const MARGIN: f64 = 0.35;
 const OF_TIME: f64 = 0.3;
 const OF_TIME_LOSING_STICK: f64 = 0.03;
 
+/// The same where blocks recur: steps end at the ends of blocks, so that a smaller tolerance takes few more, and what they are off by adds up over the passes.
+const OF_TIME_IN_PASSES: f64 = 0.03;
+
 /// Springs added, as a part, for every unit of `n ln(a0/c)` beyond the first number, up to the second: with a small stick zone the fit's order sets
 /// in late.
 const ADDED: f64 = 0.1;
@@ -172,6 +175,7 @@ pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
             Some(_) => OF_STEPS * OF_TIME,
             None if loses_stick => OF_TIME_LOSING_STICK,
             None if nearly_slides(model) => NEAR_GROSS_SLIP * OF_TIME,
+            None if model.schedule().conditions().repeat => OF_TIME_IN_PASSES,
             None => OF_TIME,
         }
 }

@@ -281,7 +281,7 @@ impl Model {
             Backend::Hierarchical => next_to(mismatch, guess),
         };
         let compression = self.compression_at(&stick_zone, slip_area, |_, values| values.slip);
-        Ok(self.close_force(State {
+        Ok(self.with_resting_area(self.close_force(State {
             cycles: 0.0,
             slip_area,
             compression_rate: vec![0.0; compression.len()],
@@ -290,10 +290,10 @@ impl Model {
             volume_by_rate: 0.0,
             least_stick_radius: f64::INFINITY,
             slip_area_rate: 0.0,
-            resting_area: self.first_resting_area(),
+            resting_area: 0.0,
             stick,
             past: Past::default(),
-        }))
+        })))
     }
 
     /// Wear depth at the edge, m, of the compressions that give the inner springs the slip depth `slip(spring, unworn)`; zero at the

@@ -4,7 +4,6 @@
 //! indentation and friction stay, a spring that sticks at the start of a block sticks to its end. The springs of a mesh feel a little of what is worn one or two springs
 //! ahead. Where wear goes by a root of slip, that little would grow into a front of slip that creeps inwards, on any number of springs.
 
-use super::motion::{Energies, Motion};
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model, State, StickZone};
 use crate::laws::history::History;
@@ -40,7 +39,7 @@ impl Model {
     }
 
     /// Whether the mesh begins where springs slip in some cycle, and those that slip in others are found by their compressions at an indentation that is held.
-    pub(super) fn follows_ground_at_rest(&self) -> bool {
+    fn follows_ground_at_rest(&self) -> bool {
         let conditions = self.schedule.conditions();
         let changes = !conditions.blocks.is_empty() || self.limit_changes();
         changes && !conditions.holds_normal_force && self.moving().is_none() && self.gross().is_none()
@@ -53,9 +52,11 @@ impl Model {
     }
 
     /// A state with the ground that rests in the block that begins with it.
-    pub(super) fn with_resting_area(&self, state: State) -> State {
-        let loading = self.schedule.loading(state.cycles, state.cycles);
-        let limit = self.limit_of(&loading);
+    pub fn with_resting_area(&self, state: State) -> State {
+        if !self.follows_ground_at_rest() {
+            return state;
+        }
+        let limit = self.limit_of(&self.schedule.loading(state.cycles, state.cycles));
         // On ground that is not worn the place is known better than by springs.
         let unworn = self.unworn_area_above(limit);
         let edge = match unworn <= state.least_stick_radius.powi(2) {
@@ -63,12 +64,6 @@ impl Model {
             false => self.first_below(limit, &self.stick_zone, state.slip_area, &state.compression),
         };
         State { resting_area: self.beyond_mesh(edge), ..state }
-    }
-
-    /// The ground at rest in the first block.
-    pub(super) fn first_resting_area(&self) -> f64 {
-        let unworn = || self.unworn_area_above(self.limit_of(&self.schedule.loading(0.0, 0.0)));
-        if self.follows_ground_at_rest() { self.beyond_mesh(unworn()) } else { 0.0 }
     }
 
     /// The ground that rests in a cycle of an amplitude of the contact, m. Where the limit of slip changes, that is ground that has never slipped, as far as the unworn
@@ -130,32 +125,14 @@ impl Model {
             None => zone.stick_area,
         };
         let to = match loading.least_lift() {
-            0.0 => 1.0,
-            lift => {
+            lift if lift > 0.0 => {
                 let springs = OnSprings::new(self, zone, compression);
-                springs
-                    .compression
-                    .iter()
-                    .rposition(|q| *q >= lift)
-                    .map_or(0.0, |j| springs.crossing(j + 1, lift))
+                let last = springs.compression.iter().rposition(|q| *q >= lift);
+                last.map_or(0.0, |last| springs.crossing(last + 1, lift))
             }
+            _ => 1.0,
         };
         [from.max(at_rest.area), zone.stick_area + fields.slip_area * to].map(f64::sqrt)
-    }
-
-    /// Takes the slip away that errors of their compressions give to springs that rest.
-    pub(super) fn keep_at_rest(&self, fields: &Fields, motion: &mut Motion) {
-        if motion.at_rest.area == 0.0 {
-            return;
-        }
-        let nodes = &self.annulus().operators.abel.nodes()[1..=motion.energies.len()];
-        let place = |x: &f64| fields.stick_zone.stick_area + fields.slip_area * x;
-        let resting = nodes.partition_point(|x| place(x) <= motion.at_rest.area);
-        motion.energies[..resting].fill(Energies::default());
-        for part in [&mut motion.slip, &mut motion.slip_slope] {
-            let rows = resting.min(part.nrows());
-            part.subrows_mut(0, rows).fill(0.0);
-        }
     }
 }
 

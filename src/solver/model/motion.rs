@@ -91,6 +91,21 @@ impl Model {
         motion
     }
 
+    /// Takes the slip away that errors of their compressions give to springs that rest.
+    fn keep_at_rest(&self, fields: &Fields, motion: &mut Motion) {
+        if motion.at_rest.area == 0.0 {
+            return;
+        }
+        let nodes = &self.annulus().operators.abel.nodes()[1..=motion.energies.len()];
+        let place = |x: &f64| fields.stick_zone.stick_area + fields.slip_area * x;
+        let resting = nodes.partition_point(|x| place(x) <= motion.at_rest.area);
+        motion.energies[..resting].fill(Energies::default());
+        for part in [&mut motion.slip, &mut motion.slip_slope] {
+            let rows = resting.min(part.nrows());
+            part.subrows_mut(0, rows).fill(0.0);
+        }
+    }
+
     /// Tangential oscillation at constant indentation: `4 σ(q)` in a single step.
     fn closed_form_motion(
         &self,

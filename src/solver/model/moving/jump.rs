@@ -84,9 +84,9 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::NotConverged`](crate::Error::NotConverged) if no spring has the compression at which stick would end.
-    pub fn begin_block(&self, state: State, before: f64) -> Result<State> {
-        if self.schedule.begins_block(before, state.cycles) && self.follows_ground_at_rest() {
-            return Ok(self.with_resting_area(state));
+    pub fn begin_block(&self, mut state: State, before: f64) -> Result<State> {
+        if self.schedule.begins_block(before, state.cycles) {
+            state = self.with_resting_area(state);
         }
         let (Some(moving), Some(stick)) = (self.moving(), &state.stick) else { return Ok(state) };
         if !moving.jumps && !moving.in_blocks {
