@@ -215,7 +215,7 @@ impl Model {
             let mean = self.contact.mean_pressure();
             pressure =
                 Mat::from_fn(n, pressure.ncols(), |i, m| spreading.passed_on(pressure[(i, m)], mean).0);
-            self.spread(loading, motion.at_rest, compression, fields, spreading, &mut pressure);
+            self.debris(loading, motion.at_rest, compression, fields).spread(spreading, &mut pressure);
             for i in 0..n {
                 let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
                 (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);

@@ -20,7 +20,7 @@ impl Model {
         compression: Option<f64>,
     ) -> (f64, f64) {
         compression.map_or((1.0, 0.0), |compression| {
-            spreading.filled(compression - loading.lift, self.contact.slip_compression())
+            spreading.filled(compression - loading.least_lift(), self.contact.slip_compression())
         })
     }
 
@@ -47,12 +47,8 @@ impl Model {
             column.iter_mut().zip(&slopes).for_each(|(to, slope)| *to *= slope);
         }
         let mut spread = Mat::zeros(n, inner);
-        product(
-            &mut spread,
-            self.averages(loading, motion.at_rest, compression, fields, spreading).as_ref(),
-            touching.as_ref(),
-            1.0,
-        );
+        let averages = self.debris(loading, motion.at_rest, compression, fields).averages(spreading);
+        product(&mut spread, averages.as_ref(), touching.as_ref(), 1.0);
         for i in 0..n {
             let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
             (0..inner).for_each(|j| spread[(i, j)] *= filled);
@@ -60,17 +56,42 @@ impl Model {
         spread
     }
 
-    /// Spreads pressures at the springs, shape `(springs, steps)`, by [`Model::averages`], without that matrix.
-    pub(super) fn spread(
+    /// Where debris lies: where springs slip, alone.
+    pub(super) fn debris(
         &self,
         loading: &CycleLoading,
         at_rest: AtRest,
         compression: &[f64],
         fields: &Fields,
-        spreading: Spreading,
-        pressure: &mut Mat<f64>,
-    ) {
-        let ([radii, widths], edge) = self.widths(loading, at_rest, compression, fields);
+    ) -> Debris {
+        let radii = self.spring_radii(fields);
+        let (last, inside) = (radii.len() - 1, fields.stick_zone.stick_area.sqrt());
+        let [slips, edge] = self.slipping_between(loading, at_rest, compression, fields);
+        let width = |j: usize| {
+            let before = if j == 0 { inside } else { radii[j - 1] };
+            let [from, to] =
+                [before, radii[(j + 1).min(last)]].map(|next| (0.5 * (radii[j] + next)).max(slips).min(edge));
+            to - from
+        };
+        let widths = (0..=last).map(width).collect();
+        Debris { radii, widths, edge }
+    }
+}
+
+/// Where debris lies.
+pub(super) struct Debris {
+    /// Radii of the springs, m.
+    radii: Vec<f64>,
+    /// Widths of the rings that they stand for, m, as far as debris lies there.
+    widths: Vec<f64>,
+    /// Radius where the contact ends, m.
+    edge: f64,
+}
+
+impl Debris {
+    /// Spreads pressures at the springs, shape `(springs, steps)`, by [`Debris::averages`], without that matrix.
+    pub(super) fn spread(&self, spreading: Spreading, pressure: &mut Mat<f64>) {
+        let Self { radii, widths, edge } = self;
         let n = radii.len();
         // Of each pair of springs the weight is found once: columns of the pressures beside one for the sums of the weights.
         let steps = pressure.ncols();
@@ -101,38 +122,10 @@ impl Model {
         }
     }
 
-    /// Radii of the springs, and of the rings that they stand for the widths where springs slip, m: debris lies there alone; and where the contact ends.
-    fn widths(
-        &self,
-        loading: &CycleLoading,
-        at_rest: AtRest,
-        compression: &[f64],
-        fields: &Fields,
-    ) -> ([Vec<f64>; 2], f64) {
-        let radii = self.spring_radii(fields);
-        let (last, inside) = (radii.len() - 1, fields.stick_zone.stick_area.sqrt());
-        let [slips, ends] = self.slipping_between(loading, at_rest, compression, fields);
-        let width = |j: usize| {
-            let before = if j == 0 { inside } else { radii[j - 1] };
-            let [from, to] =
-                [before, radii[(j + 1).min(last)]].map(|next| (0.5 * (radii[j] + next)).max(slips).min(ends));
-            to - from
-        };
-        let widths = (0..=last).map(width).collect();
-        ([radii, widths], ends)
-    }
-
     /// Averages along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well inside and to nothing
     /// there: else ground would wear where no pressure is at all.
-    pub(super) fn averages(
-        &self,
-        loading: &CycleLoading,
-        at_rest: AtRest,
-        compression: &[f64],
-        fields: &Fields,
-        spreading: Spreading,
-    ) -> Mat<f64> {
-        let ([radii, widths], edge) = self.widths(loading, at_rest, compression, fields);
+    fn averages(&self, spreading: Spreading) -> Mat<f64> {
+        let Self { radii, widths, edge } = self;
         let n = radii.len();
         let mut weights = Mat::zeros(n, n);
         for j in 0..n {
