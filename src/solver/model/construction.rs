@@ -1,8 +1,8 @@
 //! How a contact is put on springs.
 
-use super::envelope::Envelope;
 use super::meter::Meter;
 use super::output::OutputRadii;
+use super::schedule::Envelope;
 use super::{
     AnnulusMesh, Gross, HIDDEN, Model, MovingStick, OperatorStore, Resolution, Schedule, SpringMesh,
     StickZone,

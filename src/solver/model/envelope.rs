@@ -3,7 +3,7 @@
 use super::moving::{
     LAST_CORE, first_slip_compression, follows_held_force, held_stick_radius, slides_at_once,
 };
-use super::schedule::{CycleLoading, Schedule};
+use super::schedule::{CycleLoading, Envelope, Schedule};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
@@ -31,17 +31,6 @@ pub(super) fn core_share(grading: f64) -> f64 {
 
 /// Steps in the search for the last stick radius.
 const SEARCH: usize = 400;
-
-/// Bounds of where springs slip and wear in some cycle of a run.
-#[derive(Debug, Clone)]
-pub struct Envelope {
-    /// The contact at the largest indentation, with the smallest stick radius.
-    pub contact: InitialContact,
-    /// Whether no stick radius is left in some cycle.
-    pub slides: bool,
-    /// By how much the compression below which springs slip exceeds that at the edge of stick, m; zero where that is one.
-    pub surplus: f64,
-}
 
 impl Schedule {
     /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.

@@ -2,7 +2,6 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::envelope::Envelope;
 use super::first_force::first_force;
 use crate::contact::InitialContact;
 use crate::contact::spring::{Response, Steps, stick_compression};
@@ -120,6 +119,17 @@ const SUBSTEPS: usize = 96;
 
 /// Substeps for which there is one step of the wear where springs are followed within it.
 const SUBSTEPS_PER_STEP: usize = 4;
+
+/// Bounds of where springs slip and wear in some cycle of a run.
+#[derive(Debug, Clone)]
+pub struct Envelope {
+    /// The contact at the largest indentation, with the smallest stick radius.
+    pub contact: InitialContact,
+    /// Whether no stick radius is left in some cycle.
+    pub slides: bool,
+    /// By how much the compression below which springs slip exceeds that at the edge of stick, m; zero where that is one.
+    pub surplus: f64,
+}
 
 /// What acts when.
 #[derive(Debug, Clone)]
