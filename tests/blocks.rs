@@ -236,6 +236,10 @@ const WEAR: [&str; 3] = [
 fn worn_by(wear: &str, stick_ratio: f64, end: f64, more: &str, springs: usize) -> f64 {
     let loading = format!("stick_ratio = {stick_ratio}\ntau = {end}");
     let text = scene("paraboloid]\nradius = 1", 0.0, &loading, more, Some(springs));
+    let text = match more.starts_with("normal_force") {
+        true => text.replace("indentation = \"1 um\"\n", ""),
+        false => text,
+    };
     let scene = Scene::from_str(&text.replace(WEAR[0], wear)).unwrap();
     fretwear::Simulation::new(&scene).unwrap().run().unwrap().last().wear_volume
 }
@@ -274,6 +278,25 @@ fn what_is_to_come_leaves_wear_as_it_was() {
             let off = followed / alone - 1.0;
             println!("{kind}, {wear}: {off:.1e}");
             assert!(off.abs() < within, "{kind}, {wear}: {off:e}");
+        }
+    }
+}
+
+/// Where a result is asked for changes nothing in what is worn: under a balance of tangential forces the edge of stick jumps between blocks, and nowhere else.
+#[test]
+fn snapshots_leave_wear_as_it_is() {
+    let blocks = "[[loading.blocks]]\ntau = 0.3\namplitude_factor = 0.7\n[[loading.blocks]]\ntau = 0.3\namplitude_factor = 0.8\n";
+    let recurring = format!("repeat = true\n{blocks}");
+    let held = "normal_force = 266.6667\n";
+    for control in ["", "rig_stiffness = 5.333333e8\n", "tangential_control = \"force\"\n", held] {
+        for wear in &WEAR[..2] {
+            let [few, many] = [2, 24].map(|snapshots| {
+                let output = format!("\n[output]\nsnapshots = {snapshots}\n");
+                worn_by(wear, 0.7, 1.0, &format!("{control}{recurring}{output}"), 80)
+            });
+            let off = few / many - 1.0;
+            println!("{control:?}, {wear}: {off:.1e}");
+            assert!(off.abs() < 3e-4, "{control:?}, {wear}: {off:e}");
         }
     }
 }

@@ -293,6 +293,11 @@ impl Schedule {
         loading
     }
 
+    /// Whether what acts changes from one block to another.
+    pub fn changes_between_blocks(&self) -> bool {
+        !self.ends.is_empty()
+    }
+
     /// Whether one block, or one pass of it, ends between two times, cycles.
     pub fn begins_block(&self, before: f64, now: f64) -> bool {
         self.block(before) != self.block(now)

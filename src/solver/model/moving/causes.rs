@@ -29,7 +29,7 @@ impl MovingStick {
         if by_energy {
             check_along_energy(schedule, slides && !follows)?;
         }
-        let in_blocks = !conditions.blocks.is_empty();
+        let in_blocks = schedule.changes_between_blocks();
         check_memory(schedule, contact, follows)?;
         if slides && !follows {
             if conditions.holds_normal_force {
@@ -95,7 +95,8 @@ impl MovingStick {
         let blocks = &conditions.blocks;
         let amplitudes = || blocks.iter().map(|block| block.amplitude_factor);
         let by = Self::by(Cause::Friction);
-        if blocks.is_empty() && changes && schedule.lifts() {
+        let in_blocks = schedule.changes_between_blocks();
+        if !in_blocks && changes && schedule.lifts() {
             if falls && rises {
                 check_rest(schedule, contact)?;
             }
@@ -106,11 +107,11 @@ impl MovingStick {
         }
         let level =
             at_one_indentation(conditions) && amplitudes().all(|factor| factor > 0.0) && !schedule.lifts();
-        let turning = Self { outwards: !falls, turns: true, in_blocks: !blocks.is_empty(), ..by.clone() };
-        if *schedule.friction_along_energy() != History::Constant && !blocks.is_empty() && level {
+        let turning = Self { outwards: !falls, turns: true, in_blocks, ..by.clone() };
+        if *schedule.friction_along_energy() != History::Constant && in_blocks && level {
             return Ok(Some(turning));
         }
-        if !blocks.is_empty() || falls && rises {
+        if in_blocks || falls && rises {
             let shrink = amplitudes().zip(amplitudes().skip(1)).any(|(one, next)| next < one);
             // Where some shrink and the last slip farthest, the mesh from where the edge is innermost tells the profile better.
             let jumps = match shrink {
@@ -209,7 +210,7 @@ fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
             "let only amplitude factors differ",
         ),
         (
-            schedule.lifts() && !conditions.blocks.is_empty(),
+            schedule.lifts() && schedule.changes_between_blocks(),
             "blocks where the indentation changes within a period",
             "leave out the blocks, or the normal oscillation",
         ),

@@ -85,9 +85,10 @@ impl Model {
     /// # Errors
     /// [`Error::NotConverged`](crate::Error::NotConverged) if no spring has the compression at which stick would end.
     pub fn begin_block(&self, mut state: State, before: f64) -> Result<State> {
-        if self.schedule.begins_block(before, state.cycles) {
-            state = self.with_resting_area(state);
+        if !self.schedule.begins_block(before, state.cycles) {
+            return Ok(state);
         }
+        state = self.with_resting_area(state);
         let (Some(moving), Some(stick)) = (self.moving(), &state.stick) else { return Ok(state) };
         if !moving.jumps && !moving.in_blocks {
             return Ok(state);
