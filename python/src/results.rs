@@ -154,9 +154,9 @@ impl Results {
         Some(report::json(&RunReport::new(run, self.path.as_deref().unwrap_or(Path::new("")))))
     }
 
-    /// A word about an end that is less accurate than was asked for.
-    fn warning(&self) -> Option<String> {
-        if let Source::Run(run) = &self.source { run.warning() } else { None }
+    /// What deserves a word of a run that has ended.
+    fn warnings(&self) -> Vec<String> {
+        if let Source::Run(run) = &self.source { run.warnings() } else { vec![] }
     }
 
     /// The kinds of figures that fit.

@@ -66,7 +66,7 @@ pub fn run(arguments: &Run) -> End {
             (*results, output)
         }
     };
-    results.warning().into_iter().for_each(|warning| complain("warning", &warning));
+    results.warnings().into_iter().for_each(|warning| complain("warning", &warning));
     let report = RunReport::new(&results, &output);
     let text = match (arguments.json, arguments.quiet) {
         (true, _) => report::json(&report),

@@ -1,11 +1,16 @@
 //! What a run came to, in memory.
 
+use std::f64::consts::PI;
+
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::indenter::Indenter;
 use crate::contact::stick_slip::{FrettingRegime, Regime};
 use crate::data::{
     Checkpoint, LimitCurves, LimitDistance, RunHeader, Snapshot, StopReason, fretting_regimes,
 };
+
+/// Largest part of the normal force that tension within the contact may take without a word. Where wear is local it takes 2e-3 at most, next to one node.
+const TENSION: f64 = 1e-2;
 
 /// What a run came to: snapshots from its start to its end, the limiting shape, the estimated error. SI units throughout.
 ///
@@ -243,8 +248,39 @@ impl Results {
         &self.checkpoint
     }
 
+    /// What deserves a word: an end that is less accurate than was asked for, and tension within the contact.
+    pub fn warnings(&self) -> Vec<String> {
+        [self.inaccuracy(), self.pulls()].into_iter().flatten().collect()
+    }
+
+    /// Part of the normal force that tension within the contact takes.
+    ///
+    /// ```text
+    /// ∫ max(-p, 0) 2π r dr / F
+    /// ```
+    fn tension(&self, snapshot: &Snapshot) -> f64 {
+        let radii = self.radius();
+        let pulled = |i: usize| (-snapshot.pressure[i]).max(0.0) * radii[i];
+        let rings = (1..radii.len()).map(|i| PI * (pulled(i - 1) + pulled(i)) * (radii[i] - radii[i - 1]));
+        rings.sum::<f64>() / snapshot.normal_force
+    }
+
+    /// A word where springs pull: debris has worn the ground away from under the pressure.
+    fn pulls(&self) -> Option<String> {
+        let seen = self.snapshots.iter().chain([&self.last]);
+        let pulling: Vec<(f64, f64)> =
+            seen.map(|it| (it.tau, self.tension(it))).filter(|(_, part)| *part > TENSION).collect();
+        let (first, _) = *pulling.first()?;
+        let (at, most) = *pulling.iter().max_by(|one, other| one.1.total_cmp(&other.1))?;
+        Some(format!(
+            "from τ = {first:.3} on springs within the contact pull, at τ = {at:.3} with {:.0} % of the normal force, for debris has worn the ground away from under the pressure. \
+             Such ground would lose touch, which is not modelled: it wears as if it adhered. End before (loading.tau = {first:.3}), or take a law of wear that is local",
+            100.0 * most
+        ))
+    }
+
     /// A word about an end that is less accurate than was asked for.
-    pub fn warning(&self) -> Option<String> {
+    fn inaccuracy(&self) -> Option<String> {
         let accuracy = self.checkpoint.accuracy?;
         let error = self.checkpoint.error_estimate.filter(|error| *error > accuracy)?;
         let springs = self.springs();

@@ -76,8 +76,8 @@ def _run(scenes: list[Scene], threads: int | None, progress: bool, return_errors
     failed = [end for end in ended if isinstance(end, Exception)]
     if failed and not return_errors:
         raise failed[0]
-    for word in (end.warning() for end in ended if not isinstance(end, Exception)):
-        if word is not None:
+    for end in ended:
+        for word in [] if isinstance(end, Exception) else end.warnings():
             warnings.warn(word, RuntimeWarning, stacklevel=3)
     return [end if isinstance(end, Exception) else Run(end) for end in ended]
 
