@@ -295,6 +295,12 @@ impl UnwornSlip {
         self.values(logarithm, slip_compression, slip)
     }
 
+    /// `F 1` at `z = r² - c²`, m², with another stick area `c²`, m²: how far a rise of the ground within `c` by one raises that outside. The same for every profile.
+    pub fn uniform_at_stick(&self, stick_area: f64, z: f64) -> f64 {
+        let logarithm = (z / stick_area).ln_1p();
+        power(logarithm, self.mu) * self.uniform.value(logarithm)
+    }
+
     /// `F e`, m, at `z = r² - c²`, m², of compressions `e(x² - c²)`, m, by quadrature.
     pub fn carried(&self, stick_area: f64, z: f64, compression: impl Fn(f64) -> f64) -> f64 {
         let (logarithm, nu) = ((z / stick_area).ln_1p(), 1.0 - self.mu);

@@ -1,5 +1,5 @@
 //! How the error of a run is estimated whose springs the program chose: by coarser runs of the same scene.
 
-mod companion;
+pub(super) mod companion;
 pub(super) mod estimate;
 mod substeps;

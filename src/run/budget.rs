@@ -54,11 +54,11 @@ pub(in crate::run) const SURE: f64 = 0.6;
 /// becomes of the contact, and that nothing is known of the error.
 pub(in crate::run) const LAST_RESORT: u64 = REFINEMENTS + 2;
 
-/// Tolerance of that attempt, substeps of a period that is sampled, and the springs that it tries: in gross slip, and elsewhere with those that a mesh from near the axis
-/// needs.
+/// Tolerance of that attempt, substeps of a period that is sampled, and the springs that it tries one after the other until there is an end: in gross slip, and elsewhere,
+/// where a mesh from near the axis needs more.
 const COARSE_STEPS: f64 = 1e-2;
 const COARSE_SUBSTEPS: usize = 48;
-pub(in crate::run) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10], &[24, 60]];
+pub(in crate::run) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96]];
 
 /// The numerics of an attempt at a scene.
 ///

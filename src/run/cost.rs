@@ -25,6 +25,10 @@ const FEW_STEPS: f64 = 1e3;
 /// Dimensionless time for which a run that ends at a rate may last.
 const SOME_TAU: f64 = 30.0;
 
+/// Dimensionless time in which the rate of wear never falls to the second number, a part of the first.
+const LEAST_TAU: f64 = 0.3;
+const SLOWED: f64 = 0.1;
+
 /// Steps times the fastest rate of relaxation for which Bogacki and Shampine's method is stable, on the negative real axis.
 const STABLE: f64 = 2.5;
 
@@ -37,11 +41,11 @@ pub(super) const MOST_WORK: f64 = 8e9;
 /// Work of a companion over that of the run, about, beyond which the run would take too long.
 pub(in crate::run) const OF_COMPANION: f64 = 0.2;
 
-/// The same for a run on so few springs that none are left out.
-const MOST_WORK_OF_LAST: f64 = 1.2e10;
+/// The same for a run on so few springs that none are left out: others may find an end where it does not.
+const MOST_WORK_OF_LAST: f64 = 6e9;
 
 /// Most work of all attempts at a run together, their companions included, as [`work_so_far`], and the part of [`MOST_WORK`] that each may take in any case.
-const MOST_WORK_OF_ALL: f64 = 1.2e10;
+const MOST_WORK_OF_ALL: f64 = 1.5e10;
 const LEAST_PART: f64 = 0.05;
 
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
@@ -50,8 +54,9 @@ pub(super) const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];
 /// Work of an attempt that is left: to begin it, over [`MOST_WORK`], and over that of its companion.
 const OF_LEFT: [f64; 2] = [0.05, 2.5];
 
-/// Least part of [`MOST_WORK`] that the last resort may take, and the part of [`MOST_WORK_OF_ALL`] beyond which it is what follows on an attempt that takes too long.
-const OF_LAST_RESORT: f64 = 0.3;
+/// Least parts of [`MOST_WORK`] that the last resort may take and each that follows on other springs, and the part of [`MOST_WORK_OF_ALL`] beyond which it is what follows on
+/// an attempt that takes too long.
+const OF_LAST_RESORT: [f64; 2] = [0.3, 0.1];
 const NEARLY_ALL: f64 = 0.4;
 
 /// Springs of a run that takes too long when it is made anew over those before, and fewest with which it is.
@@ -67,18 +72,17 @@ const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
 /// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves, and in gross slip, where its sums are over the whole contact; by pair of springs over which wear
 /// spreads; of the factors, by triple of springs, without and with slopes that are products of matrices; and of a step in any case, in gross slip and elsewhere. Periods that are resolved are counted as they are passed.
-const BY_SPRING: [f64; 2] = [150.0, 500.0];
-const BY_SPRING_IN_GROSS_SLIP: f64 = 1000.0;
-const BY_SPREADING: f64 = 30.0;
+const BY_SPRING: [f64; 2] = [150.0, 300.0];
+const BY_SPRING_IN_GROSS_SLIP: f64 = 200.0;
+const BY_SPREADING: f64 = 10.0;
 const BY_TRIPLE: [f64; 2] = [0.05, 0.35];
-const OVERHEAD: [f64; 2] = [4e3, 2e4];
+const OVERHEAD: [f64; 2] = [4e3, 4e4];
 
 /// Power of the springs with which the work of resolved periods grows.
 const OF_RESOLVED: f64 = 1.5;
 
-/// How much longer it takes where a profile is a table, without and with an edge of stick that moves: slip of the unworn contact is then by quadrature in each
-/// evaluation.
-const OF_TABLE: [f64; 2] = [4.0, 12.0];
+/// How much longer it takes where a profile is a table and the edge of stick moves: slip of the unworn contact is then by quadrature in each evaluation.
+const OF_TABLE: f64 = 12.0;
 
 /// Work of a step that is tried, nanoseconds of one core, about, but for that of the periods that are resolved. The same on every machine, so that a run and one that
 /// was interrupted take the same way.
@@ -88,8 +92,8 @@ fn work_of_step(model: &Model, springs: f64) -> f64 {
     let multiplies = model.gross().is_none() && !schedule.wears_by_pressure_alone();
     let [of_whole, elsewhere] = OVERHEAD;
     let overhead = if model.gross().is_some() { of_whole } else { elsewhere };
-    let table =
-        if model.contact().equivalent_profile().end_of_table().is_some() { OF_TABLE[moves] } else { 1.0 };
+    let is_table = model.contact().equivalent_profile().end_of_table().is_some();
+    let table = if is_table && moves == 1 { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
     let once = if model.gross().is_some() { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
     overhead
@@ -145,8 +149,11 @@ pub(super) fn work_of_left(companion: u64) -> u64 {
 }
 
 /// Most work of the last resort, which has no companions, after others that took so much.
-pub(super) fn work_of_last_resort(work: u64) -> f64 {
-    (MOST_WORK_OF_ALL - work as f64).max(OF_LAST_RESORT * MOST_WORK)
+///
+/// # Arguments
+/// * `follows` -- whether another on other springs has found no end
+pub(super) fn work_of_last_resort(work: u64, follows: bool) -> f64 {
+    (MOST_WORK_OF_ALL - work as f64).max(OF_LAST_RESORT[usize::from(follows)] * MOST_WORK)
 }
 
 /// Whether attempts have taken so much that what is left is for the last resort.
@@ -227,14 +234,22 @@ pub(super) fn check(choice: Choice, by_hand: bool, simulation: &mut Simulation) 
 
 /// Refuses more ends of blocks, at each of which a step ends, than any attempt comes to on springs that the program chooses.
 fn check_blocks(simulation: &Simulation) -> Result<()> {
-    let (model, End::Cycles(cycles)) = (simulation.model(), simulation.plan().end) else { return Ok(()) };
+    let model = simulation.model();
+    let [cycles, until] = match simulation.plan().end {
+        End::Cycles(cycles) => [cycles, 0.0],
+        End::Rate(rate) if rate < SLOWED && model.schedule().changes_by_wear_alone() => {
+            [LEAST_TAU / model.contact().tau_per_cycle(), rate]
+        }
+        End::Rate(_) => return Ok(()),
+    };
     let breaks = model.schedule().breaks_until(cycles);
     let most = MOST_WORK_OF_ALL / work_of_step(model, FEWEST as f64);
     if breaks <= most {
         return Ok(());
     }
+    let begun = if until > 0.0 { ", before the rate of wear falls at all" } else { "" };
     let why = format!(
-        "the run has {breaks:.1e} ends of blocks in it, at each of which a step ends, and comes to at most {most:.1e} of them by itself; make the blocks longer, ask for fewer \
+        "the run has {breaks:.1e} ends of blocks in it{begun}, at each of which a step ends, and comes to at most {most:.1e} of them by itself; make the blocks longer, ask for fewer \
          cycles, or go on by hand (numerics.springs), however long it takes"
     );
     Err(Error::Inconsistent { what: "loading.blocks", why })

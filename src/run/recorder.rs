@@ -8,6 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::Shared;
+use super::accuracy::companion::Dear;
 use super::accuracy::estimate::{Coarsening, Companions};
 use super::budget;
 use super::cost;
@@ -98,8 +99,8 @@ pub(super) struct Recorder {
     takes_too_long: bool,
     /// Whether the companions tell that it would take too long; they may do so while it runs.
     would_take_too_long: Arc<AtomicBool>,
-    /// Work that they took to know.
-    work_of_dear: u64,
+    /// How far they came to know.
+    dear: Option<Dear>,
     pub(super) attempt: Attempt,
 }
 
@@ -124,7 +125,7 @@ impl Recorder {
             most_work: f64::INFINITY,
             takes_too_long: false,
             would_take_too_long: Arc::default(),
-            work_of_dear: 0,
+            dear: None,
             attempt: Attempt::default(),
         }
     }
@@ -141,7 +142,12 @@ impl Recorder {
 
     /// Work of an attempt that was left since its companions told so.
     pub(super) fn work_of_left(&self) -> u64 {
-        cost::work_of_left(self.work_of_dear)
+        cost::work_of_left(self.dear.map_or(0, |it| it.work))
+    }
+
+    /// Whether they tell that somewhat fewer springs would not do either.
+    pub(super) fn is_far_too_long(&self) -> bool {
+        self.dear.is_some_and(|it| !it.halfway)
     }
 
     /// Whether the file is written where the run ends.
@@ -180,7 +186,10 @@ impl Recorder {
         // Also where another model has taken the run up, as before an interruption.
         let (model, _) = simulation.first();
         let most = || match is_last {
-            true => cost::work_of_last_resort(self.attempt.work),
+            true => {
+                let follows = self.attempt.refinements > budget::LAST_RESORT;
+                cost::work_of_last_resort(self.attempt.work, follows)
+            }
             false => (part * cost::most_work(model)).min(cost::work_left(self.attempt.work)),
         };
         self.most_work = if bounded { most() } else { f64::INFINITY };
@@ -195,7 +204,7 @@ impl Recorder {
         };
         let (outcome, found) = beside(|| simulation.run(&mut [&mut *self, onlookers]), run_companions);
         if let (Some(companions), Some(found)) = (&mut self.companions, found) {
-            self.work_of_dear = found.dear().unwrap_or(0);
+            self.dear = found.dear();
             companions.take(found);
         }
         outcome
@@ -233,6 +242,9 @@ impl Recorder {
     ) -> Option<usize> {
         let (accuracy, springs) = (scene.numerics().accuracy, simulation.model().springs());
         let companions = self.companions.as_ref().filter(|_| scene.numerics().springs.is_none())?;
+        if simulation.model().is_losing_stick(simulation.state()) {
+            return None;
+        }
         let wanted = match outcome {
             Ok(Outcome::Interrupted) => None,
             // The companion of a finer run may come to an end.
@@ -250,9 +262,10 @@ impl Recorder {
         if simulation.is_handed_over() { wanted.map(budget::springs_before) } else { wanted }
     }
 
-    /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost.
+    /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.
     pub(super) fn looks_for_an_end(&self, simulation: &Simulation) -> bool {
-        self.accuracy.is_some() && !simulation.model().loses_stick(simulation.state())
+        let (model, state) = (simulation.model(), simulation.state());
+        self.accuracy.is_some() && !model.loses_stick(state) && !model.is_losing_stick(state)
     }
 
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {

@@ -231,18 +231,19 @@ fn to_the_end(
         };
         let anew = |springs: usize| made(springs, 0);
         let is_last = recorder.attempt.refinements >= budget::LAST_RESORT;
-        let last_resort = |stepping: &stepping::Simulation| {
+        let last_resort = |stepping: &stepping::Simulation, tried: Option<usize>| {
             let springs = budget::SPRINGS_OF_LAST_RESORT[usize::from(stepping.model().gross().is_none())];
-            springs.iter().find_map(|springs| made(*springs, budget::LAST_RESORT).ok())
+            let next = tried.map_or(0, |tried| 1 + springs.iter().take_while(|it| **it != tried).count());
+            springs.iter().skip(next).find_map(|springs| made(*springs, budget::LAST_RESORT).ok())
         };
         // On fewer springs where these take too long; a mesh may need as many.
-        let coarser = |stepping: &stepping::Simulation, work: u64| {
+        let coarser = |stepping: &stepping::Simulation, work: u64, far_too_long: bool| {
             if is_last {
                 return None;
             }
             // In gross slip the last resort has no fewer springs than these.
-            if stepping.model().gross().is_none() && cost::is_nearly_spent(work) {
-                return last_resort(stepping).map(|found| (found, budget::LAST_RESORT));
+            if stepping.model().gross().is_none() && (far_too_long || cost::is_nearly_spent(work)) {
+                return last_resort(stepping, None).map(|found| (found, budget::LAST_RESORT));
             }
             let springs = stepping.first().0.springs();
             let coarser = cost::fewer(springs).and_then(|fewer| anew(fewer).ok());
@@ -254,7 +255,7 @@ fn to_the_end(
         let mut outcome = recorder.run(scene, store, &mut stepping, limit.is_some(), first, onlookers);
         if recorder.would_take_too_long() {
             let work = recorder.attempt.work + recorder.work_of_left();
-            if let Some((found, refinements)) = coarser(&stepping, work) {
+            if let Some((found, refinements)) = coarser(&stepping, work, recorder.is_far_too_long()) {
                 (stepping, limit) = found;
                 if refinements == budget::LAST_RESORT {
                     recorder.attempt.refinements = refinements;
@@ -268,7 +269,9 @@ fn to_the_end(
         let work = cost::work_of(&stepping);
         if recorder.takes_too_long() {
             let spent = recorder.attempt.work + work;
-            if let Some((found, refinements)) = (ended_on == 0).then(|| coarser(&stepping, spent)).flatten() {
+            if let Some((found, refinements)) =
+                (ended_on == 0).then(|| coarser(&stepping, spent, false)).flatten()
+            {
                 (stepping, limit) = found;
                 recorder.writer.restart(header(scene, stepping.model(), limit.as_ref()));
                 recorder.attempt.refinements = refinements;
@@ -301,8 +304,16 @@ fn to_the_end(
                 let coarser = fewer.and_then(|it| anew(it).ok());
                 coarser.filter(|(coarser, _)| coarser.model().springs() < springs).or_else(|| {
                     recorder.attempt.refinements = budget::LAST_RESORT - 1;
-                    last_resort(&stepping)
+                    last_resort(&stepping, None)
                 })
+            }
+            // Steps as coarse lead on from some places of the springs and not from others.
+            None if no_end
+                && is_last
+                && !recorder.takes_too_long()
+                && recorder.looks_for_an_end(&stepping) =>
+            {
+                last_resort(&stepping, Some(stepping.first().0.springs()))
             }
             more => more.and_then(|springs| anew(springs).ok()),
         };

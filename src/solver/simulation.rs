@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::error::Result;
 use crate::laws::loading::has_come;
 use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
-use crate::solver::stepper::{self, Stepper};
+use crate::solver::stepper::{self, Stepper, Trial};
 
 mod failure;
 mod hand_over;
@@ -35,7 +35,7 @@ const CERTAIN_WEAR: f64 = 0.5;
 
 /// Rejected steps after which a run is given up if they are more than half of the accepted ones as well. Where a held force loses its stick
 /// zone, the edge of stick is followed in ever smaller steps.
-const MOST_REJECTED: u64 = 4000;
+const MOST_REJECTED: u64 = 1000;
 
 /// Dimensionless time at which a run ends that would last until its rate has fallen, where wear goes on without end.
 const SHOWN_UNENDING: f64 = 1.0;
@@ -143,6 +143,8 @@ struct Landing {
     at: Option<f64>,
     /// Whether that is an output.
     output: bool,
+    /// Whether nothing moves until then, so that the contact stays as it is.
+    rests: bool,
 }
 
 /// A model on its way through time.
@@ -407,7 +409,10 @@ impl Simulation {
             let landing = self.choose_step()?;
             let step = landing.step;
             let before = self.model.work_counted();
-            let trial = self.stepper.step(&self.model, &self.state, step)?;
+            let trial = match landing.rests {
+                true => Trial::at_rest(State { cycles: self.state.cycles + step, ..self.state.clone() }),
+                false => self.stepper.step(&self.model, &self.state, step)?,
+            };
             self.progress.resolved_work += self.model.work_counted() - before;
             self.progress.rate_evaluations += trial.rate_evaluations;
             let error = trial.error / self.tolerance;
@@ -438,7 +443,7 @@ impl Simulation {
                 if !accepted {
                     return Err(self.stuck("the wear of one cycle leaves no contact that wear can lead to"));
                 }
-            } else {
+            } else if !landing.rests {
                 // What settles tells nothing of the next step.
                 let error = if self.settles && accepted { error.min(1.0) } else { error };
                 self.adapt(step, error, accepted, trial.next_step);
@@ -477,14 +482,17 @@ impl Simulation {
             (Some(kink), Some(output)) => Some(if has_come(output, kink) { output } else { kink }),
             (kink, output) => kink.or(output),
         };
-        let landing = |step: f64, at: Option<f64>| Landing { step, at, output: at.is_some() && at == output };
+        let landing = |step: f64, at: Option<f64>| {
+            let output = at.is_some() && at == output;
+            Landing { step, at, output, rests: false }
+        };
         if let Some(step) = self.stepper.prescribed_step() {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
         let growth = largest(&self.cycle.growth);
         let at_rest = || self.model.schedule().loading(now, now).asked() == 0.0;
         if let Some(target) = target.filter(|_| growth == 0.0 && at_rest()) {
-            return Ok(landing(target - now, Some(target)));
+            return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
         }
         let step = self.progress.next_step;
         let growth = step * growth;

@@ -37,6 +37,11 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// A trial over a time in which nothing moves.
+    pub fn at_rest(state: State) -> Self {
+        Self { state: Some(state), fields: None, error: 0.0, rate_evaluations: 0, next_step: None }
+    }
+
     /// A trial that found no state.
     pub fn failed(rate_evaluations: u64) -> Self {
         Self { state: None, fields: None, error: f64::INFINITY, rate_evaluations, next_step: None }

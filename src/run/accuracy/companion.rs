@@ -73,8 +73,24 @@ pub(in crate::run) struct Companion {
 pub(super) enum Lost {
     /// It comes to no end.
     NoEnd,
-    /// It takes longer than leaves time for the run; the work that it took to know, as [`work_so_far`].
-    Dear(u64),
+    /// It takes longer than leaves time for the run.
+    Dear(Dear),
+}
+
+/// A companion that tells that the run would take too long.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::run) struct Dear {
+    /// What it took to know, as [`work_so_far`].
+    pub(in crate::run) work: u64,
+    /// Whether it came past half of its outputs, so that a run on somewhat fewer springs may come to its end.
+    pub(in crate::run) halfway: bool,
+}
+
+impl Dear {
+    fn of(simulation: &Simulation) -> Self {
+        let passed = 2 * simulation.progress().next_output as usize;
+        Self { work: work_so_far(simulation) as u64, halfway: passed >= simulation.plan().outputs.len() }
+    }
 }
 
 impl Companion {
@@ -97,13 +113,13 @@ impl Companion {
         let most_steps = if implicit { coarser.most_steps } else { f64::INFINITY };
         let most_work = if implicit { coarser.most_work } else { f64::INFINITY };
         if unsampled.is_some() && work_of_looks(&simulation) > most_work {
-            return Err(Lost::Dear(work_so_far(&simulation) as u64));
+            return Err(Lost::Dear(Dear::of(&simulation)));
         }
         let stop = Arc::clone(coarser.stop);
         let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_work };
         let outcome = simulation.run(&mut [&mut seen]);
         if work_so_far(&simulation) > most_work {
-            return Err(Lost::Dear(work_so_far(&simulation) as u64));
+            return Err(Lost::Dear(Dear::of(&simulation)));
         }
         match outcome {
             Ok(Outcome::Interrupted) | Err(_) => Err(Lost::NoEnd),

@@ -11,7 +11,7 @@ use super::super::budget::{
 };
 use super::super::cost::{MOST_WORK, OF_COMPANION};
 use super::super::parts::resolution;
-use super::companion::{Coarser, Companion, Lost, Worn};
+use super::companion::{Coarser, Companion, Dear, Lost, Worn};
 use super::substeps::larger;
 use crate::data::{Snapshot, same_cycles};
 use crate::laws::loading::TangentialControl;
@@ -185,10 +185,10 @@ pub(in crate::run) struct Found {
 }
 
 impl Found {
-    /// Where the run would take too long, as its companion did, the work that this one took.
-    pub(in crate::run) fn dear(&self) -> Option<u64> {
+    /// Where the run would take too long, how far its companion came that did.
+    pub(in crate::run) fn dear(&self) -> Option<Dear> {
         match self.first {
-            Err(Lost::Dear(work)) => Some(work),
+            Err(Lost::Dear(dear)) => Some(dear),
             _ => None,
         }
     }

@@ -6,17 +6,18 @@ use super::motion::Motion;
 use super::schedule::CycleLoading;
 use super::{Model, State};
 use crate::contact::spring::searched_stick_compression;
+use crate::laws::friction::FrictionLaw;
 
-/// Nanoseconds of one core: of a substep through which a spring is passed at constant indentation, and where it is pressed and
-/// lifted; of a column of slip at a spring, by what is done with it there, and by each other spring that it is carried to; and of a column of loads there.
-const BY_SUBSTEP: [f64; 2] = [15.0, 50.0];
-const BY_COLUMN: f64 = 45.0;
-const BY_PAIR: f64 = 0.1;
-const BY_LOAD: f64 = 30.0;
+/// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed, where one limit holds it and where slip begins at a static one; of a column of
+/// slip at a spring, by what is done with it there, by the response of a table and by steps, and by each other spring that it is carried to; and of a column of loads there.
+const BY_SUBSTEP: [f64; 2] = [15.0, 45.0];
+const BY_COLUMN: [f64; 2] = [30.0, 45.0];
+const BY_PAIR: f64 = 0.05;
+const BY_LOAD: f64 = 15.0;
 
 /// Nanoseconds of one core that a jump of the edge of stick between two blocks takes, on a profile in closed form and on one that is a table: what the ground that
 /// it passes has risen by is carried to wherever the contact edge can be.
-const BY_JUMP: [f64; 2] = [1e6, 1e7];
+const BY_JUMP: [f64; 2] = [2e6, 1e7];
 
 /// Work counted so far, nanoseconds of one core, about. Whole numbers of what was done make it, so that it is the same on every machine.
 #[derive(Debug, Default)]
@@ -45,8 +46,8 @@ impl Model {
     }
 
     /// Counts substeps through which springs were passed.
-    pub(super) fn count_substeps(&self, substeps: usize, lifts: bool) {
-        self.meter.add(BY_SUBSTEP[usize::from(lifts)] * substeps as f64);
+    pub(super) fn count_substeps(&self, substeps: usize, law: &dyn FrictionLaw) {
+        self.meter.add(BY_SUBSTEP[usize::from(law.static_factor() != 1.0)] * substeps as f64);
     }
 
     /// Compression at the edge of stick in a cycle, m, as [`CycleLoading::slip_compression`]; counts the periods of the search for it.
@@ -54,7 +55,7 @@ impl Model {
         let ratio = self.contact.half_space().stiffness_ratio();
         let Some(path) = &loading.path else { return loading.slip_compression(ratio) };
         let (compression, substeps) = searched_stick_compression(path, &*loading.friction, ratio);
-        self.count_substeps(substeps, !path.is_level());
+        self.count_substeps(substeps, &*loading.friction);
         compression
     }
 
@@ -73,8 +74,8 @@ impl Model {
         }
         let [springs, slips, loads] =
             [self.springs(), motion.free.len(), motion.load.ncols()].map(|it| it as f64);
-        let carried = BY_PAIR * springs;
+        let (at_spring, carried) = (BY_COLUMN[usize::from(loading.steps.is_some())], BY_PAIR * springs);
         self.meter
-            .add(times as f64 * springs * (slips * (BY_COLUMN + carried) + loads * (BY_LOAD + carried)));
+            .add(times as f64 * springs * (slips * (at_spring + carried) + loads * (BY_LOAD + carried)));
     }
 }

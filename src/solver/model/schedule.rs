@@ -476,6 +476,11 @@ impl Schedule {
         self.is_steady() && mode.is_tangential() && friction.coefficient().is_some()
     }
 
+    /// Whether neither friction nor the law of wear changes along the cycles, so that wear alone slows itself down.
+    pub fn changes_by_wear_alone(&self) -> bool {
+        *self.friction_change() == History::Constant && self.conditions.wear_history == History::Constant
+    }
+
     /// Whether the wear of a cycle is in proportion to pressure and slip, and to nothing else.
     pub fn is_plain(&self) -> bool {
         let Conditions { wear, friction, .. } = &self.conditions;

@@ -11,6 +11,21 @@ const STEPPING: &str = "time stepping";
 /// Contact radius, over the present one, that is about to be reached.
 const AHEAD: f64 = 1.02;
 
+/// Part of the contact radius below which a layer at its edge is resolved by no mesh.
+const THIN: f64 = 1e-6;
+
+/// What a mesh of gross slip does not resolve in a medium that is stiff at its top alone: the pressure, `(a² - r²)^ν` at the contact edge, falls to nothing in a layer as thin as `2^(-1/ν)` of it.
+fn thin_layer(model: &Model) -> String {
+    let grading = model.contact().half_space().grading();
+    let width = 0.5 * (-2.0 / (1.0 + grading)).exp2();
+    if model.gross().is_none() || width > THIN {
+        return String::new();
+    }
+    format!(
+        " (at a grading of {grading} the pressure at the contact edge falls to half within {width:.0e} of the contact radius, and no mesh resolves what wears there)"
+    )
+}
+
 /// Why a run cannot begin.
 pub(super) fn nothing_wears(model: &Model, finite: bool) -> Error {
     let contact = model.contact();
@@ -86,9 +101,10 @@ impl Simulation {
             what: STEPPING,
             why: format!(
                 "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m, wear goes on in steps of {:.1e} \
-                 cycles, and {} were tried on {} springs; end before (loading.tau = {tau:.3e}), or go on by hand (numerics.springs and numerics.tolerance), \
+                 cycles{}, and {} were tried on {} springs; end before (loading.tau = {tau:.3e}), or go on by hand (numerics.springs and numerics.tolerance), \
                  however long it takes",
                 progress.next_step,
+                thin_layer(model),
                 progress.steps + progress.rejected_steps,
                 model.springs()
             ),
@@ -136,8 +152,9 @@ impl Simulation {
         Error::NotConverged {
             what: STEPPING,
             why: format!(
-                "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}; \
-                 {springs}{cure}"
+                "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}{layer}; \
+                 {springs}{cure}",
+                layer = thin_layer(model)
             ),
         }
     }

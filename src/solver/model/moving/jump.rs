@@ -35,29 +35,45 @@ struct Ground<'a> {
 impl Ground<'_> {
     /// By how much wear has raised the equivalent profile at a squared radius, m.
     fn raised(&self, squared: f64) -> f64 {
-        if squared < self.stick_area {
-            let jumps = self.model.moving().is_some_and(|moving| moving.jumps);
-            return if jumps {
-                self.stick.raised_at_rest(squared)
-            } else {
-                self.stick.ground_at_rest(squared)[0]
-            };
+        match self.on_springs(squared) {
+            Some(compression) => self.indentation - compression - self.unworn(squared),
+            None => self.raised_within(squared),
         }
-        let (nodes, model) = (&self.model.annulus().operators.abel.nodes()[1..], self.model);
-        let compression = match (squared - self.stick_area) / self.slip_area {
-            // Next to the old edge, where springs may have lost their load within the first cell, the first spring's.
-            x if x < nodes[0] => {
-                self.compression[0] + (self.before - self.compression[0]) * (1.0 - x / nodes[0])
-            }
-            x => model.between_springs(&self.compression, x),
-        };
-        self.indentation - compression - model.contact.equivalent_profile().value(squared.sqrt())
     }
 
     /// Compression at a squared radius, m.
     fn compression(&self, squared: f64) -> f64 {
-        let unworn = self.model.contact.equivalent_profile().value(squared.sqrt());
-        self.indentation - unworn - self.raised(squared)
+        let within = || self.indentation - self.unworn(squared) - self.raised_within(squared);
+        self.on_springs(squared).unwrap_or_else(within)
+    }
+
+    /// Height of the unworn equivalent profile, m.
+    fn unworn(&self, squared: f64) -> f64 {
+        self.model.contact.equivalent_profile().value(squared.sqrt())
+    }
+
+    /// As [`Ground::raised`], within the edge of stick.
+    fn raised_within(&self, squared: f64) -> f64 {
+        if self.model.moving().is_some_and(|moving| moving.jumps) {
+            self.stick.raised_at_rest(squared)
+        } else {
+            self.stick.ground_at_rest(squared)[0]
+        }
+    }
+
+    /// Compression between the springs, m; none within the edge of stick.
+    fn on_springs(&self, squared: f64) -> Option<f64> {
+        if squared < self.stick_area {
+            return None;
+        }
+        let nodes = &self.model.annulus().operators.abel.nodes()[1..];
+        Some(match (squared - self.stick_area) / self.slip_area {
+            // Next to the old edge, where springs may have lost their load within the first cell, the first spring's.
+            x if x < nodes[0] => {
+                self.compression[0] + (self.before - self.compression[0]) * (1.0 - x / nodes[0])
+            }
+            x => self.model.between_springs(&self.compression, x),
+        })
     }
 }
 
@@ -150,7 +166,7 @@ impl Model {
             let rise = sign * (heights[1] - heights[0]);
             if rise != 0.0 {
                 for (value, squared) in left_behind.iter_mut().zip(moving.stations()) {
-                    *value -= rise * self.annulus().unworn.at_stick(middle, 1.0, squared - middle).limit_slip;
+                    *value -= rise * self.annulus().unworn.uniform_at_stick(middle, squared - middle);
                 }
             }
             let borne = ground.compression(middle) * middle.powf(0.5 * (exponent - 2.0));

@@ -183,8 +183,7 @@ impl StickStage<'_> {
         let (area, q) = (at.stick_area, trial.stick_zone.slip_compression);
         let (mut left_behind, mut wear_depth) = (vec![], vec![]);
         if self.moving.leaves_ground() {
-            let uniform =
-                |squared: f64| model.annulus().unworn.at_stick(area, q, squared - area).limit_slip / q;
+            let uniform = |squared: f64| model.annulus().unworn.uniform_at_stick(area, squared - area);
             let kept = |squared| -per_step * (passed.risen - passed.unworn_rise) * uniform(squared);
             left_behind = self.moving.stations().map(kept).collect();
             let growth = trial.cycle.growth.iter().zip(&trial.fields.log_slip);
@@ -343,17 +342,16 @@ impl StickStage<'_> {
     /// `ln((S - K)/S_0)` at the contact edge; not a number where less slipped than was left behind.
     fn at_contact_edge(&self, at: &Unknowns, passed: &Passed, trial: &StickTrial) -> f64 {
         let (last, fields) = (at.compression.len(), &trial.fields);
-        let free = fields.slip_depth[last] - self.left_behind(at, passed, &trial.stick_zone);
+        let free = fields.slip_depth[last] - self.left_behind(at, passed);
         if free > 0.0 { (free / fields.unworn[last].slip).ln() } else { f64::NAN }
     }
 
     /// `K` at the contact edge, m, at the end of the stage.
-    fn left_behind(&self, at: &Unknowns, passed: &Passed, stick_zone: &StickZone) -> f64 {
+    fn left_behind(&self, at: &Unknowns, passed: &Passed) -> f64 {
         if !self.moving.leaves_ground() {
             return 0.0;
         }
-        let q = stick_zone.slip_compression;
-        let uniform = self.model.annulus().unworn.at_stick(at.stick_area, q, at.slip_area).limit_slip / q;
+        let uniform = self.model.annulus().unworn.uniform_at_stick(at.stick_area, at.slip_area);
         self.moving.left_behind(&self.target.stick.left_behind, at.stick_area + at.slip_area)
             - (passed.risen - passed.unworn_rise) * uniform
     }
