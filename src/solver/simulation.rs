@@ -35,7 +35,7 @@ const CERTAIN_WEAR: f64 = 0.5;
 
 /// Rejected steps after which a run is given up if they are more than half of the accepted ones as well. Where a held force loses its stick
 /// zone, the edge of stick is followed in ever smaller steps.
-const MOST_REJECTED: u64 = 1000;
+const MOST_REJECTED: u64 = 4000;
 
 /// Dimensionless time at which a run ends that would last until its rate has fallen, where wear goes on without end.
 const SHOWN_UNENDING: f64 = 1.0;
@@ -143,7 +143,7 @@ struct Landing {
     at: Option<f64>,
     /// Whether that is an output.
     output: bool,
-    /// Whether nothing moves until then, so that the contact stays as it is.
+    /// Whether nothing wears until then, so that the contact stays as it is.
     rests: bool,
 }
 
@@ -490,8 +490,10 @@ impl Simulation {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
         let growth = largest(&self.cycle.growth);
-        let at_rest = || self.model.schedule().loading(now, now).asked() == 0.0;
-        if let Some(target) = target.filter(|_| growth == 0.0 && at_rest()) {
+        // Nothing wears: as long as nothing moves or friction stays, nothing will.
+        let schedule = self.model.schedule();
+        let stays = || schedule.loading(now, now).asked() == 0.0 || schedule.keeps_friction();
+        if let Some(target) = target.filter(|_| growth == 0.0 && stays()) {
             return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
         }
         let step = self.progress.next_step;

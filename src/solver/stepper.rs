@@ -37,7 +37,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// A trial over a time in which nothing moves.
+    /// A trial over a time in which nothing wears.
     pub fn at_rest(state: State) -> Self {
         Self { state: Some(state), fields: None, error: 0.0, rate_evaluations: 0, next_step: None }
     }

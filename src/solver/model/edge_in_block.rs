@@ -6,7 +6,6 @@
 
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model, State, StickZone};
-use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::bracketed;
 
@@ -47,7 +46,7 @@ impl Model {
 
     /// Whether the compression below which springs slip changes within a block.
     fn limit_changes(&self) -> bool {
-        *self.schedule.friction_change() != History::Constant
+        !self.schedule.keeps_friction()
             || self.schedule.conditions().tangential_control != TangentialControl::Displacement
     }
 

@@ -6,7 +6,6 @@ use super::moving::{
 use super::schedule::{CycleLoading, Envelope, Schedule};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
-use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::bracketed;
 
@@ -69,7 +68,7 @@ impl Schedule {
             let least = self.extremes().map(|loading| least_stick_radius(contact, &loading));
             let least = least.collect::<Result<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);
             depth - profile.value(least)
-        } else if both && *self.friction_change() != History::Constant {
+        } else if both && !self.keeps_friction() {
             // Falling friction lets the edge of stick recede over unworn ground; rising friction lets it creep from where it is at first.
             let edge = |loading| held_stick_radius(contact, contact.normal_force(), &loading);
             let least = self.extremes().map(|loading| edge(loading).unwrap_or_default());

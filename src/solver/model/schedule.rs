@@ -466,7 +466,7 @@ impl Schedule {
     fn is_steady(&self) -> bool {
         let conditions = &self.conditions;
         conditions.blocks.is_empty()
-            && *self.friction_change() == History::Constant
+            && self.keeps_friction()
             && conditions.tangential_control == TangentialControl::Displacement
     }
 
@@ -476,9 +476,14 @@ impl Schedule {
         self.is_steady() && mode.is_tangential() && friction.coefficient().is_some()
     }
 
-    /// Whether neither friction nor the law of wear changes along the cycles, so that wear alone slows itself down.
+    /// Whether friction changes neither along the cycles nor along the energy dissipated.
+    pub fn keeps_friction(&self) -> bool {
+        *self.friction_change() == History::Constant
+    }
+
+    /// Whether neither friction nor the law of wear changes, so that wear alone slows itself down.
     pub fn changes_by_wear_alone(&self) -> bool {
-        *self.friction_change() == History::Constant && self.conditions.wear_history == History::Constant
+        self.keeps_friction() && self.conditions.wear_history == History::Constant
     }
 
     /// Whether the wear of a cycle is in proportion to pressure and slip, and to nothing else.
@@ -510,7 +515,7 @@ impl Schedule {
     /// springs.
     fn rests_under_both_forces(&self) -> bool {
         let Conditions { mode, friction, wear, blocks, .. } = &self.conditions;
-        let same = blocks.is_empty() && *self.friction_change() == History::Constant;
+        let same = blocks.is_empty() && self.keeps_friction();
         let closed = mode.is_tangential() && friction.coefficient().is_some() && !self.resolves();
         self.conditions.holds_both_forces() && same && closed && wear.spreading().is_none()
     }
@@ -518,7 +523,7 @@ impl Schedule {
     /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.
     pub fn is_smooth_in_gross_slip(&self) -> bool {
         self.conditions.blocks.is_empty()
-            && *self.friction_change() == History::Constant
+            && self.keeps_friction()
             && !self.conditions.wear.has_kink()
     }
 

@@ -13,7 +13,6 @@ use super::Gross;
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::error::Result;
-use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::solver::model::moving::StickEdge;
 use crate::solver::model::schedule::Schedule;
@@ -35,8 +34,7 @@ const SOFT: f64 = -0.5;
 /// Whether the edge of springs that stick again is followed.
 fn is_followed(schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
-    let stays = *schedule.friction_change() == History::Constant
-        && *schedule.friction_along_energy() == History::Constant
+    let stays = schedule.keeps_friction()
         && conditions.blocks.is_empty()
         && conditions.tangential_control == TangentialControl::Displacement;
     let local = conditions.wear.spreading().is_none() && !schedule.resolves();
