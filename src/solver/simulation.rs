@@ -341,11 +341,17 @@ impl Simulation {
     }
 
     /// States at the outputs that lie within a step; none if one of them is not possible.
-    fn passed(&self, state: &State) -> Option<Vec<(State, Fields)>> {
+    ///
+    /// # Arguments
+    /// * `rests` -- whether the contact stays as it is
+    fn passed(&self, state: &State, rests: bool) -> Option<Vec<(State, Fields)>> {
         let outputs = &self.plan.outputs[self.progress.next_output as usize..];
         let within = outputs.iter().take_while(|output| **output < state.cycles);
         let states = within.map(|output| {
-            let between = self.stepper.between(&self.model, state, *output)?;
+            let between = match rests {
+                true => State { cycles: *output, ..state.clone() },
+                false => self.stepper.between(&self.model, state, *output)?,
+            };
             let fields = self.model.fields(&between);
             (self.model.gross().is_some() || fields.are_physical()).then_some((between, fields))
         });
@@ -425,7 +431,7 @@ impl Simulation {
                         self.progress.next_step = shorter;
                         continue;
                     }
-                    let passed = self.passed(&state);
+                    let passed = self.passed(&state, landing.rests);
                     match passed {
                         Some(passed) => {
                             let accepted = self.accept(state, fields, cycle, rate, landing.at)?;
