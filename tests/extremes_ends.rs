@@ -125,3 +125,19 @@ fn a_block_without_motion_leaves_the_contact_as_it_is() {
     let [shorter, longer] = [shorter, longer].map(|it| it.last().wear_volume);
     assert!((longer / shorter - 1.0).abs() < 8e-4, "{longer:e} and {shorter:e} m³");
 }
+
+/// Below its threshold a law lets nothing wear, but what slips dissipates: the energy of each cycle, cycle after cycle.
+#[test]
+fn where_nothing_wears_any_more_energy_is_dissipated_at_the_rate_of_the_cycles() {
+    let scene = spread(0.0, 3.0, "accuracy = 1e-3")
+        .replace("[wear.non-local]", "[wear.threshold]")
+        .replace("length = 5e-5", "pressure = 2e7")
+        .replace("cycles = 1e5", "cycles = 1e12")
+        .replace("snapshots = 2", "at_cycles = [1e9, 1e11]");
+    let results = run(&scene);
+    let [.., before, last] = results.snapshots() else { panic!("two snapshots") };
+    assert!(before.wear_volume > 0.0 && (last.wear_volume / before.wear_volume - 1.0).abs() < 1e-3);
+    let passed = last.cycles - before.cycles;
+    let found = (last.dissipated_energy - before.dissipated_energy) / (passed * last.cycle_energy);
+    assert!(last.cycle_energy > 0.0 && (found - 1.0).abs() < 1e-3, "{found}");
+}

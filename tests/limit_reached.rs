@@ -93,3 +93,30 @@ fn the_limit_is_of_the_order_of_the_polynomials_without_help() {
         }
     }
 }
+
+/// By a power of the pressure below one wear is spent in finite time; from there on the contact stays as it is.
+#[test]
+fn a_power_of_the_pressure_below_one_ends_at_the_closed_form_under_both_controls() {
+    let mut worst = (0.0, String::new());
+    for grading in [0.0, 0.3, 0.5, 0.63, 0.9] {
+        for slip_exponent in [0.5, 1.2] {
+            for control in ["initial_force = 0.03", "normal_force = 0.03\ntangential_control = \"force\""] {
+                let text = format!(
+                    "[indenter.paraboloid]\nradius = 10.0\n[half_space]\ngrading = {grading}\nnormal_stiffness = 1.5e9\nstiffness_ratio = 1.4\n\
+                     [friction.coulomb]\ncoefficient = 0.23\n[wear.power-law]\ncoefficient = 1e-6\npressure_exponent = 0.67\n\
+                     slip_exponent = {slip_exponent}\n[loading]\n{control}\namplitude_ratio = 0.35\ntau = 2000.0\n[numerics]\nsprings = 40\n"
+                );
+                let scene = fretwear::Scene::from_toml(&text, "scene.toml").unwrap();
+                let results =
+                    scene.simulate().unwrap_or_else(|error| panic!("{grading}, {control}: {error}"));
+                let limit = results.limit().unwrap().wear_volume();
+                let missed = (results.last().wear_volume / limit - 1.0).abs();
+                if missed.is_nan() || missed > worst.0 {
+                    worst = (missed, format!("k = {grading}, s^{slip_exponent}, {control}"));
+                }
+            }
+        }
+    }
+    // Measured: 4.1e-6 (k = 0.5, s^0.5, both forces held).
+    assert!(worst.0 <= 4e-5, "largest relative error of the worn volume: {worst:?}");
+}

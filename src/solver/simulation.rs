@@ -23,6 +23,9 @@ const LARGEST_FACTOR: f64 = 2.5;
 /// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
 const SMALLEST_GROWTH: f64 = 1e-13;
 
+/// Growth of the slip until what acts changes, over the tolerance, that is none.
+const NO_GROWTH: f64 = 1e-6;
+
 /// Compression, relative to `q_c`, below which no pressure is left but round-off.
 const WORN_OUT: f64 = 1e-13;
 
@@ -36,6 +39,17 @@ const CERTAIN_WEAR: f64 = 0.5;
 /// Rejected steps after which a run is given up if they are more than half of the accepted ones as well. Where a held force loses its stick
 /// zone, the edge of stick is followed in ever smaller steps.
 const MOST_REJECTED: u64 = 4000;
+
+/// Relative difference of errors of steps that are alike, by how much shorter each is than the one before, and after how many of them the next is taken as it is.
+const ALIKE: f64 = 0.02;
+const SHORTER: f64 = 0.7;
+const ENOUGH: usize = 4;
+
+/// Largest such error, over the tolerance: with blocks that recur that is the accuracy asked for.
+const MOST_OF_JUMP: f64 = 30.0;
+
+/// How far before a moment, relative, another block was under way.
+const BEFORE: f64 = 1e-9;
 
 /// Dimensionless time at which a run ends that would last until its rate has fallen, where wear goes on without end.
 const SHOWN_UNENDING: f64 = 1.0;
@@ -134,6 +148,26 @@ pub struct Progress {
     pub rate_evaluations: u64,
     /// Work of the periods that steps and outputs resolved, nanoseconds of one core, about, as [`Model::work_counted`].
     pub resolved_work: u64,
+}
+
+/// Errors of rejected steps that hardly change while the steps become shorter: what a jump between two blocks is off by, which no step makes less. It decays in one
+/// implicit step, and companions tell what comes of it.
+#[derive(Default)]
+struct Repeats {
+    last: Option<[f64; 2]>,
+    count: usize,
+}
+
+impl Repeats {
+    /// Whether enough of them were alike, with this one.
+    fn are_enough(&mut self, error: f64, step: f64) -> bool {
+        let alike = self
+            .last
+            .is_some_and(|[before, longer]| (error / before - 1.0).abs() < ALIKE && step < SHORTER * longer);
+        self.count = if alike { self.count + 1 } else { 0 };
+        self.last = Some([error, step]);
+        self.count >= ENOUGH && error < MOST_OF_JUMP
+    }
 }
 
 /// A step to try.
@@ -349,13 +383,24 @@ impl Simulation {
         let within = outputs.iter().take_while(|output| **output < state.cycles);
         let states = within.map(|output| {
             let between = match rests {
-                true => State { cycles: *output, ..state.clone() },
+                true => self.resting_until(*output),
                 false => self.stepper.between(&self.model, state, *output)?,
             };
             let fields = self.model.fields(&between);
             (self.model.gross().is_some() || fields.are_physical()).then_some((between, fields))
         });
         states.collect()
+    }
+
+    /// The state at a later time up to which nothing wears; what slips without wear goes on to dissipate.
+    fn resting_until(&self, cycles: f64) -> State {
+        let passed = cycles - self.state.cycles;
+        State {
+            cycles,
+            dissipated_energy: self.state.dissipated_energy + passed * self.cycle.dissipation,
+            volume_by_rate: self.state.volume_by_rate + passed * self.cycle.volume,
+            ..self.state.clone()
+        }
     }
 
     /// Shows the states within the last step.
@@ -411,12 +456,13 @@ impl Simulation {
 
     /// Makes one step, of which the length may have to be found; whether it landed on an output. None where an observer stops the search for its length.
     fn advance(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Option<bool>> {
+        let mut repeats = Repeats::default();
         loop {
             let landing = self.choose_step()?;
             let step = landing.step;
             let before = self.model.work_counted();
             let trial = match landing.rests {
-                true => Trial::at_rest(State { cycles: self.state.cycles + step, ..self.state.clone() }),
+                true => Trial::at_rest(self.resting_until(self.state.cycles + step)),
                 false => self.stepper.step(&self.model, &self.state, step)?,
             };
             self.progress.resolved_work += self.model.work_counted() - before;
@@ -460,6 +506,7 @@ impl Simulation {
                 self.progress.next_output += u64::from(landing.output);
                 return Ok(Some(landing.output));
             }
+            self.settles |= repeats.are_enough(error, step) && self.begins_block();
             self.progress.rejected_steps += 1;
             let rejected = self.progress.rejected_steps;
             if rejected > MOST_REJECTED && 2 * rejected > self.progress.steps {
@@ -473,6 +520,12 @@ impl Simulation {
                 return Ok(None);
             }
         }
+    }
+
+    /// Whether a block of another amplitude or indentation has begun just now.
+    fn begins_block(&self) -> bool {
+        let (schedule, now) = (self.model.schedule(), self.state.cycles);
+        now > 0.0 && schedule.begins_block(now * (1.0 - BEFORE), now)
     }
 
     /// The step to try, and where it lands if it does.
@@ -499,7 +552,8 @@ impl Simulation {
         // Nothing wears: as long as nothing moves or friction stays, nothing will.
         let schedule = self.model.schedule();
         let stays = || schedule.loading(now, now).asked() == 0.0 || schedule.keeps_friction();
-        if let Some(target) = target.filter(|_| growth == 0.0 && stays()) {
+        let none = |target: &f64| growth * (target - now) <= NO_GROWTH * self.tolerance && stays();
+        if let Some(target) = target.filter(none) {
             return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
         }
         let step = self.progress.next_step;

@@ -522,9 +522,7 @@ impl Schedule {
 
     /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.
     pub fn is_smooth_in_gross_slip(&self) -> bool {
-        self.conditions.blocks.is_empty()
-            && self.keeps_friction()
-            && !self.conditions.wear.has_kink()
+        self.conditions.blocks.is_empty() && self.keeps_friction() && !self.conditions.wear.has_kink()
     }
 
     /// Whether cycles are the same, at a constant indentation, and wear is local: at most resolved cycles or a threshold make kinks along the annulus.
