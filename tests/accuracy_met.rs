@@ -362,3 +362,24 @@ fn tension_within_the_contact_is_told_from_its_beginning() {
         }
     }
 }
+
+/// A finer run that finds no end takes nothing away from the one before, which is told with what it is off by: beside 160 springs.
+#[test]
+fn a_run_of_which_finer_ones_find_no_end_is_told_by_its_own_error() {
+    let text = |numerics: &str| {
+        format!(
+            "[indenter.paraboloid]\nradius = 0.01\n[half_space]\ngrading = 0.0\nnormal_stiffness = 1e9\nstiffness_ratio = 0.8\n\
+             [friction.coulomb]\ncoefficient = 0.3\n[wear.threshold]\ncoefficient = 1e-14\npressure = 1e3\n[loading]\nindentation = 1e-6\n\
+             stick_ratio = 0.6\ntau = 20.0\nrig_stiffness = 1e6\n[numerics]\n{numerics}\n[output]\nsnapshots = 6\n"
+        )
+    };
+    let run = |numerics: &str| {
+        let scene = fretwear::Scene::from_toml(&text(numerics), "scene.toml").expect("a scene");
+        scene.simulate().expect("it comes to its end")
+    };
+    let (found, finer) = (run("accuracy = 1e-4"), run("springs = 160"));
+    let estimate = found.error_estimate().expect("the program chose the springs");
+    let missed = (found.last().wear_volume / finer.last().wear_volume - 1.0).abs();
+    assert!(estimate < 1e-3, "{estimate:e}, where volumes differ by {missed:e}");
+    assert!(missed < estimate, "off by {missed:e}, told {estimate:e}");
+}

@@ -25,8 +25,7 @@ const FEW_STEPS: f64 = 1e3;
 /// Dimensionless time for which a run that ends at a rate may last.
 const SOME_TAU: f64 = 30.0;
 
-/// Dimensionless time in which the rate of wear never falls to the second number, a part of the first.
-const LEAST_TAU: f64 = 0.3;
+/// Part of its first value to which the rate of wear does not fall before slip has grown.
 const SLOWED: f64 = 0.1;
 
 /// Steps times the fastest rate of relaxation for which Bogacki and Shampine's method is stable, on the negative real axis.
@@ -235,10 +234,10 @@ pub(super) fn check(choice: Choice, by_hand: bool, simulation: &mut Simulation) 
 /// Refuses more ends of blocks, at each of which a step ends, than any attempt comes to on springs that the program chooses.
 fn check_blocks(simulation: &Simulation) -> Result<()> {
     let model = simulation.model();
-    let [cycles, until] = match simulation.plan().end {
-        End::Cycles(cycles) => [cycles, 0.0],
+    let (cycles, before) = match simulation.plan().end {
+        End::Cycles(cycles) => (cycles, ""),
         End::Rate(rate) if rate < SLOWED && model.schedule().changes_by_wear_alone() => {
-            [LEAST_TAU / model.contact().tau_per_cycle(), rate]
+            (cycles_of_growth(simulation), ", before the rate of wear falls at all")
         }
         End::Rate(_) => return Ok(()),
     };
@@ -247,9 +246,8 @@ fn check_blocks(simulation: &Simulation) -> Result<()> {
     if breaks <= most {
         return Ok(());
     }
-    let begun = if until > 0.0 { ", before the rate of wear falls at all" } else { "" };
     let why = format!(
-        "the run has {breaks:.1e} ends of blocks in it{begun}, at each of which a step ends, and comes to at most {most:.1e} of them by itself; make the blocks longer, ask for fewer \
+        "the run has {breaks:.1e} ends of blocks in it{before}, at each of which a step ends, and comes to at most {most:.1e} of them by itself; make the blocks longer, ask for fewer \
          cycles, or go on by hand (numerics.springs), however long it takes"
     );
     Err(Error::Inconsistent { what: "loading.blocks", why })
@@ -332,12 +330,16 @@ fn breaks(simulation: &Simulation) -> f64 {
     model.schedule().breaks_until(cycles)
 }
 
+/// Cycles in which slip grows at all, where it does so fastest; before, the rate of wear does not fall.
+fn cycles_of_growth(simulation: &Simulation) -> f64 {
+    simulation.cycle().growth.iter().fold(0.0_f64, |m, g| m.max(*g)).recip()
+}
+
 /// Fewest steps of an explicit method; about those of an implicit one.
 fn fewest_steps(choice: Choice, simulation: &Simulation) -> f64 {
     let cycles = match simulation.plan().end {
         End::Cycles(cycles) => cycles,
-        // Slip has to grow at all before the rate can fall.
-        End::Rate(_) => simulation.cycle().growth.iter().fold(0.0_f64, |m, g| m.max(*g)).recip(),
+        End::Rate(_) => cycles_of_growth(simulation),
     };
     match choice {
         Choice::EveryCycle => cycles,

@@ -135,6 +135,11 @@ impl Recorder {
         self.takes_too_long
     }
 
+    /// Whether the attempt repeats one that came to its end, since finer ones did not.
+    pub(super) fn has_ended_before(&self) -> bool {
+        self.attempt.refinements > budget::REFINEMENTS && self.attempt.ended_on > 0
+    }
+
     /// Whether the companions of a run tell that it would take too long.
     pub(super) fn would_take_too_long(&self) -> bool {
         self.would_take_too_long.load(atomic::Ordering::Relaxed)
@@ -174,7 +179,7 @@ impl Recorder {
         let chosen = scene.numerics().springs.is_none();
         let compared = chosen || !has_balance(simulation);
         self.companions = compared.then(|| Companions::new(scene, simulation, limited));
-        let bounded = chosen && scene.numerics().stepper == Stepper::Implicit;
+        let bounded = chosen && scene.numerics().stepper == Stepper::Implicit && !self.has_ended_before();
         let [after_long, after_no_end] = cost::OF_LAST_ATTEMPTS;
         let is_last = self.attempt.refinements >= budget::LAST_RESORT;
         let part = match self.attempt.refinements.cmp(&budget::REFINEMENTS) {

@@ -286,10 +286,12 @@ fn to_the_end(
             true => recorder.more_springs(scene, &stepping, &outcome, &checkpoint),
             false => None,
         };
+        let mut ends_again = false;
         let found = match more {
-            // Finer ones do not end.
-            _ if no_end && ended_on > 0 => {
+            // Finer ones do not end: that which did, once more.
+            _ if no_end && ended_on > 0 && !recorder.has_ended_before() => {
                 recorder.attempt.refinements = budget::REFINEMENTS;
+                ends_again = true;
                 anew(ended_on).ok()
             }
             // Coarser ones may, and tell that nothing is known of the error.
@@ -320,7 +322,11 @@ fn to_the_end(
         if let Some(found) = found {
             recorder.attempt = Attempt {
                 refinements: recorder.attempt.refinements + 1,
-                ended_on: outcome.map_or(0, |_| stepping.first().0.springs() as u64),
+                ended_on: match outcome {
+                    _ if ends_again => ended_on as u64,
+                    Ok(_) => stepping.first().0.springs() as u64,
+                    Err(_) => 0,
+                },
                 work: recorder.attempt.work + work,
             };
             (stepping, limit) = found;
