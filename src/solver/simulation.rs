@@ -399,6 +399,8 @@ impl Simulation {
             cycles,
             dissipated_energy: self.state.dissipated_energy + passed * self.cycle.dissipation,
             volume_by_rate: self.state.volume_by_rate + passed * self.cycle.volume,
+            // No polynomial leads here.
+            past: Past::default(),
             ..self.state.clone()
         }
     }
