@@ -23,9 +23,6 @@ const LARGEST_FACTOR: f64 = 2.5;
 /// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
 const SMALLEST_GROWTH: f64 = 1e-13;
 
-/// Growth of the slip until what acts changes, over the tolerance, that is none.
-const NO_GROWTH: f64 = 1e-6;
-
 /// Compression, relative to `q_c`, below which no pressure is left but round-off.
 const WORN_OUT: f64 = 1e-13;
 
@@ -458,9 +455,9 @@ impl Simulation {
 
     /// Makes one step, of which the length may have to be found; whether it landed on an output. None where an observer stops the search for its length.
     fn advance(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Option<bool>> {
-        let mut repeats = Repeats::default();
+        let (mut repeats, mut was_rejected) = (Repeats::default(), false);
         loop {
-            let landing = self.choose_step()?;
+            let landing = self.choose_step(was_rejected)?;
             let step = landing.step;
             let before = self.model.work_counted();
             let trial = match landing.rests {
@@ -508,6 +505,7 @@ impl Simulation {
                 self.progress.next_output += u64::from(landing.output);
                 return Ok(Some(landing.output));
             }
+            was_rejected = true;
             self.settles |= repeats.are_enough(error, step) && self.begins_block();
             self.progress.rejected_steps += 1;
             let rejected = self.progress.rejected_steps;
@@ -531,7 +529,10 @@ impl Simulation {
     }
 
     /// The step to try, and where it lands if it does.
-    fn choose_step(&self) -> Result<Landing> {
+    ///
+    /// # Arguments
+    /// * `was_rejected` -- whether one from here was tried before
+    fn choose_step(&self, was_rejected: bool) -> Result<Landing> {
         let now = self.state.cycles;
         let output = match self.plan.end {
             End::Cycles(end) if self.stepper.interpolates() => Some(end),
@@ -551,11 +552,10 @@ impl Simulation {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
         let growth = largest(&self.cycle.growth);
-        // Nothing wears: as long as nothing moves or friction stays, nothing will.
+        // Nothing wears: as long as nothing moves, or friction stays, nothing will. Where a step is found it takes what pulls back to what is only spent.
         let schedule = self.model.schedule();
-        let stays = || schedule.loading(now, now).asked() == 0.0 || schedule.keeps_friction();
-        let none = |target: &f64| growth * (target - now) <= NO_GROWTH * self.tolerance && stays();
-        if let Some(target) = target.filter(none) {
+        let rests = || schedule.loading(now, now).asked() == 0.0 || was_rejected && schedule.keeps_friction();
+        if let Some(target) = target.filter(|_| growth == 0.0 && rests()) {
             return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
         }
         let step = self.progress.next_step;
