@@ -3,11 +3,13 @@
 //! Springs and tolerance follow from the measured errors of random scenes (docs/accuracy.md). Where the estimate of a run's error is larger
 //! than was asked for, the run is repeated on more springs.
 
+use std::ops::RangeInclusive;
+
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Scene};
-use crate::solver::model::{Gross, Model, MovingStick, Schedule};
+use crate::solver::model::{self, Gross, Model, MovingStick, Schedule};
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
 pub(in crate::run) const MOST_RAISED: usize = 600;
@@ -222,10 +224,35 @@ pub(in crate::run) fn springs_to_stick_again(in_gross_slip: usize) -> usize {
     each * (in_gross_slip - beyond)
 }
 
+/// Springs over the slip annulus for every one of gross slip beyond the second number, once a rig has broken stick: next to the axis, where stick was lost last, the
+/// profile is steep.
+const TO_SLIDE_ON: [usize; 2] = [4, 16];
+
+/// Part of the tolerance of partial slip that is then that of gross slip.
+pub(in crate::run) const OF_SLIDING_ON: f64 = OF_STEPS * OF_TIME / OF_TIME_LOSING_STICK;
+
+/// Springs on the mesh that takes the run of a model up.
+pub(in crate::run) fn springs_taken_up(model: &Model) -> usize {
+    let springs = model.springs();
+    if model.gross().is_some() {
+        return springs_to_stick_again(springs);
+    }
+    let [each, beyond] = TO_SLIDE_ON;
+    (beyond + springs.div_ceil(each)).min(model::MOST_IN_GROSS_SLIP)
+}
+
 /// Springs of gross slip that lead to so many over the slip annulus, or to more.
 pub(in crate::run) fn springs_before(sticking_again: usize) -> usize {
     let [each, beyond] = TO_STICK_AGAIN;
     beyond + sticking_again.div_ceil(each)
+}
+
+/// Springs over the slip annulus that lead to so many of gross slip.
+pub(in crate::run) fn springs_before_sliding(taken_up: usize) -> RangeInclusive<usize> {
+    let [each, beyond] = TO_SLIDE_ON;
+    let most = each * taken_up.saturating_sub(beyond);
+    let last = if taken_up < model::MOST_IN_GROSS_SLIP { most } else { MOST_RAISED };
+    most.saturating_sub(each - 1)..=last
 }
 
 /// Part of the tolerance elsewhere that is that of gross slip.

@@ -164,7 +164,8 @@ impl Run {
         )?;
         checkpoint.accuracy = scene.numerics().accuracy_asked();
         let numerics = budget::numerics_of(&scene, checkpoint.attempt.refinements);
-        let parts = Parts::of_state(&scene, &numerics, &checkpoint.state, &shared.operators)?;
+        let parts =
+            Parts::of_state(&scene, &numerics, (&checkpoint.state, &file.header.radius), &shared.operators)?;
         if file.header.radius != parts.model.radii()
             || !parts.fit(&checkpoint.state)
             || !checkpoint.state.past.fits(

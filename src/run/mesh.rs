@@ -157,7 +157,7 @@ fn nearly_sliding(
     let springs = numerics.springs.map(by_hand).or(wanted).unwrap_or_else(chosen);
     let model = Model::in_gross_slip(contact, schedule.clone(), springs).ok()?;
     // Profiles that end may not reach as far as the mesh of an edge of stick asks for.
-    model.sticking_again(FEWEST_SPRINGS).ok().flatten()?;
+    model.taken_up(FEWEST_SPRINGS).ok().flatten()?;
     Some(model)
 }
 

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::budget::{self, NEAR_GROSS_SLIP, OF_STEPS, springs_to_stick_again};
+use super::budget::{self, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up, springs_to_stick_again};
 use super::cost::work_so_far;
 use super::mesh::{self, SPRINGS_TO_SLIDE};
 use crate::contact::InitialContact;
@@ -11,9 +11,7 @@ use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
-use crate::solver::model::{
-    FEWEST_SPRINGS, Gross, Model, MovingStick, OperatorStore, Resolution, Schedule, State,
-};
+use crate::solver::model::{FEWEST_SPRINGS, Model, MovingStick, OperatorStore, Resolution, Schedule, State};
 use crate::solver::simulation::{Flow, HandOver, Observer, Outcome, Plan, Progress, Simulation};
 use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossBdf, GrossSdirk, Sdirk, Stepper};
 
@@ -65,29 +63,43 @@ impl Parts {
     }
 
     /// As [`Parts::new`], on as many springs as a run came to, however often it was made anew.
+    ///
+    /// # Arguments
+    /// * `radii` -- of the output, m
     pub(super) fn of_state(
         scene: &Scene,
         numerics: &Numerics,
-        state: &State,
+        (state, radii): (&State, &[f64]),
         store: &OperatorStore,
     ) -> Result<Self> {
         let springs = state.compression.len() + 1;
-        if state.stick.is_some()
-            && let Ok(parts) = Self::new(scene, numerics, Some(budget::springs_before(springs)), None, store)
-            && parts.hand_over.is_some()
-        {
-            return Ok(parts);
+        let before = match state.stick {
+            Some(_) => budget::springs_before(springs)..=budget::springs_before(springs),
+            None => budget::springs_before_sliding(springs),
+        };
+        for before in before {
+            if let Ok(parts) = Self::new(scene, numerics, Some(before), None, store)
+                && parts.is_taken_up(state)
+                && parts.model.radii() == radii
+            {
+                return Ok(parts);
+            }
         }
         Self::new(scene, numerics, Some(springs), None, store)
+    }
+
+    /// Whether a state is one of the model that takes the run up.
+    fn is_taken_up(&self, state: &State) -> bool {
+        self.hand_over.is_some_and(|it| it.springs == state.compression.len() + 1)
+            && state.stick.is_none() == self.model.gross().is_none()
     }
 
     /// Whether a state is one of this run.
     pub(super) fn fit(&self, state: &State) -> bool {
         let springs = state.compression.len() + 1;
-        match &self.hand_over {
-            Some(hand_over) if state.stick.is_some() => springs == hand_over.springs,
-            _ => springs == self.model.springs() && state.stick.is_some() == self.model.moving().is_some(),
-        }
+        let is_first =
+            springs == self.model.springs() && state.stick.is_some() == self.model.moving().is_some();
+        is_first || self.is_taken_up(state)
     }
 
     /// The run from a state on.
@@ -95,9 +107,10 @@ impl Parts {
     /// # Errors
     /// As [`Simulation::resume_handed_over`].
     pub(super) fn resume(self, state: State, progress: Progress) -> Result<Simulation> {
+        let is_taken_up = self.is_taken_up(&state);
         let Self { model, stepper, tolerance, plan, hand_over, .. } = self;
         match hand_over {
-            Some(hand_over) if state.stick.is_some() => {
+            Some(hand_over) if is_taken_up => {
                 Simulation::resume_handed_over((model, tolerance), hand_over, plan, state, progress)
             }
             _ => {
@@ -154,18 +167,19 @@ impl Parts {
         let plan =
             super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
         // By hand it is one tolerance for both meshes, and no more springs than by choice; near gross slip springs are those over the slip annulus.
-        let again = springs_to_stick_again(model.springs());
+        let again = springs_taken_up(&model);
         let springs = match numerics.springs {
-            Some(springs) if contact.regime() == Regime::PartialSlip => springs,
+            Some(springs) if model.gross().is_some() && contact.regime() == Regime::PartialSlip => springs,
             Some(_) => again.min(budget::MOST_RAISED),
             None => again,
         };
-        let part = if scene.numerics().tolerance.is_some() { 1.0 } else { NEAR_GROSS_SLIP / OF_STEPS };
-        let hand_over = model.gross().is_some_and(Gross::holds_force).then_some(HandOver {
-            springs,
-            tolerance: part * tolerance,
-            expected: false,
-        });
+        let part = match model.gross() {
+            _ if scene.numerics().tolerance.is_some() => 1.0,
+            Some(_) => NEAR_GROSS_SLIP / OF_STEPS,
+            None => budget::OF_SLIDING_ON,
+        };
+        let hand_over =
+            model.is_taken_up().then_some(HandOver { springs, tolerance: part * tolerance, expected: false });
         Ok(Self { model, stepper, tolerance, plan, limit: None, hand_over })
     }
 }

@@ -264,7 +264,11 @@ impl Recorder {
             Err(_) => None,
         };
         let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, self.attempt.work));
-        if simulation.is_handed_over() { wanted.map(budget::springs_before) } else { wanted }
+        match simulation.first().0.gross() {
+            _ if !simulation.is_handed_over() => wanted,
+            Some(_) => wanted.map(budget::springs_before),
+            None => wanted.map(|springs| *budget::springs_before_sliding(springs).end()),
+        }
     }
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.

@@ -38,7 +38,7 @@ use crate::error::Result;
 use crate::numerics::abel::{AbelOperators, Backend};
 use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
-pub use construction::FEWEST_SPRINGS;
+pub use construction::{FEWEST_SPRINGS, MOST_IN_GROSS_SLIP};
 pub use cycle::CycleFields;
 pub use gross::{Gross, GrossRates};
 pub use jacobian::StageFactors;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::laws::loading::has_come;
 use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper, Trial};
@@ -353,7 +353,14 @@ impl Simulation {
             if self.model.loses_stick(&self.state) {
                 return Err(self.slides_off());
             }
-            let advanced = self.advance(observers).map_err(|error| self.timed(error))?;
+            let advanced = match self.advance(observers) {
+                Err(Error::NotConverged { .. })
+                    if self.model.is_losing_stick(&self.state) && self.take_up() =>
+                {
+                    continue;
+                }
+                advanced => advanced.map_err(|error| self.timed(error))?,
+            };
             let Some(landed) = advanced else { return Ok(Outcome::Interrupted) };
             let ended = self.outcome().is_some();
             if landed || ended {

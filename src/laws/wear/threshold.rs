@@ -48,9 +48,9 @@ impl WearLaw for Threshold {
     }
 
     fn rate(&self, at: &Rubbing) -> Rate {
-        let slope = if at.pressure > self.pressure { 1.0 } else { 0.0 };
+        let slope = if at.pressure > self.pressure || at.pressure < 0.0 { 1.0 } else { 0.0 };
         Rate {
-            depth: self.coefficient * (at.pressure - self.pressure).max(0.0),
+            depth: self.coefficient * ((at.pressure - self.pressure).max(0.0) + at.pressure.min(0.0)),
             by_pressure: self.coefficient * slope,
         }
     }

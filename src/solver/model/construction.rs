@@ -30,7 +30,7 @@ const UNSTRETCHED: f64 = 3.5;
 pub const FEWEST_SPRINGS: usize = 8;
 
 /// Most springs in gross slip: polynomials over the whole contact have no use for more.
-const MOST_IN_GROSS_SLIP: usize = 160;
+pub const MOST_IN_GROSS_SLIP: usize = 160;
 
 impl Model {
     /// Puts a contact on springs under the laws, mode, blocks and control of its scene.

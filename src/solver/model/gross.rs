@@ -76,18 +76,7 @@ impl Gross {
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        let conditions = schedule.conditions();
-        let along_energy = *schedule.friction_along_energy() != History::Constant;
-        let both = along_energy && conditions.friction_history != History::Constant;
-        // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
-        let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
-        let spreads = conditions.wear.spreading().is_some();
-        // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
-        let friction = &conditions.friction;
-        let depth = contact.indentation();
-        let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
-        let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
-        if contact.regime() != Regime::FullSliding || both || lifted || spreads || uneven {
+        if contact.regime() != Regime::FullSliding || !Self::carries(contact, schedule) {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
@@ -105,7 +94,7 @@ impl Gross {
                 return Ok(false);
             }
         }
-        if schedule.resolves() && conditions.mode.is_tangential() {
+        if schedule.resolves() && schedule.conditions().mode.is_tangential() {
             return Err(Error::Inconsistent {
                 what: "numerics.cycle",
                 why: format!(
@@ -116,6 +105,22 @@ impl Gross {
             });
         }
         Ok(true)
+    }
+
+    /// Whether polynomials over the whole contact carry what happens in it, once all of it slides.
+    pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
+        let conditions = schedule.conditions();
+        let along_energy = *schedule.friction_along_energy() != History::Constant;
+        let both = along_energy && conditions.friction_history != History::Constant;
+        // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
+        let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
+        let spreads = conditions.wear.spreading().is_some();
+        // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
+        let friction = &conditions.friction;
+        let depth = contact.indentation();
+        let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
+        let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
+        !(both || lifted || spreads || uneven)
     }
 
     pub(super) fn new(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Result<Self> {

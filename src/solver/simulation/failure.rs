@@ -2,6 +2,7 @@
 
 use super::{SMALLEST_FACTOR, SMALLEST_GROWTH, Simulation, largest};
 use crate::error::{Error, Result};
+use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::SEARCH;
 use crate::solver::model::Model;
 
@@ -71,12 +72,18 @@ impl Simulation {
         let cycles = state.cycles + model.cycles_to_loss(state);
         let tau = cycles * model.contact().tau_per_cycle();
         let radius = self.cycle.stick_radius;
+        let then = match model.schedule().conditions().tangential_control {
+            TangentialControl::Rig { .. } => {
+                "moves as a whole with the rig, which is followed at gradings from -0.5 on where no blocks follow one another, friction has no memory of slip \
+                 and wear is local"
+            }
+            _ => "is in gross slip and no longer bears the tangential force that is asked for",
+        };
         Error::NotConverged {
             what: STEPPING,
             why: format!(
-                "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}), at last within the radius {radius:.4e} m: from there the contact is in \
-                 gross slip and no longer bears the tangential force that is asked for; end before (loading.tau), or ask for a smaller \
-                 amplitude"
+                "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}), at last within the radius {radius:.4e} m: from there the contact {then}; end \
+                 before (loading.tau), or ask for a smaller amplitude"
             ),
         }
     }

@@ -1,17 +1,17 @@
-//! A contact in gross slip whose springs stick again: another model and another stepper take the run up.
+//! A contact in gross slip whose springs stick again, or one that comes to gross slip: another model and another stepper take the run up.
 
 use super::{Plan, Progress, Simulation};
 use crate::error::{Error, Result};
 use crate::solver::model::{Model, State};
-use crate::solver::stepper::Sdirk;
+use crate::solver::stepper::{GrossBdf, GrossSdirk, Sdirk, Stepper};
 
 /// First step after a hand-over, over the cycles before.
 const SETTLED_IN: f64 = 0.1;
 
-/// How a run goes on once springs stick again after gross slip.
+/// How a run goes on once springs stick again after gross slip, or once the last of them slide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandOver {
-    /// Springs over the slip annulus.
+    /// Springs on the other mesh.
     pub springs: usize,
     /// Largest error of one step there, as [`Simulation::new`].
     pub tolerance: f64,
@@ -37,7 +37,7 @@ pub(super) enum Found {
 }
 
 impl Simulation {
-    /// Lets another model take the run up once springs stick again after gross slip, where that is followed.
+    /// Lets another model take the run up, see [`Model::is_taken_up`].
     #[must_use]
     pub fn handing_over(mut self, hand_over: Option<HandOver>) -> Self {
         self.taking = hand_over.map_or(Taking::Never, |it| Taking::Ahead(it, Found::Unasked));
@@ -47,24 +47,24 @@ impl Simulation {
     /// Goes on from a state after the hand-over, as if there had been no interruption.
     ///
     /// # Arguments
-    /// * `gross` -- the model in gross slip, and the tolerance there
+    /// * `first` -- the model before, and the tolerance there
     ///
     /// # Errors
-    /// [`Error::Inconsistent`] where springs do not stick again; those of [`Model::sticking_again`].
+    /// [`Error::Inconsistent`] where no other model takes the run up; those of [`Model::taken_up`].
     pub fn resume_handed_over(
-        (gross, before): (Model, f64),
+        (first, before): (Model, f64),
         hand_over: HandOver,
         plan: Plan,
         state: State,
         progress: Progress,
     ) -> Result<Self> {
-        let model = gross.sticking_again(hand_over.springs)?.ok_or_else(|| Error::Inconsistent {
+        let model = first.taken_up(hand_over.springs)?.ok_or_else(|| Error::Inconsistent {
             what: "loading",
-            why: "no spring sticks again in this contact".into(),
+            why: "no spring sticks again in this contact, and the last does not give way".into(),
         })?;
-        let stepper = Box::new(Sdirk::new(hand_over.tolerance));
+        let stepper = stepper_of(&model, hand_over.tolerance);
         let resumed = Self::resume(model, stepper, hand_over.tolerance, plan, state, progress);
-        Ok(Self { taking: Taking::Done(Box::new(gross), before), ..resumed })
+        Ok(Self { taking: Taking::Done(Box::new(first), before), ..resumed })
     }
 
     /// The model that the run began with, and the tolerance of its steps.
@@ -89,27 +89,42 @@ impl Simulation {
         }
     }
 
-    /// Lets the other model take the run up if springs stick again.
+    /// Lets the other model take the run up where springs stick again or the last of them give way.
     pub(super) fn hand_over(&mut self) {
-        let Taking::Ahead(hand_over, found) = &mut self.taking else { return };
-        if !self.model.sticks_again(&self.state) {
-            return;
+        if self.model.changes_over(&self.state) {
+            self.take_up();
         }
+    }
+
+    /// Lets the other model take the run up; whether there is one.
+    pub(super) fn take_up(&mut self) -> bool {
+        let Taking::Ahead(hand_over, found) = &mut self.taking else { return false };
         if let Found::Unasked = found {
-            let model = self.model.sticking_again(hand_over.springs).ok().flatten();
+            let model = self.model.taken_up(hand_over.springs).ok().flatten();
             *found = model.map_or(Found::Missing, |model| Found::Ready(Box::new(model)));
         }
-        let Found::Ready(to) = found else { return };
-        let Some(state) = self.model.hand_over(&self.state, to) else { return };
+        let Found::Ready(to) = found else { return false };
+        let Some(state) = self.model.hand_over(&self.state, to) else { return false };
         let (model, tolerance) = ((**to).clone(), hand_over.tolerance);
         // The finer mesh holds modes that the polynomials over the whole contact do not. What is left in them decays in one implicit step; the shorter that is, the
         // less its error falls.
-        let next_step = self.progress.next_step.min(SETTLED_IN * state.cycles);
-        let progress = Progress { next_step, ..self.progress };
-        let (stepper, plan) = (Box::new(Sdirk::new(tolerance)), self.plan.clone());
+        let settles = model.gross().is_none();
+        let most = SETTLED_IN * if settles { state.cycles } else { self.progress.next_step };
+        let progress = Progress { next_step: self.progress.next_step.min(most), ..self.progress };
+        let (stepper, plan) = (stepper_of(&model, tolerance), self.plan.clone());
         let taken_up = Self::resume(model, stepper, tolerance, plan, state, progress);
         let before = std::mem::replace(self, taken_up);
         self.taking = Taking::Done(Box::new(before.model), before.tolerance);
-        self.settles = true;
+        self.settles = settles;
+        true
+    }
+}
+
+/// What makes the steps of a model that takes a run up.
+fn stepper_of(model: &Model, tolerance: f64) -> Box<dyn Stepper + Send> {
+    match model.gross() {
+        None => Box::new(Sdirk::new(tolerance)),
+        Some(_) if model.schedule().is_smooth_in_gross_slip() => Box::new(GrossBdf::new(tolerance)),
+        Some(_) => Box::new(GrossSdirk::new(tolerance)),
     }
 }

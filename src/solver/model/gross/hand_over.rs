@@ -1,5 +1,8 @@
-//! From gross slip to partial slip: springs next to the axis stick again, and from there on the edge of stick is followed.
+//! From gross slip to partial slip and back.
 //!
+//! On a rig the last springs that stick may give way: from there on the contact slides as a whole, and the mesh over all of it takes the compressions as they are.
+//!
+//! Under a held normal force springs next to the axis may stick again, and from there on the edge of stick is followed.
 //! Within the new edge `c` the ground is worn already. With `G = d - q_c` the height of the equivalent profile there and `G_0 = g_0(c)` that of the unworn one,
 //! what was left behind (see [`moving`](super::super::moving)) follows from `S - S_0 = w + K`:
 //!
@@ -14,7 +17,7 @@ use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::error::Result;
 use crate::laws::loading::TangentialControl;
-use crate::solver::model::moving::StickEdge;
+use crate::solver::model::moving::{MovingStick, StickEdge};
 use crate::solver::model::schedule::Schedule;
 use crate::solver::model::{Model, Past, State, StickZone};
 
@@ -52,14 +55,40 @@ impl Gross {
 }
 
 impl Model {
-    /// The same contact on the mesh of an edge of stick that moves, for when springs stick again; none where that cannot come or is not followed.
+    /// Whether another model takes the run up once springs stick again, or once the last of them slide.
+    pub fn is_taken_up(&self) -> bool {
+        match self.gross() {
+            Some(gross) => gross.holds_force() && is_followed(self.schedule()),
+            None => self.slides_on(),
+        }
+    }
+
+    /// Whether a rig goes on to move a contact whose stick it has broken.
+    fn slides_on(&self) -> bool {
+        let (contact, schedule) = (self.contact(), self.schedule());
+        let conditions = schedule.conditions();
+        let on_rig = matches!(conditions.tangential_control, TangentialControl::Rig { .. });
+        let is_held = on_rig && !conditions.holds_normal_force;
+        let recedes = self.slides && self.moving().is_some_and(MovingStick::recedes);
+        // Springs that remember their slip break away all at once.
+        let remembers = conditions.friction.remembers_slip() || schedule.resolves();
+        let fits = contact.half_space().grading() >= SOFT && Gross::carries(contact, schedule);
+        is_held && recedes && !remembers && fits
+    }
+
+    /// The same contact on the mesh that takes the run up, see [`Model::is_taken_up`]; none where none does.
     ///
     /// # Errors
     /// Those of [`Model::under`].
-    pub fn sticking_again(&self, springs: usize) -> Result<Option<Self>> {
-        let schedule = self.schedule();
-        if !is_followed(schedule) || !self.gross().is_some_and(Gross::holds_force) {
+    pub fn taken_up(&self, springs: usize) -> Result<Option<Self>> {
+        if !self.is_taken_up() {
             return Ok(None);
+        }
+        let schedule = self.schedule();
+        if self.gross().is_none() {
+            let model = Self::in_gross_slip(self.contact(), schedule.clone(), springs)?;
+            let core = self.stick_zone.stick_area;
+            return Ok(Some(model.shown_at(self.offsets().iter().map(|offset| offset + core).collect())));
         }
         let contact = self.contact();
         let innermost = contact.with_core(contact.indentation(), CORE * contact.contact_radius())?;
@@ -68,9 +97,12 @@ impl Model {
         Ok(Some(model.shown_at(self.offsets().iter().map(|squared| squared - core).collect())))
     }
 
-    /// Whether springs stick again as far out as their edge is followed.
-    pub fn sticks_again(&self, state: &State) -> bool {
-        self.gross().and_then(|gross| self.stick_zone_again(gross, state)).is_some()
+    /// Whether springs stick again as far out as their edge is followed, or the last of them give way.
+    pub fn changes_over(&self, state: &State) -> bool {
+        match self.gross() {
+            Some(gross) => self.stick_zone_again(gross, state).is_some(),
+            None => self.loses_stick(state),
+        }
     }
 
     /// The stick zone of springs that stick again.
@@ -92,8 +124,43 @@ impl Model {
         })
     }
 
-    /// A state in which springs stick again, on the mesh of [`Model::sticking_again`]; none where they do not, or no contact is found there.
+    /// A state on the mesh of [`Model::taken_up`]; none where nothing changes over, or no contact is found there.
     pub fn hand_over(&self, state: &State, to: &Self) -> Option<State> {
+        match to.gross() {
+            Some(gross) => self.let_go(state, to, gross),
+            None => self.stuck_again(state, to),
+        }
+    }
+
+    /// A state in which the last springs that stuck slide.
+    fn let_go(&self, state: &State, to: &Self, gross: &Gross) -> Option<State> {
+        let stick = state.stick.as_ref()?;
+        let (mesh, profile) = (&gross.mesh, self.contact.equivalent_profile());
+        let (area, held) = (stick.area + state.slip_area, self.contact.indentation());
+        let mut all = state.compression.clone();
+        all.push(0.0);
+        let compression_at = |fraction: &f64| {
+            let squared = fraction * area;
+            match squared < stick.area {
+                true => held - profile.value(squared.sqrt()),
+                false => self.between_springs(&all, (squared - stick.area) / state.slip_area),
+            }
+        };
+        let compression: Vec<f64> = mesh.fractions()[..mesh.inner()].iter().map(compression_at).collect();
+        let whole = to.whole(gross, &compression)?;
+        Some(State {
+            slip_area: whole.area,
+            compression_rate: vec![0.0; compression.len()],
+            compression,
+            slip_area_rate: 0.0,
+            stick: None,
+            past: Past::default(),
+            ..state.clone()
+        })
+    }
+
+    /// A state in which springs stick again.
+    fn stuck_again(&self, state: &State, to: &Self) -> Option<State> {
         let (gross, moving) = (self.gross()?, to.moving()?);
         let zone = self.stick_zone_again(gross, state)?;
         let (mesh, whole) = (&gross.mesh, self.whole(gross, &state.compression)?);
