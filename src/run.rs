@@ -4,6 +4,8 @@ use crate::data::StopReason;
 use crate::solver::simulation::Outcome;
 
 mod accuracy;
+mod anew;
+mod attempt;
 mod budget;
 mod cost;
 #[cfg(feature = "hdf5")]

@@ -4,14 +4,18 @@ use std::f64::consts::PI;
 
 use crate::contact::half_space::HalfSpace;
 use crate::contact::indenter::{EquivalentProfile, Indenter};
-use crate::contact::stick_slip::{
-    Regime, full_sliding_amplitude, slip_amplitude, slip_compression, stick_logarithm,
-};
+use crate::contact::stick_slip::{Regime, full_sliding_amplitude, stick_logarithm};
 use crate::error::{Error, Result};
 use crate::laws::friction::Coulomb;
-use crate::laws::loading::{Amplitude, Load, Loading};
+use crate::laws::loading::{Amplitude, Loading};
 use crate::laws::wear::{Archard, Scales, WearLaw};
 use crate::numerics::quadrature::Rule;
+
+mod press;
+mod slip;
+
+use press::Press;
+use slip::Slip;
 
 /// `ln(a0/c)` below which the load on the slip annulus is integrated over that, and nodes of the quadrature.
 const NARROW: f64 = 0.7;
@@ -307,151 +311,6 @@ impl InitialContact {
     }
 }
 
-/// The normal contact.
-struct Press {
-    indentation: f64,
-    contact_radius: f64,
-    normal_force: f64,
-}
-
-impl Press {
-    fn new(profile: &EquivalentProfile, normal_stiffness: f64, load: Load) -> Result<Self> {
-        let key = load.key();
-        let (Load::Indentation(value) | Load::InitialForce(value) | Load::NormalForce(value)) = load;
-        positive(key, value)?;
-        let too_large = |error: Error| match error {
-            // That of a table has its own cure.
-            Error::Inconsistent { why, .. } if profile.end_of_table().is_some() => {
-                Error::Inconsistent { what: key, why }
-            }
-            Error::Inconsistent { why, .. } => Error::Inconsistent {
-                what: key,
-                why: format!("{value} is too large: {why}; make it smaller, or the indenter larger"),
-            },
-            other => other,
-        };
-        let indentation = match load {
-            Load::Indentation(indentation) => indentation,
-            Load::InitialForce(force) | Load::NormalForce(force) => {
-                let per_stiffness = force / normal_stiffness;
-                representable(
-                    "normal force per stiffness F_N/c_N, m^(2+k)",
-                    per_stiffness,
-                    &[key, "half_space"],
-                )?;
-                profile.depth_for_load(per_stiffness).map_err(too_large)?
-            }
-        };
-        representable("indentation, m", indentation, &[key])?;
-        let contact_radius = profile.radius_at(indentation).map_err(too_large)?;
-        representable("contact radius, m", contact_radius, &["indenter", "loading"])?;
-        // Worn volumes are fractions of it.
-        let volume = PI * contact_radius * contact_radius * indentation;
-        representable("volume π a0² d, m³", volume, &["indenter", "loading"])?;
-        let normal_force = match load {
-            Load::Indentation(_) => normal_stiffness * profile.load_integral(contact_radius),
-            Load::InitialForce(force) | Load::NormalForce(force) => force,
-        };
-        representable("normal force, N", normal_force, &["loading.indentation", "half_space"])?;
-        Ok(Self { indentation, contact_radius, normal_force })
-    }
-}
-
-/// The tangential oscillation.
-struct Slip {
-    amplitude: f64,
-    compression: f64,
-    stick_logarithm: Option<f64>,
-}
-
-impl Slip {
-    fn new(
-        profile: &EquivalentProfile,
-        press: &Press,
-        half_space: &HalfSpace,
-        friction_coefficient: f64,
-        amplitude: Amplitude,
-    ) -> Result<Self> {
-        let Press { indentation, contact_radius, normal_force } = *press;
-        let stiffness_ratio = half_space.stiffness_ratio();
-        let from_displacement = |value: f64, displacement: f64| {
-            let key = amplitude.key();
-            if !(value >= 0.0 && value.is_finite()) {
-                return Err(Error::OutOfRange { name: key, value, range: "[0, inf)" });
-            }
-            let compression = slip_compression(stiffness_ratio, displacement, friction_coefficient);
-            if value > 0.0 {
-                representable("amplitude, m", displacement, &[key])?;
-                representable("compression at the edge of stick M U/μ_f, m", compression, &[key])?;
-            }
-            let stick_logarithm = match Regime::new(indentation, compression) {
-                Regime::Stick => Some(0.0),
-                Regime::FullSliding => None,
-                Regime::PartialSlip => {
-                    Some(stick_logarithm(profile, indentation, contact_radius, compression)?)
-                }
-            };
-            Ok(Self { amplitude: displacement, compression, stick_logarithm })
-        };
-        let slip = match amplitude {
-            Amplitude::Displacement(displacement) => from_displacement(displacement, displacement)?,
-            Amplitude::Stroke(stroke) => from_displacement(stroke, 0.5 * stroke)?,
-            Amplitude::Force(force) => {
-                positive(amplitude.key(), force)?;
-                let most = friction_coefficient * normal_force;
-                // F_N - F_x/μ_f = 2 c_N ∫_0^c x^k (g0(c) - g0) dx  (Cattaneo, Mindlin; Ciavarella, Jäger)
-                let borne = normal_force - force / friction_coefficient;
-                if borne <= 0.0 {
-                    let why = format!(
-                        "{force} N is not below μ_f F_N = {most} N, so that the contact is in gross slip and a held force accelerates it; \
-                         ask for less, or give the amplitude as a length"
-                    );
-                    return Err(Error::Inconsistent { what: amplitude.key(), why });
-                }
-                let height = profile.depth_for_load(borne / half_space.normal_stiffness())?;
-                let compression = (indentation - height).max(0.0);
-                from_displacement(force, slip_amplitude(stiffness_ratio, friction_coefficient, compression))?
-            }
-            Amplitude::Ratio(ratio) => {
-                from_displacement(ratio, ratio * (friction_coefficient * indentation))?
-            }
-            Amplitude::StickRatio(ratio) => {
-                if !(ratio > 0.0 && ratio <= 1.0) {
-                    return Err(Error::OutOfRange { name: amplitude.key(), value: ratio, range: "(0, 1]" });
-                }
-                if contact_radius * ratio < profile.flat_radius() {
-                    return Err(Error::Inconsistent {
-                        what: amplitude.key(),
-                        why: format!(
-                            "{ratio} puts the edge of stick at {} m, but the profile is flat up to {} m, where all springs slip at once; \
-                             ask for a larger ratio",
-                            contact_radius * ratio,
-                            profile.flat_radius()
-                        ),
-                    });
-                }
-                // Zero minus: a ratio of 1 gives +0 throughout.
-                let logarithm = 0.0 - ratio.ln();
-                let compression = 0.0 - profile.at(contact_radius).rise(-logarithm);
-                let amplitude = slip_amplitude(stiffness_ratio, friction_coefficient, compression);
-                Self { amplitude, compression, stick_logarithm: Some(logarithm) }
-            }
-        };
-        if let Some(logarithm) = slip.stick_logarithm
-            && slip.compression > 0.0
-        {
-            let key = amplitude.key();
-            let share = -(-2.0 * logarithm).exp_m1();
-            representable("stick radius, m", contact_radius * (-logarithm).exp(), &[key])?;
-            representable("amplitude, m", slip.amplitude, &[key])?;
-            // The worn volume falls with the power (5-k)/2 of the annulus.
-            let least = contact_radius * contact_radius * indentation * share.powi(3);
-            representable("worn volume, m³, in order of size", least, &[key])?;
-        }
-        Ok(slip)
-    }
-}
-
 fn positive(name: &'static str, value: f64) -> Result<()> {
     if value > 0.0 && value.is_finite() {
         return Ok(());
@@ -484,7 +343,7 @@ fn representable(what: &str, value: f64, keys: &[&'static str]) -> Result<()> {
 mod tests {
     use super::*;
     use crate::contact::indenter::TabulatedProfile;
-    use crate::laws::loading::Duration;
+    use crate::laws::loading::{Duration, Load};
 
     const FRICTION: f64 = 0.6;
     const WEAR: f64 = 1e-14;

@@ -8,7 +8,6 @@ use std::ops::RangeInclusive;
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::Clustering;
-use crate::scene::{Numerics, Scene};
 use crate::solver::model::{self, Gross, Model, MovingStick, Schedule};
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
@@ -45,36 +44,11 @@ const SMALLNESS: [f64; 2] = [2.0, 5.0];
 const FEWEST: f64 = 14.0;
 const FEWEST_BELOW_A_HUNDREDTH: f64 = 18.0;
 
-/// How often a run is repeated on more springs, and the least and the largest factor by which they are raised.
-pub(in crate::run) const REFINEMENTS: u64 = 3;
+/// The least and the largest factor by which springs are raised when a run is repeated.
 const RAISES: [f64; 2] = [1.15, 2.0];
 
 /// Part of the accuracy that an estimate may take up before the run is repeated: of twenty errors one is 1.7 times its estimate.
 pub(in crate::run) const SURE: f64 = 0.6;
-
-/// Attempts at a run, [`REFINEMENTS`] and one on fewer springs included, of which the last is made in coarse steps where all others found no end: it tells what
-/// becomes of the contact, and that nothing is known of the error.
-pub(in crate::run) const LAST_RESORT: u64 = REFINEMENTS + 2;
-
-/// Tolerance of that attempt, substeps of a period that is sampled, and the springs that it tries one after the other until there is an end: in gross slip, and elsewhere,
-/// where a mesh from near the axis needs more.
-const COARSE_STEPS: f64 = 1e-2;
-const COARSE_SUBSTEPS: usize = 48;
-pub(in crate::run) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96]];
-
-/// The numerics of an attempt at a scene.
-///
-/// # Arguments
-/// * `refinements` -- those of the attempt
-pub(in crate::run) fn numerics_of(scene: &Scene, refinements: u64) -> Numerics {
-    let numerics = *scene.numerics();
-    if refinements < LAST_RESORT {
-        return numerics;
-    }
-    let sampled = !scene.conditions().mode.is_tangential();
-    let substeps = numerics.substeps.or(sampled.then_some(COARSE_SUBSTEPS));
-    Numerics { tolerance: Some(COARSE_STEPS), substeps, ..numerics }
-}
 
 /// Most springs of a repeated run: more would take longer than a user may wait without having been asked.
 const MOST_REFINED: usize = 400;

@@ -47,9 +47,6 @@ const MOST_WORK_OF_LAST: f64 = 6e9;
 const MOST_WORK_OF_ALL: f64 = 1.5e10;
 const LEAST_PART: f64 = 0.05;
 
-/// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
-pub(super) const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];
-
 /// Work of an attempt that is left: to begin it, over [`MOST_WORK`], and over that of its companion.
 const OF_LEFT: [f64; 2] = [0.05, 2.5];
 

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use super::budget;
 use super::parts::Parts;
 use super::{Results, Shared, Simulation, Stop};
 use crate::data::{Checkpoint, LimitDistance, ResultPath, RunFile, RunWriter, scene_hash};
@@ -163,7 +162,7 @@ impl Run {
             file.header.path.clone(),
         )?;
         checkpoint.accuracy = scene.numerics().accuracy_asked();
-        let numerics = budget::numerics_of(&scene, checkpoint.attempt.refinements);
+        let numerics = checkpoint.attempt.numerics(&scene);
         let parts =
             Parts::of_state(&scene, &numerics, (&checkpoint.state, &file.header.radius), &shared.operators)?;
         if file.header.radius != parts.model.radii()

@@ -1,9 +1,8 @@
 //! What a run records: snapshots, checkpoints, and the estimate of its error.
 
-use std::cmp::Ordering;
 use std::panic::resume_unwind;
 use std::sync::Arc;
-use std::sync::atomic::{self, AtomicBool};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -14,7 +13,7 @@ use super::budget;
 use super::cost;
 use super::limit::worn_profile;
 use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::laws::loading::TangentialControl;
 use crate::scene::{Scene, Stepper};
 use crate::solver::model::{FrettingLoop, OperatorStore};
@@ -135,14 +134,14 @@ impl Recorder {
         self.takes_too_long
     }
 
-    /// Whether the attempt repeats one that came to its end, since finer ones did not.
-    pub(super) fn has_ended_before(&self) -> bool {
-        self.attempt.refinements > budget::REFINEMENTS && self.attempt.ended_on > 0
+    /// Coarser runs beside the last one, where the program chose the springs.
+    pub(super) fn companions(&self) -> Option<&Companions> {
+        self.companions.as_ref()
     }
 
     /// Whether the companions of a run tell that it would take too long.
     pub(super) fn would_take_too_long(&self) -> bool {
-        self.would_take_too_long.load(atomic::Ordering::Relaxed)
+        self.would_take_too_long.load(Ordering::Relaxed)
     }
 
     /// Work of an attempt that was left since its companions told so.
@@ -162,49 +161,34 @@ impl Recorder {
     }
 
     /// Runs a simulation, and its coarser companions beside it where the program chose the springs. Until they have come to their ends, checkpoints tell that
-    /// nothing is known of the error.
+    /// nothing is known of the error. It stops where they tell that it would take too long, if no coarser one came to its end before.
     ///
     /// # Arguments
     /// * `limited` -- whether the scene has a limit in closed form
-    /// * `first` -- whether no coarser one came to its end before, so that it stops where its companions tell that it would take too long
     pub(super) fn run(
         &mut self,
         scene: &Scene,
         store: &OperatorStore,
         simulation: &mut Simulation,
         limited: bool,
-        first: bool,
         onlookers: &mut dyn Observer,
     ) -> Result<Outcome> {
         let chosen = scene.numerics().springs.is_none();
         let compared = chosen || !has_balance(simulation);
         self.companions = compared.then(|| Companions::new(scene, simulation, limited));
-        let bounded = chosen && scene.numerics().stepper == Stepper::Implicit && !self.has_ended_before();
-        let [after_long, after_no_end] = cost::OF_LAST_ATTEMPTS;
-        let is_last = self.attempt.refinements >= budget::LAST_RESORT;
-        let part = match self.attempt.refinements.cmp(&budget::REFINEMENTS) {
-            _ if self.attempt.ended_on > 0 => 1.0,
-            Ordering::Less => 1.0,
-            Ordering::Equal => after_long,
-            Ordering::Greater => after_no_end,
-        };
+        let bounded = chosen && scene.numerics().stepper == Stepper::Implicit && !self.attempt.ends_again();
         // Also where another model has taken the run up, as before an interruption.
         let (model, _) = simulation.first();
-        let most = || match is_last {
-            true => {
-                let follows = self.attempt.refinements > budget::LAST_RESORT;
-                cost::work_of_last_resort(self.attempt.work, follows)
-            }
-            false => (part * cost::most_work(model)).min(cost::work_left(self.attempt.work)),
-        };
-        self.most_work = if bounded { most() } else { f64::INFINITY };
+        self.most_work = if bounded { self.attempt.most_work(model) } else { f64::INFINITY };
         (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
         // Nothing is told of the error of the last resort.
-        let coarsening = (compared && !is_last).then(|| Coarsening::new(scene, simulation, part));
+        let compares = compared && !self.attempt.is_last_resort();
+        let coarsening = compares.then(|| Coarsening::new(scene, simulation, self.attempt.part_of_work()));
         let (stop, too_long) = (Arc::clone(&self.stop), Arc::clone(&self.would_take_too_long));
+        let leaves = chosen && !self.attempt.has_end();
         let run_companions = || {
             let found = coarsening.map(|it| it.run(scene, store, &stop))?;
-            too_long.store(chosen && first && found.dear().is_some(), atomic::Ordering::Relaxed);
+            too_long.store(leaves && found.dear().is_some(), Ordering::Relaxed);
             Some(found)
         };
         let (outcome, found) = beside(|| simulation.run(&mut [&mut *self, onlookers]), run_companions);
@@ -221,7 +205,7 @@ impl Recorder {
         simulation: &mut Simulation,
         onlookers: &mut dyn Observer,
     ) -> Result<Outcome> {
-        self.would_take_too_long.store(false, atomic::Ordering::Relaxed);
+        self.would_take_too_long.store(false, Ordering::Relaxed);
         simulation.run(&mut [&mut *self, onlookers])
     }
 
@@ -229,52 +213,12 @@ impl Recorder {
     /// on a smooth mesh saw.
     fn error_estimate(&self, simulation: &Simulation) -> Option<f64> {
         let Some(companions) = &self.companions else { return balance_error(simulation) };
-        if self.attempt.refinements >= budget::LAST_RESORT {
+        if self.attempt.is_last_resort() {
             return Some(budget::UNKNOWN);
         }
         let shares = companions.shares(simulation, self.writer.snapshots());
         let balance = || if companions.is_smooth() { balance_error(simulation) } else { None };
         shares.map(|shares| shares.error()).or_else(balance)
-    }
-
-    /// Springs with which to repeat a run, where the program chose them and the run found no end or may be off by more than was asked for.
-    pub(super) fn more_springs(
-        &self,
-        scene: &Scene,
-        simulation: &Simulation,
-        outcome: &Result<Outcome>,
-        checkpoint: &Checkpoint,
-    ) -> Option<usize> {
-        let (accuracy, springs) = (scene.numerics().accuracy, simulation.model().springs());
-        let companions = self.companions.as_ref().filter(|_| scene.numerics().springs.is_none())?;
-        if simulation.model().is_losing_stick(simulation.state()) {
-            return None;
-        }
-        let wanted = match outcome {
-            Ok(Outcome::Interrupted) => None,
-            // The companion of a finer run may come to an end.
-            _ if companions.is_smooth() && companions.is_lost() => budget::refined(springs, None, accuracy),
-            Ok(_) if companions.is_smooth() => budget::refined(springs, checkpoint.error_estimate, accuracy),
-            Ok(_) => {
-                let shares = companions.shares(simulation, self.writer.snapshots())?;
-                budget::refined_by_order(springs, shares, accuracy, simulation.model().schedule().lifts())
-            }
-            // More springs may find an end where few do not.
-            Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
-            Err(_) => None,
-        };
-        let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, self.attempt.work));
-        match simulation.first().0.gross() {
-            _ if !simulation.is_handed_over() => wanted,
-            Some(_) => wanted.map(budget::springs_before),
-            None => wanted.map(|springs| *budget::springs_before_sliding(springs).end()),
-        }
-    }
-
-    /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.
-    pub(super) fn looks_for_an_end(&self, simulation: &Simulation) -> bool {
-        let (model, state) = (simulation.model(), simulation.state());
-        self.accuracy.is_some() && !model.loses_stick(state) && !model.is_losing_stick(state)
     }
 
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
@@ -296,7 +240,7 @@ impl Observer for Recorder {
     }
 
     fn step(&mut self, simulation: &Simulation) -> Result<Flow> {
-        if self.stop.load(atomic::Ordering::Relaxed) {
+        if self.stop.load(Ordering::Relaxed) {
             return Ok(Flow::Stop);
         }
         if self.rejected(simulation)? == Flow::Stop {

@@ -3,31 +3,21 @@
 use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
-use crate::laws::loading::has_come;
 use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper, Trial};
 
 mod failure;
 mod hand_over;
 mod possible;
+mod step;
 
 use failure::nothing_wears;
 pub use hand_over::HandOver;
 use hand_over::Taking;
-
-/// Safety factor and bounds of the choice of steps.
-const SAFETY: f64 = 0.9;
-const SMALLEST_FACTOR: f64 = 0.2;
-const LARGEST_FACTOR: f64 = 2.5;
-
-/// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
-const SMALLEST_GROWTH: f64 = 1e-13;
+use step::{Landing, Rejected};
 
 /// Compression, relative to `q_c`, below which no pressure is left but round-off.
 const WORN_OUT: f64 = 1e-13;
-
-/// Least rate at the end of the last step, over the one asked for.
-const OVERSHOT: f64 = 0.5;
 
 /// Part of the rate of worn volume by trapezoids that is certainly worn. The quadrature of the volume is more accurate, but some of its weights
 /// are negative, and where only the ground next to the edge of stick still wears its sum may vanish.
@@ -36,17 +26,6 @@ const CERTAIN_WEAR: f64 = 0.5;
 /// Rejected steps after which a run is given up if they are more than half of the accepted ones as well. Where a held force loses its stick
 /// zone, the edge of stick is followed in ever smaller steps.
 const MOST_REJECTED: u64 = 4000;
-
-/// Relative difference of errors of steps that are alike, by how much shorter each is than the one before, and after how many of them the next is taken as it is.
-const ALIKE: f64 = 0.02;
-const SHORTER: f64 = 0.7;
-const ENOUGH: usize = 4;
-
-/// Largest such error, over the tolerance: with blocks that recur that is the accuracy asked for.
-const MOST_OF_JUMP: f64 = 30.0;
-
-/// How far before a moment, relative, another block was under way.
-const BEFORE: f64 = 1e-9;
 
 /// Dimensionless time at which a run ends that would last until its rate has fallen, where wear goes on without end.
 const SHOWN_UNENDING: f64 = 1.0;
@@ -83,9 +62,6 @@ pub enum Outcome {
     /// An observer asked to stop.
     Interrupted,
 }
-
-/// Steps shorter than this part of the planned one, because they end at an output or a break, do not decide the next.
-const CUT_SHORT: f64 = 1e-3;
 
 /// What an observer wants after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -147,35 +123,12 @@ pub struct Progress {
     pub resolved_work: u64,
 }
 
-/// Errors of rejected steps that hardly change while the steps become shorter: what a jump between two blocks is off by, which no step makes less. It decays in one
-/// implicit step, and companions tell what comes of it.
-#[derive(Default)]
-struct Repeats {
-    last: Option<[f64; 2]>,
-    count: usize,
-}
-
-impl Repeats {
-    /// Whether enough of them were alike, with this one.
-    fn are_enough(&mut self, error: f64, step: f64) -> bool {
-        let alike = self
-            .last
-            .is_some_and(|[before, longer]| (error / before - 1.0).abs() < ALIKE && step < SHORTER * longer);
-        self.count = if alike { self.count + 1 } else { 0 };
-        self.last = Some([error, step]);
-        self.count >= ENOUGH && error < MOST_OF_JUMP
-    }
-}
-
-/// A step to try.
-struct Landing {
-    step: f64,
-    /// Cycles at which it ends exactly, on an output or where what acts changes.
-    at: Option<f64>,
-    /// Whether that is an output.
-    output: bool,
-    /// Whether nothing wears until then, so that the contact stays as it is.
-    rests: bool,
+/// Where a step led, and what follows from there.
+struct Reached {
+    state: State,
+    fields: Fields,
+    cycle: CycleFields,
+    rate: f64,
 }
 
 /// A model on its way through time.
@@ -196,6 +149,7 @@ pub struct Simulation {
     taking: Taking,
     /// Whether the next step settles a state that was handed over, so that its error does not count.
     settles: bool,
+    rejected: Rejected,
 }
 
 impl Simulation {
@@ -255,6 +209,7 @@ impl Simulation {
             healed_at: None,
             taking: Taking::Never,
             settles: false,
+            rejected: Rejected::default(),
         }
     }
 
@@ -396,19 +351,6 @@ impl Simulation {
         states.collect()
     }
 
-    /// The state at a later time up to which nothing wears; what slips without wear goes on to dissipate.
-    fn resting_until(&self, cycles: f64) -> State {
-        let passed = cycles - self.state.cycles;
-        State {
-            cycles,
-            dissipated_energy: self.state.dissipated_energy + passed * self.cycle.dissipation,
-            volume_by_rate: self.state.volume_by_rate + passed * self.cycle.volume,
-            // No polynomial leads here.
-            past: Past::default(),
-            ..self.state.clone()
-        }
-    }
-
     /// Shows the states within the last step.
     fn tell_passed(
         &mut self,
@@ -462,41 +404,24 @@ impl Simulation {
 
     /// Makes one step, of which the length may have to be found; whether it landed on an output. None where an observer stops the search for its length.
     fn advance(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Option<bool>> {
-        let (mut repeats, mut was_rejected) = (Repeats::default(), false);
         loop {
-            let landing = self.choose_step(was_rejected)?;
+            let landing = self.choose_step()?;
             let step = landing.step;
-            let before = self.model.work_counted();
-            let trial = match landing.rests {
-                true => Trial::at_rest(self.resting_until(self.state.cycles + step)),
-                false => self.stepper.step(&self.model, &self.state, step)?,
-            };
-            self.progress.resolved_work += self.model.work_counted() - before;
-            self.progress.rate_evaluations += trial.rate_evaluations;
-            let error = trial.error / self.tolerance;
-            let accepted = match trial.state {
-                Some(state) if error <= 1.0 || self.settles => {
-                    let fields = trial.fields.unwrap_or_else(|| self.model.fields(&state));
-                    let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
-                    let rate = rate_of_wear(&self.model, &fields, &cycle);
-                    if let Some(shorter) = self.overshoot(rate, step) {
-                        self.progress.next_step = shorter;
-                        continue;
-                    }
-                    let passed = self.passed(&state, landing.rests);
-                    match passed {
-                        Some(passed) => {
-                            let accepted = self.accept(state, fields, cycle, rate, landing.at)?;
-                            if accepted {
-                                self.tell_passed(passed, observers)?;
-                            }
-                            accepted
-                        }
-                        None => false,
-                    }
+            let trial = self.tried(&landing)?;
+            let (error, next_step) = (trial.error / self.tolerance, trial.next_step);
+            let reached = if error <= 1.0 || self.settles { self.reached(trial) } else { None };
+            if let Some(shorter) = reached.as_ref().and_then(|it| self.overshoot(it.rate, step)) {
+                self.progress.next_step = shorter;
+                continue;
+            }
+            let passed = reached.as_ref().and_then(|it| self.passed(&it.state, landing.rests));
+            let mut accepted = false;
+            if let Some((reached, passed)) = reached.zip(passed) {
+                accepted = self.accept(reached, landing.at)?;
+                if accepted {
+                    self.tell_passed(passed, observers)?;
                 }
-                _ => false,
-            };
+            }
             if self.stepper.prescribed_step().is_some() {
                 if !accepted {
                     return Err(self.stuck("the wear of one cycle leaves no contact that wear can lead to"));
@@ -504,105 +429,66 @@ impl Simulation {
             } else if !landing.rests {
                 // What settles tells nothing of the next step.
                 let error = if self.settles && accepted { error.min(1.0) } else { error };
-                self.adapt(step, error, accepted, trial.next_step);
+                self.adapt(step, error, accepted, next_step);
             }
             if accepted {
                 self.settles = false;
+                self.rejected = Rejected::default();
                 self.progress.steps += 1;
                 self.progress.next_output += u64::from(landing.output);
                 return Ok(Some(landing.output));
             }
-            was_rejected = true;
-            self.settles |= repeats.are_enough(error, step) && self.begins_block();
-            self.progress.rejected_steps += 1;
-            let rejected = self.progress.rejected_steps;
-            if rejected > MOST_REJECTED && 2 * rejected > self.progress.steps {
-                return Err(self.stuck("wear goes on in ever smaller steps, of which most are rejected"));
-            }
-            let mut stops = false;
-            for observer in observers.iter_mut() {
-                stops |= observer.rejected(self)? == Flow::Stop;
-            }
-            if stops {
+            self.settles |= self.rejected.are_alike_with(error, step) && self.begins_block();
+            if self.reject(observers)? == Flow::Stop {
                 return Ok(None);
             }
         }
     }
 
-    /// Whether a block of another amplitude or indentation has begun just now.
-    fn begins_block(&self) -> bool {
-        let (schedule, now) = (self.model.schedule(), self.state.cycles);
-        now > 0.0 && schedule.begins_block(now * (1.0 - BEFORE), now)
+    /// Tries a step, and counts what that takes.
+    fn tried(&mut self, landing: &Landing) -> Result<Trial> {
+        let before = self.model.work_counted();
+        let trial = match landing.rests {
+            true => Trial::at_rest(self.resting_until(self.state.cycles + landing.step)),
+            false => self.stepper.step(&self.model, &self.state, landing.step)?,
+        };
+        self.progress.resolved_work += self.model.work_counted() - before;
+        self.progress.rate_evaluations += trial.rate_evaluations;
+        Ok(trial)
     }
 
-    /// The step to try, and where it lands if it does.
+    /// What a step led to; none if no contact was found.
+    fn reached(&self, trial: Trial) -> Option<Reached> {
+        let state = trial.state?;
+        let fields = trial.fields.unwrap_or_else(|| self.model.fields(&state));
+        let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
+        let rate = rate_of_wear(&self.model, &fields, &cycle);
+        Some(Reached { state, fields, cycle, rate })
+    }
+
+    /// Counts a step that was rejected.
     ///
-    /// # Arguments
-    /// * `was_rejected` -- whether one from here was tried before
-    fn choose_step(&self, was_rejected: bool) -> Result<Landing> {
-        let now = self.state.cycles;
-        let output = match self.plan.end {
-            End::Cycles(end) if self.stepper.interpolates() => Some(end),
-            End::Rate(_) if self.stepper.interpolates() => None,
-            _ => self.plan.outputs.get(self.progress.next_output as usize).copied(),
-        };
-        let target = match (self.model.schedule().next_break(now), output) {
-            // Where they differ by rounding, the step lands on the output.
-            (Some(kink), Some(output)) => Some(if has_come(output, kink) { output } else { kink }),
-            (kink, output) => kink.or(output),
-        };
-        let landing = |step: f64, at: Option<f64>| {
-            let output = at.is_some() && at == output;
-            Landing { step, at, output, rests: false }
-        };
-        if let Some(step) = self.stepper.prescribed_step() {
-            return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
+    /// # Errors
+    /// [`Error::NotConverged`](crate::Error::NotConverged) if too many were; those of observers.
+    fn reject(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Flow> {
+        self.progress.rejected_steps += 1;
+        let rejected = self.progress.rejected_steps;
+        if rejected > MOST_REJECTED && 2 * rejected > self.progress.steps {
+            return Err(self.stuck("wear goes on in ever smaller steps, of which most are rejected"));
         }
-        let growth = largest(&self.cycle.growth);
-        // Nothing wears: as long as nothing moves, or friction stays, nothing will. Where a step is found it takes what pulls back to what is only spent.
-        let schedule = self.model.schedule();
-        let rests = || schedule.loading(now, now).asked() == 0.0 || was_rejected && schedule.keeps_friction();
-        if let Some(target) = target.filter(|_| growth == 0.0 && rests()) {
-            return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
+        let mut flow = Flow::Continue;
+        for observer in observers.iter_mut() {
+            if observer.rejected(self)? == Flow::Stop {
+                flow = Flow::Stop;
+            }
         }
-        let step = self.progress.next_step;
-        let growth = step * growth;
-        if !(growth > SMALLEST_GROWTH || (now > 0.0 && step > 1e-6 * now)) {
-            return Err(self.stuck("no step is small enough for wear to go on from there"));
-        }
-        let Some(target) = target else { return Ok(landing(step, None)) };
-        let remaining = target - now;
-        Ok(if step >= remaining * (1.0 - 1e-9) {
-            landing(remaining, Some(target))
-        } else {
-            landing(if 2.0 * step > remaining { 0.5 * remaining } else { step }, None)
-        })
-    }
-
-    /// The step that ends where the rate is what was asked for, if this one leaves it far behind; the rate falls exponentially.
-    fn overshoot(&self, rate: f64, step: f64) -> Option<f64> {
-        let End::Rate(fraction) = self.plan.end else { return None };
-        if self.stepper.prescribed_step().is_some() {
-            return None;
-        }
-        let wanted = fraction * self.progress.first_rate;
-        let reached = rate.max(f64::MIN_POSITIVE);
-        let now = self.wear_rate();
-        let part = (now / wanted).ln() / (now / reached).ln();
-        (now > wanted && reached < OVERSHOT * wanted && part < 1.0)
-            .then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
+        Ok(flow)
     }
 
     /// Accepts a state if wear can lead to it.
-    fn accept(
-        &mut self,
-        mut state: State,
-        fields: Fields,
-        cycle: CycleFields,
-        rate: f64,
-        target: Option<f64>,
-    ) -> Result<bool> {
-        let depth = self.model.depth_on_springs(&state, &fields);
+    fn accept(&mut self, reached: Reached, target: Option<f64>) -> Result<bool> {
+        let Reached { mut state, mut fields, mut cycle, mut rate } = reached;
+        let mut depth = self.model.depth_on_springs(&state, &fields);
         if self.model.gross().is_none() && !self.is_possible(&state, &fields, &depth) {
             return Ok(false);
         }
@@ -622,7 +508,6 @@ impl Simulation {
         }
         // Steppers look at their ends; the first cycle of a block is where springs come to slip.
         state.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
-        let (mut fields, mut cycle, mut rate, mut depth) = (fields, cycle, rate, depth);
         if target.is_some() {
             let (edge, before) = (state.stick.as_ref().map(|it| it.area), self.model.work_counted());
             state = self.model.begin_block(state, self.state.cycles)?;
@@ -636,21 +521,6 @@ impl Simulation {
         }
         (self.state, self.fields, self.cycle, self.depth, self.rate) = (state, fields, cycle, depth, rate);
         Ok(true)
-    }
-
-    /// Chooses the next step from the error of this one over the tolerance.
-    fn adapt(&mut self, step: f64, error: f64, accepted: bool, wanted: Option<f64>) {
-        let order = self.stepper.estimate_order();
-        let by_error = || step * SAFETY * error.max(1e-12).powf(-1.0 / order);
-        let best = if error.is_finite() { wanted.unwrap_or_else(by_error) } else { 0.25 * step };
-        let planned = self.progress.next_step;
-        self.progress.next_step = if accepted && step < CUT_SHORT * planned {
-            planned
-        } else if accepted {
-            best.clamp(SMALLEST_FACTOR * step, LARGEST_FACTOR * step.max(planned))
-        } else {
-            best.clamp(SMALLEST_FACTOR * step, 0.5 * step)
-        };
     }
 }
 

@@ -124,7 +124,7 @@ impl Companion {
         match outcome {
             Ok(Outcome::Interrupted) | Err(_) => Err(Lost::NoEnd),
             Ok(outcome) => Ok(Self {
-                springs: simulation.model().springs(),
+                springs: simulation.springs(),
                 seen: seen.worn,
                 spent: ends_by_rate && outcome != Outcome::Unending,
                 unsampled: seen.unsampled,

@@ -282,7 +282,7 @@ impl Companions {
         let left_out = self.left_out.max(below);
         let unknown = Shares { springs: UNKNOWN, left_out, ..Shares::default() };
         let Some(first) = &self.first else { return Some(unknown) };
-        let ratio = simulation.model().springs() as f64 / first.springs as f64;
+        let ratio = simulation.springs() as f64 / first.springs as f64;
         let spent = !self.smooth
             && matches!(simulation.plan().end, End::Rate(_))
             && matches!(simulation.outcome(), Some(Outcome::Rate | Outcome::WornOut));
@@ -299,7 +299,7 @@ impl Companions {
         let substeps = finite(first.unsampled.as_ref().map_or(0.0, |it| it.error(scale)));
         // Where a mesh has to be raised to as many springs as the run has, or more, nothing is known.
         let tells = ratio >= LEAST_RATIO;
-        if simulation.is_handed_over() {
+        if simulation.sticks_after_gross_slip() {
             // What the polynomials over the whole contact make of the kink at the edge of stick falls with no order, and two runs may share it: the companions
             // are off by more than the run.
             let farther = self.farther(first, scale).map_or(nearest, |(gap, _)| gap.max(nearest));

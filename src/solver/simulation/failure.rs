@@ -1,6 +1,7 @@
 //! Why a run cannot begin, or go on: the physical moment, and what can be done.
 
-use super::{SMALLEST_FACTOR, SMALLEST_GROWTH, Simulation, largest};
+use super::step::{SMALLEST_FACTOR, SMALLEST_GROWTH};
+use super::{Simulation, largest};
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::SEARCH;

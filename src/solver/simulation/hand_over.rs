@@ -75,9 +75,17 @@ impl Simulation {
         }
     }
 
-    /// Whether another model has taken the run up.
-    pub fn is_handed_over(&self) -> bool {
-        matches!(self.taking, Taking::Done(..))
+    /// Whether springs have come to stick again.
+    pub fn sticks_after_gross_slip(&self) -> bool {
+        matches!(&self.taking, Taking::Done(before, _) if before.gross().is_some())
+    }
+
+    /// Springs of the mesh by which the error goes: that which followed an edge of stick, if one did.
+    pub fn springs(&self) -> usize {
+        match &self.taking {
+            Taking::Done(before, _) if before.gross().is_none() => before.springs(),
+            _ => self.model.springs(),
+        }
     }
 
     /// Whether springs stick again after gross slip, as far as a coarse run or this one tells.

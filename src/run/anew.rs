@@ -1,0 +1,214 @@
+//! A run that is made anew on other springs: on more where its error is larger than was asked for, on fewer where it takes too long or finds no end.
+
+use super::attempt::{LAST_RESORT, REFINEMENTS, SPRINGS_OF_LAST_RESORT};
+use super::budget;
+use super::cost;
+use super::limit::header;
+use super::parts::Parts;
+use super::recorder::Recorder;
+use crate::contact::closed_form::LimitingShape;
+use crate::data::{Attempt, Checkpoint};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::solver::model::OperatorStore;
+use crate::solver::simulation::{Observer, Outcome, Simulation};
+
+/// A run, attempt by attempt; its recorder holds what the one under way counts as.
+pub(super) struct Attempts<'a> {
+    pub scene: &'a Scene,
+    pub store: &'a OperatorStore,
+    pub recorder: &'a mut Recorder,
+    pub stepping: Simulation,
+    pub limit: Option<LimitingShape>,
+}
+
+/// Where a run ended, and on which springs.
+pub(super) struct End {
+    pub stepping: Simulation,
+    pub limit: Option<LimitingShape>,
+    pub outcome: Result<Outcome>,
+    pub checkpoint: Checkpoint,
+}
+
+/// An attempt that may take the place of another.
+struct Anew {
+    springs: usize,
+    /// Whether it is made only on fewer springs than the one before: a mesh may need as many.
+    on_fewer: bool,
+    counted: Attempt,
+}
+
+impl Attempts<'_> {
+    /// Runs until no other attempt follows.
+    pub(super) fn run(mut self, onlookers: &mut dyn Observer) -> End {
+        loop {
+            let before = self.recorder.attempt.work;
+            let limited = self.limit.is_some();
+            let mut outcome =
+                self.recorder.run(self.scene, self.store, &mut self.stepping, limited, onlookers);
+            if self.recorder.would_take_too_long() {
+                let instead = self.instead_of_too_long(before + self.recorder.work_of_left());
+                if self.takes_up(instead) {
+                    continue;
+                }
+                outcome = self.recorder.go_on(&mut self.stepping, onlookers);
+            }
+            let work = before + cost::work_of(&self.stepping);
+            if self.recorder.takes_too_long() {
+                if self.takes_up(self.after_too_long(work)) {
+                    continue;
+                }
+                outcome = Err(self.stepping.takes_too_long());
+            }
+            let checkpoint = self.recorder.checkpoint(&self.stepping);
+            if !self.takes_up(self.after(&outcome, &checkpoint, work)) {
+                let Self { stepping, limit, .. } = self;
+                return End { stepping, limit, outcome, checkpoint };
+            }
+        }
+    }
+
+    /// Takes up the first of some attempts that begins; whether there is one.
+    fn takes_up(&mut self, attempts: Vec<Anew>) -> bool {
+        let Some((counted, stepping, limit)) = attempts.iter().find_map(|it| self.begun(it)) else {
+            return false;
+        };
+        self.recorder.writer.restart(header(self.scene, stepping.model(), limit.as_ref()));
+        (self.recorder.attempt, self.stepping, self.limit) = (counted, stepping, limit);
+        true
+    }
+
+    fn begun(&self, anew: &Anew) -> Option<(Attempt, Simulation, Option<LimitingShape>)> {
+        let Anew { springs, on_fewer, counted } = *anew;
+        // The last resort has substeps of its own.
+        let known = (!counted.is_last_resort()).then(|| self.stepping.model().schedule());
+        let numerics = counted.numerics(self.scene);
+        let mut parts = Parts::new(self.scene, &numerics, Some(springs), known, self.store).ok()?;
+        let limit = parts.limit.take();
+        let stepping = parts.begin().ok()?;
+        (!on_fewer || stepping.model().springs() < self.springs()).then_some((counted, stepping, limit))
+    }
+
+    /// Those with which this one began.
+    fn springs(&self) -> usize {
+        self.stepping.first().0.springs()
+    }
+
+    /// What follows on an attempt that its companions tell would take too long, after so much work.
+    fn instead_of_too_long(&self, work: u64) -> Vec<Anew> {
+        self.coarser(self.recorder.attempt.refinements, work, self.recorder.is_far_too_long())
+    }
+
+    /// What follows on one that took too long.
+    fn after_too_long(&self, work: u64) -> Vec<Anew> {
+        if self.recorder.attempt.has_end() { vec![] } else { self.coarser(REFINEMENTS, work, false) }
+    }
+
+    /// On fewer springs where these take too long.
+    ///
+    /// # Arguments
+    /// * `refinements` -- as how many that counts, unless it is the last resort
+    fn coarser(&self, refinements: u64, work: u64, far_too_long: bool) -> Vec<Anew> {
+        if self.recorder.attempt.is_last_resort() {
+            return vec![];
+        }
+        // In gross slip the last resort has no fewer springs than these.
+        if self.stepping.model().gross().is_none() && (far_too_long || cost::is_nearly_spent(work)) {
+            return self.last_resort(work);
+        }
+        let counted = Attempt { refinements, ended_on: 0, work };
+        let fewer = cost::fewer(self.springs());
+        fewer.map(|springs| Anew { springs, on_fewer: true, counted }).into_iter().collect()
+    }
+
+    /// What follows on an attempt that is over.
+    fn after(&self, outcome: &Result<Outcome>, checkpoint: &Checkpoint, work: u64) -> Vec<Anew> {
+        let attempt = self.recorder.attempt;
+        let no_end = matches!(outcome, Err(Error::NotConverged { .. }));
+        if no_end && attempt.has_end() && !attempt.ends_again() {
+            return vec![self.end_again(work)];
+        }
+        if let Some(springs) = self.more_springs(outcome, checkpoint) {
+            return vec![self.finer(springs, outcome.is_ok(), work)];
+        }
+        if !(no_end && self.looks_for_an_end()) {
+            return vec![];
+        }
+        match attempt.is_last_resort() {
+            false => self.for_an_end(work),
+            true if self.recorder.takes_too_long() => vec![],
+            // Steps as coarse lead on from some places of the springs and not from others.
+            true => self.last_resort(work),
+        }
+    }
+
+    /// Finer ones do not end: that which did, once more.
+    fn end_again(&self, work: u64) -> Anew {
+        let ended_on = self.recorder.attempt.ended_on;
+        let counted = Attempt { refinements: REFINEMENTS + 1, ended_on, work };
+        Anew { springs: ended_on as usize, on_fewer: false, counted }
+    }
+
+    fn finer(&self, springs: usize, ended: bool, work: u64) -> Anew {
+        let refinements = self.recorder.attempt.refinements + 1;
+        let ended_on = if ended { self.springs() as u64 } else { 0 };
+        Anew { springs, on_fewer: false, counted: Attempt { refinements, ended_on, work } }
+    }
+
+    /// Coarser ones may come to an end where this does not, and tell that nothing is known of the error.
+    fn for_an_end(&self, work: u64) -> Vec<Anew> {
+        let (begun, _) = self.stepping.first();
+        let known = Some(self.stepping.model().schedule());
+        let asked = Parts::new(self.scene, self.scene.numerics(), None, known, self.store).ok();
+        let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
+        let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
+        let counted = Attempt { refinements: REFINEMENTS + 1, ended_on: 0, work };
+        let fewer = fewer.map(|springs| Anew { springs, on_fewer: true, counted });
+        fewer.into_iter().chain(self.last_resort(work)).collect()
+    }
+
+    /// In coarse steps, on those springs that have not been tried so.
+    fn last_resort(&self, work: u64) -> Vec<Anew> {
+        let attempt = self.recorder.attempt;
+        let refinements = LAST_RESORT.max(attempt.refinements + 1);
+        let counted = Attempt { refinements, ended_on: 0, work };
+        let all = SPRINGS_OF_LAST_RESORT[usize::from(self.stepping.model().gross().is_none())].iter();
+        let tried = match attempt.is_last_resort() {
+            true => 1 + all.clone().take_while(|it| **it != self.springs()).count(),
+            false => 0,
+        };
+        all.skip(tried).map(|springs| Anew { springs: *springs, on_fewer: false, counted }).collect()
+    }
+
+    /// Springs with which to repeat a run, where the program chose them and the run found no end or may be off by more than was asked for.
+    fn more_springs(&self, outcome: &Result<Outcome>, checkpoint: &Checkpoint) -> Option<usize> {
+        let (scene, simulation, attempt) = (self.scene, &self.stepping, &self.recorder.attempt);
+        let (accuracy, springs) = (scene.numerics().accuracy, simulation.springs());
+        let companions = self.recorder.companions().filter(|_| scene.numerics().springs.is_none())?;
+        if attempt.refinements >= REFINEMENTS || simulation.model().is_losing_stick(simulation.state()) {
+            return None;
+        }
+        let wanted = match outcome {
+            Ok(Outcome::Interrupted) => None,
+            // The companion of a finer run may come to an end.
+            _ if companions.is_smooth() && companions.is_lost() => budget::refined(springs, None, accuracy),
+            Ok(_) if companions.is_smooth() => budget::refined(springs, checkpoint.error_estimate, accuracy),
+            Ok(_) => {
+                let shares = companions.shares(simulation, self.recorder.writer.snapshots())?;
+                budget::refined_by_order(springs, shares, accuracy, simulation.model().schedule().lifts())
+            }
+            // More springs may find an end where few do not.
+            Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
+            Err(_) => None,
+        };
+        let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, attempt.work));
+        if simulation.sticks_after_gross_slip() { wanted.map(budget::springs_before) } else { wanted }
+    }
+
+    /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.
+    fn looks_for_an_end(&self) -> bool {
+        let (model, state) = (self.stepping.model(), self.stepping.state());
+        let chosen = self.scene.numerics().accuracy_asked().is_some();
+        chosen && !model.loses_stick(state) && !model.is_losing_stick(state)
+    }
+}

@@ -1,0 +1,74 @@
+//! One of several attempts at a run, by its count: how it is made, and what it may take.
+
+use std::cmp::Ordering;
+
+use super::cost;
+use crate::data::Attempt;
+use crate::scene::{Numerics, Scene};
+use crate::solver::model::Model;
+
+/// How often a run is repeated on more springs.
+pub(super) const REFINEMENTS: u64 = 3;
+
+/// Attempts at a run, [`REFINEMENTS`] and one on fewer springs included, of which the last is made in coarse steps where all others found no end: it tells what
+/// becomes of the contact, and that nothing is known of the error.
+pub(super) const LAST_RESORT: u64 = REFINEMENTS + 2;
+
+/// Tolerance of that attempt, substeps of a period that is sampled, and the springs that it tries one after the other until there is an end: in gross slip, and elsewhere,
+/// where a mesh from near the axis needs more.
+const COARSE_STEPS: f64 = 1e-2;
+const COARSE_SUBSTEPS: usize = 48;
+pub(super) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96]];
+
+/// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
+const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];
+
+impl Attempt {
+    /// Whether it is made in coarse steps, since no other found an end.
+    pub(super) fn is_last_resort(&self) -> bool {
+        self.refinements >= LAST_RESORT
+    }
+
+    /// Whether one before came to an end, so that it would do so again.
+    pub(super) fn has_end(&self) -> bool {
+        self.ended_on > 0
+    }
+
+    /// Whether it repeats one that came to its end, since finer ones did not.
+    pub(super) fn ends_again(&self) -> bool {
+        self.refinements > REFINEMENTS && self.has_end()
+    }
+
+    /// The numerics with which it is made.
+    pub(super) fn numerics(&self, scene: &Scene) -> Numerics {
+        let numerics = *scene.numerics();
+        if !self.is_last_resort() {
+            return numerics;
+        }
+        let sampled = !scene.conditions().mode.is_tangential();
+        let substeps = numerics.substeps.or(sampled.then_some(COARSE_SUBSTEPS));
+        Numerics { tolerance: Some(COARSE_STEPS), substeps, ..numerics }
+    }
+
+    /// The part of the work of a run that it may take.
+    pub(super) fn part_of_work(&self) -> f64 {
+        let [after_long, after_no_end] = OF_LAST_ATTEMPTS;
+        match self.refinements.cmp(&REFINEMENTS) {
+            _ if self.has_end() => 1.0,
+            Ordering::Less => 1.0,
+            Ordering::Equal => after_long,
+            Ordering::Greater => after_no_end,
+        }
+    }
+
+    /// Most work that it may take.
+    ///
+    /// # Arguments
+    /// * `model` -- that with which it begins
+    pub(super) fn most_work(&self, model: &Model) -> f64 {
+        if self.is_last_resort() {
+            return cost::work_of_last_resort(self.work, self.refinements > LAST_RESORT);
+        }
+        (self.part_of_work() * cost::most_work(model)).min(cost::work_left(self.work))
+    }
+}

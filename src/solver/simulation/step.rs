@@ -1,0 +1,157 @@
+//! Which step to try, and where it lands; where nothing wears it is a rest.
+
+use super::{End, Simulation, largest};
+use crate::error::Result;
+use crate::laws::loading::has_come;
+use crate::solver::model::{Past, State};
+
+/// Safety factor and bounds of the choice of steps.
+const SAFETY: f64 = 0.9;
+pub(super) const SMALLEST_FACTOR: f64 = 0.2;
+const LARGEST_FACTOR: f64 = 2.5;
+
+/// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
+pub(super) const SMALLEST_GROWTH: f64 = 1e-13;
+
+/// Steps shorter than this part of the planned one, because they end at an output or a break, do not decide the next.
+const CUT_SHORT: f64 = 1e-3;
+
+/// Least rate at the end of the last step, over the one asked for.
+const OVERSHOT: f64 = 0.5;
+
+/// Relative difference of errors of steps that are alike, by how much shorter each is than the one before, and after how many of them the next is taken as it is.
+const ALIKE: f64 = 0.02;
+const SHORTER: f64 = 0.7;
+const ENOUGH: usize = 4;
+
+/// Largest such error, over the tolerance: with blocks that recur that is the accuracy asked for.
+const MOST_OF_JUMP: f64 = 30.0;
+
+/// How far before a moment, relative, another block was under way.
+const BEFORE: f64 = 1e-9;
+
+/// Steps from here that were rejected. Their errors may hardly change while they become shorter: by what a jump between two blocks is off, which no step makes less. It
+/// decays in one implicit step, and companions tell what comes of it.
+#[derive(Default)]
+pub(super) struct Rejected {
+    /// Error over the tolerance, and length, of the last.
+    last: Option<[f64; 2]>,
+    alike: usize,
+}
+
+impl Rejected {
+    /// Takes one more; whether enough of them were alike.
+    pub(super) fn are_alike_with(&mut self, error: f64, step: f64) -> bool {
+        let alike = self
+            .last
+            .is_some_and(|[before, longer]| (error / before - 1.0).abs() < ALIKE && step < SHORTER * longer);
+        self.alike = if alike { self.alike + 1 } else { 0 };
+        self.last = Some([error, step]);
+        self.alike >= ENOUGH && error < MOST_OF_JUMP
+    }
+}
+
+/// A step to try.
+pub(super) struct Landing {
+    pub step: f64,
+    /// Cycles at which it ends exactly, on an output or where what acts changes.
+    pub at: Option<f64>,
+    /// Whether that is an output.
+    pub output: bool,
+    /// Whether nothing wears until then, so that the contact stays as it is.
+    pub rests: bool,
+}
+
+impl Simulation {
+    /// The step to try, and where it lands if it does.
+    pub(super) fn choose_step(&self) -> Result<Landing> {
+        let now = self.state.cycles;
+        let output = match self.plan.end {
+            End::Cycles(end) if self.stepper.interpolates() => Some(end),
+            End::Rate(_) if self.stepper.interpolates() => None,
+            _ => self.plan.outputs.get(self.progress.next_output as usize).copied(),
+        };
+        let target = match (self.model.schedule().next_break(now), output) {
+            // Where they differ by rounding, the step lands on the output.
+            (Some(kink), Some(output)) => Some(if has_come(output, kink) { output } else { kink }),
+            (kink, output) => kink.or(output),
+        };
+        let landing = |step: f64, at: Option<f64>| {
+            let output = at.is_some() && at == output;
+            Landing { step, at, output, rests: false }
+        };
+        if let Some(step) = self.stepper.prescribed_step() {
+            return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
+        }
+        if let Some(target) = target.filter(|_| self.rests()) {
+            return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
+        }
+        let step = self.progress.next_step;
+        let growth = step * largest(&self.cycle.growth);
+        if !(growth > SMALLEST_GROWTH || (now > 0.0 && step > 1e-6 * now)) {
+            return Err(self.stuck("no step is small enough for wear to go on from there"));
+        }
+        let Some(target) = target else { return Ok(landing(step, None)) };
+        let remaining = target - now;
+        Ok(if step >= remaining * (1.0 - 1e-9) {
+            landing(remaining, Some(target))
+        } else {
+            landing(if 2.0 * step > remaining { 0.5 * remaining } else { step }, None)
+        })
+    }
+
+    /// Whether the contact rests. Nothing wears: as long as nothing moves, or friction stays, nothing will. Where a step is found it takes what pulls back to what is only spent.
+    fn rests(&self) -> bool {
+        let (schedule, now) = (self.model.schedule(), self.state.cycles);
+        let leads_nowhere = || self.rejected.last.is_some() && schedule.keeps_friction();
+        largest(&self.cycle.growth) == 0.0 && (schedule.loading(now, now).asked() == 0.0 || leads_nowhere())
+    }
+
+    /// The state at a later time up to which nothing wears; what slips without wear goes on to dissipate.
+    pub(super) fn resting_until(&self, cycles: f64) -> State {
+        let passed = cycles - self.state.cycles;
+        State {
+            cycles,
+            dissipated_energy: self.state.dissipated_energy + passed * self.cycle.dissipation,
+            volume_by_rate: self.state.volume_by_rate + passed * self.cycle.volume,
+            // No polynomial leads here.
+            past: Past::default(),
+            ..self.state.clone()
+        }
+    }
+
+    /// The step that ends where the rate is what was asked for, if this one leaves it far behind; the rate falls exponentially.
+    pub(super) fn overshoot(&self, rate: f64, step: f64) -> Option<f64> {
+        let End::Rate(fraction) = self.plan.end else { return None };
+        if self.stepper.prescribed_step().is_some() {
+            return None;
+        }
+        let wanted = fraction * self.progress.first_rate;
+        let reached = rate.max(f64::MIN_POSITIVE);
+        let now = self.wear_rate();
+        let part = (now / wanted).ln() / (now / reached).ln();
+        (now > wanted && reached < OVERSHOT * wanted && part < 1.0)
+            .then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
+    }
+
+    /// Whether a block of another amplitude or indentation has begun just now.
+    pub(super) fn begins_block(&self) -> bool {
+        let (schedule, now) = (self.model.schedule(), self.state.cycles);
+        now > 0.0 && schedule.begins_block(now * (1.0 - BEFORE), now)
+    }
+
+    /// Chooses the next step from the error of this one over the tolerance.
+    pub(super) fn adapt(&mut self, step: f64, error: f64, accepted: bool, wanted: Option<f64>) {
+        let order = self.stepper.estimate_order();
+        let by_error = || step * SAFETY * error.max(1e-12).powf(-1.0 / order);
+        let best = if error.is_finite() { wanted.unwrap_or_else(by_error) } else { 0.25 * step };
+        let planned = self.progress.next_step;
+        self.progress.next_step = if accepted && step < CUT_SHORT * planned {
+            planned
+        } else if accepted {
+            best.clamp(SMALLEST_FACTOR * step, LARGEST_FACTOR * step.max(planned))
+        } else {
+            best.clamp(SMALLEST_FACTOR * step, 0.5 * step)
+        };
+    }
+}
