@@ -18,7 +18,7 @@ use crate::laws::loading::TangentialControl;
 use crate::numerics::curve::distance_from_curve;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Scene, Stepper};
-use crate::solver::model::{Model, MovingStick, OperatorStore, Schedule};
+use crate::solver::model::{Gross, Model, MovingStick, OperatorStore, Schedule};
 use crate::solver::simulation::{End, Outcome, Simulation};
 
 /// Springs of a run over those of its companion, and of that over those of the next; fewest of a companion.
@@ -391,7 +391,7 @@ fn in_gross_slip(
     let error = if tells && error.is_finite() { error } else { UNKNOWN };
     let shares = Shares { order: ORDER_IN_GROSS_SLIP, ..Shares::default() };
     let most = snapshots.iter().map(|it| it.stick_radius).fold(0.0, f64::max);
-    if most > 0.0 {
+    if most > 0.0 && model.gross().is_some_and(Gross::holds_force) {
         let lost = SHARE_OF_STICK * (1.0 - simulation.cycle().stick_radius / most).max(0.0);
         return Shares { left_out: (difference.max(balance) + lost).min(UNKNOWN), ..shares };
     }

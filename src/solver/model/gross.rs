@@ -18,7 +18,7 @@ mod hand_over;
 
 use std::f64::consts::PI;
 
-use super::first_force::first_force;
+use super::moving::{height_of_last_core, slides_on_rig};
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
@@ -71,7 +71,7 @@ pub struct GrossRates {
 }
 
 impl Gross {
-    /// Whether a contact is in gross slip in every cycle: each is so on the unworn contact, at the largest indentation of the run.
+    /// Whether a contact is in gross slip in every cycle: each is so on the unworn contact, at the largest indentation of the run, or at once on a rig.
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
@@ -80,14 +80,14 @@ impl Gross {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
+        let at_core = depth - height_of_last_core(contact);
         for loading in schedule.extremes() {
             let slides = match loading.control {
                 AmplitudeControl::Displacement => loading.slip_compression(ratio) >= depth,
                 AmplitudeControl::Force(_) => false,
                 AmplitudeControl::Rig(_) => {
-                    let amplitude = loading.friction.static_strength(depth) / ratio;
-                    let force = first_force(contact, &*loading.friction, amplitude, depth)?;
-                    loading.excess(force, amplitude) <= 0.0
+                    let innermost = if hand_over::slides_on(contact, schedule) { at_core } else { depth };
+                    slides_on_rig(contact, &loading, innermost)?
                 }
             };
             if !slides {

@@ -319,23 +319,38 @@ pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) 
 pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let depth = contact.indentation();
     let ratio = contact.half_space().stiffness_ratio();
-    let core = LOST.sqrt() * LAST_CORE * contact.contact_radius();
-    let at_core = depth - contact.equivalent_profile().value(core);
+    let at_core = depth - height_of_last_core(contact);
     for loading in schedule.first_cycles() {
         let slides = match loading.control {
             AmplitudeControl::Displacement => false,
             AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
-            AmplitudeControl::Rig(_) => {
-                let amplitude = loading.friction.static_strength(at_core) / ratio;
-                let force = super::first_force::first_force(contact, &*loading.friction, amplitude, depth)?;
-                loading.excess(force, amplitude) <= 0.0
-            }
+            AmplitudeControl::Rig(_) => slides_on_rig(contact, &loading, at_core)?,
         };
         if slides {
             return Ok(true);
         }
     }
     Ok(false)
+}
+
+/// Height of the equivalent profile, m, at the last edge of stick that is followed.
+pub(super) fn height_of_last_core(contact: &InitialContact) -> f64 {
+    contact.equivalent_profile().value(LOST.sqrt() * LAST_CORE * contact.contact_radius())
+}
+
+/// Whether springs slip on a rig up to a compression, m, of the unworn contact.
+///
+/// # Errors
+/// Those of the force of the first cycle.
+pub(super) fn slides_on_rig(
+    contact: &InitialContact,
+    loading: &CycleLoading,
+    compression: f64,
+) -> Result<bool> {
+    let amplitude = loading.friction.static_strength(compression) / contact.half_space().stiffness_ratio();
+    let force =
+        super::first_force::first_force(contact, &*loading.friction, amplitude, contact.indentation())?;
+    Ok(loading.excess(force, amplitude) <= 0.0)
 }
 
 /// Stick radius, m, under both forces held while the ground within it is unworn; none where stick cannot bear them.

@@ -44,6 +44,16 @@ fn is_followed(schedule: &Schedule) -> bool {
     stays && local && conditions.friction.coefficient().is_some()
 }
 
+/// Whether a rig goes on to move a contact whose stick it has broken.
+pub(super) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
+    let conditions = schedule.conditions();
+    let on_rig = matches!(conditions.tangential_control, TangentialControl::Rig { .. });
+    // Springs that remember their slip break away all at once.
+    let remembers = conditions.friction.remembers_slip() || schedule.resolves();
+    let fits = contact.half_space().grading() >= SOFT && Gross::carries(contact, schedule);
+    on_rig && !conditions.holds_normal_force && !remembers && fits
+}
+
 impl Gross {
     /// Whether a contact hardly sticks at first, and soon sticks farther out under the normal force that is held.
     pub fn nearly_follows(contact: &InitialContact, schedule: &Schedule) -> bool {
@@ -59,21 +69,11 @@ impl Model {
     pub fn is_taken_up(&self) -> bool {
         match self.gross() {
             Some(gross) => gross.holds_force() && is_followed(self.schedule()),
-            None => self.slides_on(),
+            None => {
+                let recedes = self.slides && self.moving().is_some_and(MovingStick::recedes);
+                recedes && slides_on(self.contact(), self.schedule())
+            }
         }
-    }
-
-    /// Whether a rig goes on to move a contact whose stick it has broken.
-    fn slides_on(&self) -> bool {
-        let (contact, schedule) = (self.contact(), self.schedule());
-        let conditions = schedule.conditions();
-        let on_rig = matches!(conditions.tangential_control, TangentialControl::Rig { .. });
-        let is_held = on_rig && !conditions.holds_normal_force;
-        let recedes = self.slides && self.moving().is_some_and(MovingStick::recedes);
-        // Springs that remember their slip break away all at once.
-        let remembers = conditions.friction.remembers_slip() || schedule.resolves();
-        let fits = contact.half_space().grading() >= SOFT && Gross::carries(contact, schedule);
-        is_held && recedes && !remembers && fits
     }
 
     /// The same contact on the mesh that takes the run up, see [`Model::is_taken_up`]; none where none does.
