@@ -141,3 +141,30 @@ fn where_nothing_wears_any_more_energy_is_dissipated_at_the_rate_of_the_cycles()
     let found = (last.dissipated_energy - before.dissipated_energy) / (passed * last.cycle_energy);
     assert!(last.cycle_energy > 0.0 && (found - 1.0).abs() < 1e-3, "{found}");
 }
+
+/// Worn volume, over its power of the amplitude, of a paraboloid whose friction rises to twice itself.
+///
+/// As the amplitude falls, `ε` of full sliding, the slip annulus becomes a strip of the width `~ ε`, its pressure falls as `ε^ν` and its depth as `ε^(1+μ)`: with times that grow
+/// as `ε^(-ν)`, `V ~ ε^(2+μ)` up to a part of the order of `ε`.
+fn of_strip(ratio: f64) -> f64 {
+    let grading = -0.45;
+    let (mu, nu) = (0.5 * (1.0 - grading), 0.5 * (1.0 + grading));
+    let tau = 3.0 * ratio.powf(-nu);
+    let scene = spread(grading, 1.0, "springs = 40\ntolerance = 1e-5")
+        .replace("[wear.non-local]", "[wear.archard]")
+        .replace("length = 5e-5\n", "")
+        .replace("[wear", &format!("[friction.history]\nfinal_factor = 2.0\ntau = {tau:e}\n[wear"))
+        .replace("amplitude_ratio = 0.625", &format!("amplitude_ratio = {ratio:e}"))
+        .replace("cycles = 1e5", &format!("tau = {tau:e}"));
+    run(&scene).last().wear_volume / ratio.powf(2.0 + mu)
+}
+
+/// Slopes by the place of an edge were taken over 1e-7 of its own, a third and more of such annuli.
+#[test]
+fn rising_friction_at_tiny_amplitudes_comes_to_the_strip_that_larger_ones_tend_to() {
+    let strip = of_strip(1e-5);
+    let missed = [1e-3, 3e-7, 1e-7, 1e-8].map(|ratio| of_strip(ratio) / strip - 1.0);
+    let [of_first_order, tiny @ ..] = missed;
+    assert!((1e-4..1e-2).contains(&of_first_order), "{missed:?}");
+    assert!(tiny.iter().all(|it| it.abs() < 1e-4), "{missed:?}");
+}
