@@ -168,3 +168,23 @@ fn rising_friction_at_tiny_amplitudes_comes_to_the_strip_that_larger_ones_tend_t
     assert!((1e-4..1e-2).contains(&of_first_order), "{missed:?}");
     assert!(tiny.iter().all(|it| it.abs() < 1e-4), "{missed:?}");
 }
+
+/// Load-dependent friction that falls in steps, a block of rest, and so long that all has worn long before the first block ends: what is left are springs that press by their
+/// round-off. `V∞ = π R d²`, but for the core of the mesh, 1e-3 of the contact's area at most.
+#[test]
+fn what_is_worn_out_before_friction_has_changed_for_the_last_time_rests_until_the_next_block() {
+    let results = run(
+        "[indenter.sphere]\nradius = 442.8\n[half_space]\ngrading = 0.7\nnormal_stiffness = 781668477.0685041\nstiffness_ratio = 0.7354817022962032\n\
+         [friction.load-dependent]\ncoefficient = 0.8431967922333216\nexponent = -0.21851743468629165\n[friction.history]\n\
+         factors = [0.8533186022914033, 0.7093292466933184, 0.5436251980328993, 0.47695185244785493]\nat_tau = [0.0, 3.48, 70.0, 108.0]\n\
+         [wear.power-law]\ncoefficient = 1.7656444878435815e-15\npressure_exponent = 1.350492899342961\nslip_exponent = 1.9227661474728528\n\
+         [loading]\nindentation = 5.913630648708708e-3\namplitude_ratio = 15.202678730030458\nfrequency = 1.0\ntau = 612.0\nrepeat = true\n\
+         [[loading.blocks]]\ntau = 306.0\namplitude_factor = 1.2074151066407954\n[[loading.blocks]]\ntau = 367.0\namplitude_factor = 0.0\n\
+         [[loading.blocks]]\ntau = 49.0\namplitude_factor = 1.6175732334025716\n[numerics]\naccuracy = 0.0001\n[output]\nat_tau = [400.0, 600.0]\n",
+    );
+    let [.., at_rest, later, last] = results.snapshots() else { panic!("three snapshots") };
+    let limit = std::f64::consts::PI * 442.8 * 5.913630648708708e-3_f64.powi(2);
+    let missed = last.wear_volume / limit - 1.0;
+    assert!(missed.abs() < 1e-3, "{missed:e}");
+    assert_eq!([later, last].map(|it| it.dissipated_energy), [at_rest.dissipated_energy; 2]);
+}

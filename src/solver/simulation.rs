@@ -33,6 +33,9 @@ const OVERSHOT: f64 = 0.5;
 /// are negative, and where only the ground next to the edge of stick still wears its sum may vanish.
 const CERTAIN_WEAR: f64 = 0.5;
 
+/// Growth of slip up to the next break, over the tolerance, below which nothing wears.
+const SPENT: f64 = 1e-6;
+
 /// Rejected steps after which a run is given up if they are more than half of the accepted ones as well. Where a held force loses its stick
 /// zone, the edge of stick is followed in ever smaller steps.
 const MOST_REJECTED: u64 = 4000;
@@ -391,7 +394,7 @@ impl Simulation {
 
     /// The state at a later time up to which nothing wears; what slips without wear goes on to dissipate.
     fn resting_until(&self, cycles: f64) -> State {
-        let passed = cycles - self.state.cycles;
+        let passed = if self.is_still() { 0.0 } else { cycles - self.state.cycles };
         State {
             cycles,
             dissipated_energy: self.state.dissipated_energy + passed * self.cycle.dissipation,
@@ -522,6 +525,12 @@ impl Simulation {
         }
     }
 
+    /// Whether nothing moves from now on to the next break: the block under way asks for no amplitude.
+    fn is_still(&self) -> bool {
+        let now = self.state.cycles;
+        self.model.schedule().loading(now, now).asked() == 0.0
+    }
+
     /// Whether a block of another amplitude or indentation has begun just now.
     fn begins_block(&self) -> bool {
         let (schedule, now) = (self.model.schedule(), self.state.cycles);
@@ -552,10 +561,13 @@ impl Simulation {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
         let growth = largest(&self.cycle.growth);
-        // Nothing wears: as long as nothing moves, or friction stays, nothing will. Where a step is found it takes what pulls back to what is only spent.
-        let schedule = self.model.schedule();
-        let rests = || schedule.loading(now, now).asked() == 0.0 || was_rejected && schedule.keeps_friction();
-        if let Some(target) = target.filter(|_| growth == 0.0 && rests()) {
+        // As long as nothing moves nothing wears, but for the round-off of what presses; and where nothing wears while friction stays, nothing will. Where a step is
+        // found it takes what pulls back to what is only spent.
+        let spent = |target: f64| {
+            let grows = growth * (target - now) > SPENT * self.tolerance;
+            was_rejected && !grows && self.model.schedule().keeps_friction_until(now, target)
+        };
+        if let Some(target) = target.filter(|target| self.is_still() || spent(*target)) {
             return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
         }
         let step = self.progress.next_step;
