@@ -188,3 +188,20 @@ fn what_is_worn_out_before_friction_has_changed_for_the_last_time_rests_until_th
     assert!(missed.abs() < 1e-3, "{missed:e}");
     assert_eq!([later, last].map(|it| it.dissipated_energy), [at_rest.dissipated_energy; 2]);
 }
+
+/// In gross slip at k = -0.925, `w ~ p^1.9`: pressure falls to half within `2^(-2/(1+k))/2` of the contact radius. There are no fewer springs than eight.
+#[test]
+fn a_thin_layer_at_the_contact_edge_is_told_with_the_grading_that_leaves_a_wider_one() {
+    let error = read(
+        "[indenter.paraboloid]\nradius = 0.31\n[half_space]\ngrading = -0.925\nmodulus = \"428 GPa\"\nreference_depth = \"14.5 mm\"\n\
+         poisson_ratio = 0.343\n[friction.coulomb]\ncoefficient = 0.81\n[friction.history]\nfinal_factor = 0.78\ntau = 88000.0\n\
+         [wear.power-law]\ncoefficient = 9.93e-21\npressure_exponent = 1.89\nslip_exponent = 1.75\n[wear.history]\nfinal_factor = 0.48\n\
+         tau = 7925.0\n[loading]\nindentation = \"0.2087 mm\"\namplitude_ratio = 0.777\ntau = 19813.0\n[numerics]\nsprings = 8\ntolerance = 1e-3\n\
+         [output]\nsnapshots = 2\n",
+    )
+    .simulate()
+    .map(|it| it.last().tau);
+    let error = error.expect_err("no step leads on").to_string();
+    assert!(error.contains("half_space.grading = -0.925") && error.contains("-0.89 leaves"), "{error}");
+    assert!(!error.contains("ask for"), "{error}");
+}
