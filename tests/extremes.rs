@@ -181,7 +181,7 @@ fn a_rig_behind_a_contact_that_hardly_slips_leaves_its_wear_as_it_is() {
 #[test]
 fn an_annulus_narrower_than_rounding_beside_an_edge_of_stick_that_moves_is_refused() {
     let numerics = "accuracy = 1e-2\n[friction.history]\nfinal_factor = 1.2\ntau = 0.1".into();
-    let (amplitude, end) = ("amplitude_ratio = 1e-9".into(), "tau = 0.3".into());
+    let (amplitude, end) = ("amplitude_ratio = 1e-10".into(), "tau = 0.3".into());
     let error = Extreme { amplitude, end, numerics, ..Extreme::default() }.run().expect_err("refused");
     assert_eq!(error.exit_code(), 2, "{error}");
     assert!(error.to_string().contains("by less than its place is rounded to"), "{error}");

@@ -27,6 +27,15 @@ pub enum History {
 }
 
 impl History {
+    /// Whether the factor is the same from one time to a later one with no kink in between.
+    pub fn stays(&self, from: f64, to: f64) -> bool {
+        match self {
+            Self::Constant => true,
+            Self::Exponential { last, .. } => *last == 1.0,
+            Self::Table { .. } => self.at(from) == self.at(to),
+        }
+    }
+
     /// The factor at time `t >= 0`, in the unit of the times given.
     ///
     /// ```

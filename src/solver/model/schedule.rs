@@ -481,6 +481,12 @@ impl Schedule {
         *self.friction_change() == History::Constant
     }
 
+    /// Whether friction stays the same between two times, cycles, without a break in between.
+    pub fn keeps_friction_until(&self, now: f64, later: f64) -> bool {
+        let [now, later] = [now, later].map(|cycles| cycles * self.clock_rate);
+        self.friction_along_energy == History::Constant && self.conditions.friction_history.stays(now, later)
+    }
+
     /// Whether neither friction nor the law of wear changes, so that wear alone slows itself down.
     pub fn changes_by_wear_alone(&self) -> bool {
         self.keeps_friction() && self.conditions.wear_history == History::Constant

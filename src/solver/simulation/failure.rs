@@ -5,7 +5,7 @@ use super::{Simulation, largest};
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::SEARCH;
-use crate::solver::model::Model;
+use crate::solver::model::{FEWEST_SPRINGS, Model};
 
 /// What of a run does not converge.
 const STEPPING: &str = "time stepping";
@@ -13,18 +13,21 @@ const STEPPING: &str = "time stepping";
 /// Contact radius, over the present one, that is about to be reached.
 const AHEAD: f64 = 1.02;
 
-/// Part of the contact radius below which a layer at its edge is resolved by no mesh.
+/// Part of the contact radius below which few meshes resolve a layer at its edge.
 const THIN: f64 = 1e-6;
 
-/// What a mesh of gross slip does not resolve in a medium that is stiff at its top alone: the pressure, `(a² - r²)^ν` at the contact edge, falls to nothing in a layer as thin as `2^(-1/ν)` of it.
+/// What most meshes of gross slip do not resolve in a medium that is stiff at its top alone: the pressure, `(a² - r²)^ν` at the contact edge, falls to nothing in a layer as thin as `2^(-1/ν)` of it.
 fn thin_layer(model: &Model) -> String {
     let grading = model.contact().half_space().grading();
     let width = 0.5 * (-2.0 / (1.0 + grading)).exp2();
+    // Of which the layer is as thin as that.
+    let widest = -1.0 - 2.0 / (2.0 * THIN).log2();
     if model.gross().is_none() || width > THIN {
         return String::new();
     }
     format!(
-        " (at a grading of {grading} the pressure at the contact edge falls to half within {width:.0e} of the contact radius, and no mesh resolves what wears there)"
+        " (half_space.grading = {grading}: the pressure at the contact edge falls to half within {width:.0e} of the contact radius, where only few meshes lead on; \
+         {widest:.2} leaves a layer of {THIN:.0e})"
     )
 }
 
@@ -145,17 +148,14 @@ impl Simulation {
         let height = model.contact().indenter().profile(AHEAD * edge);
         let ends = model.gross().is_some() && !height.is_finite();
         let why = if ends { "the profile of the indenter ends there" } else { why };
-        let or = if ends { "" } else { "or " };
-        let cure = match cycles > 0.0 {
-            true => format!("{or}end before (loading.tau = {tau:.3e})"),
-            false => format!("{or}ask for another loading.amplitude"),
+        let other = if model.gross().is_some() { 3 * springs / 4 } else { 2 * springs };
+        let springs = match ends || other < FEWEST_SPRINGS {
+            true => String::new(),
+            false => format!("ask for {other} springs (numerics.springs; there were {springs}), or "),
         };
-        let springs = match (ends, model.gross()) {
-            (true, _) => String::new(),
-            (_, gross) => {
-                let other = if gross.is_some() { 3 * springs / 4 } else { 2 * springs };
-                format!("ask for {other} springs (numerics.springs; there were {springs}), ")
-            }
+        let cure = match cycles > 0.0 {
+            true => format!("end before (loading.tau = {tau:.3e})"),
+            false => "ask for another loading.amplitude".into(),
         };
         Error::NotConverged {
             what: STEPPING,

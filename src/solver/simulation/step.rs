@@ -13,6 +13,9 @@ const LARGEST_FACTOR: f64 = 2.5;
 /// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
 pub(super) const SMALLEST_GROWTH: f64 = 1e-13;
 
+/// Growth of slip up to the next break, over the tolerance, below which nothing wears.
+const SPENT: f64 = 1e-6;
+
 /// Steps shorter than this part of the planned one, because they end at an output or a break, do not decide the next.
 const CUT_SHORT: f64 = 1e-3;
 
@@ -83,7 +86,7 @@ impl Simulation {
         if let Some(step) = self.stepper.prescribed_step() {
             return Ok(landing(step, target.filter(|t| now + 1.5 * step > *t)));
         }
-        if let Some(target) = target.filter(|_| self.rests()) {
+        if let Some(target) = target.filter(|target| self.rests_until(*target)) {
             return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
         }
         let step = self.progress.next_step;
@@ -100,16 +103,24 @@ impl Simulation {
         })
     }
 
-    /// Whether the contact rests. Nothing wears: as long as nothing moves, or friction stays, nothing will. Where a step is found it takes what pulls back to what is only spent.
-    fn rests(&self) -> bool {
-        let (schedule, now) = (self.model.schedule(), self.state.cycles);
-        let leads_nowhere = || self.rejected.last.is_some() && schedule.keeps_friction();
-        largest(&self.cycle.growth) == 0.0 && (schedule.loading(now, now).asked() == 0.0 || leads_nowhere())
+    /// Whether the contact rests until a break or an output. As long as nothing moves nothing wears, but for the round-off of what presses; and where nothing wears while
+    /// friction stays, nothing will. Where a step is found it takes what pulls back to what is only spent.
+    fn rests_until(&self, target: f64) -> bool {
+        let now = self.state.cycles;
+        let is_spent = || largest(&self.cycle.growth) * (target - now) <= SPENT * self.tolerance;
+        let leads_nowhere = || self.rejected.last.is_some() && is_spent();
+        self.is_still() || leads_nowhere() && self.model.schedule().keeps_friction_until(now, target)
+    }
+
+    /// Whether nothing moves from now on to the next break: the block under way asks for no amplitude.
+    fn is_still(&self) -> bool {
+        let now = self.state.cycles;
+        self.model.schedule().loading(now, now).asked() == 0.0
     }
 
     /// The state at a later time up to which nothing wears; what slips without wear goes on to dissipate.
     pub(super) fn resting_until(&self, cycles: f64) -> State {
-        let passed = cycles - self.state.cycles;
+        let passed = if self.is_still() { 0.0 } else { cycles - self.state.cycles };
         State {
             cycles,
             dissipated_energy: self.state.dissipated_energy + passed * self.cycle.dissipation,
