@@ -65,8 +65,9 @@ fn slides(results: &Results) -> bool {
 
 #[test]
 fn energy_balances_the_volume_from_partial_into_gross_slip_to_the_end() {
-    for (grading, stiffness) in [(-0.3, 1e8), (0.0, 1e8), (0.5, 1e7), (0.9, 1e7)] {
+    for grading in [-0.3, 0.0, 0.5, 0.9_f64] {
         for tau in [5.0, 60.0] {
+            let stiffness = 5e7 * (DEPTH * 0.5).powf(0.5 * grading);
             let results = Rig { grading, stiffness, tau, ..PLAIN }.run("springs = 120\ntolerance = 1e-5");
             assert!(slides(&results), "k = {grading}");
             let first = results.snapshots().iter().find(|it| it.cycles > 0.0).expect("a snapshot");
@@ -124,7 +125,8 @@ fn an_accuracy_asked_is_delivered_or_told() {
     for (wear, friction) in laws {
         for grading in [0.0, 0.5] {
             let stiffness = if grading > 0.0 { 1e7 } else { 1e8 };
-            let rig = Rig { grading, stiffness, tau: 2.5, wear, friction, ..PLAIN };
+            let wear = wear.replace("5e6", if grading > 0.0 { "2e5" } else { "5e6" });
+            let rig = Rig { grading, stiffness, tau: 2.5, wear: &wear, friction, ..PLAIN };
             let fine = volume(&rig.run("springs = 300\ntolerance = 1e-6"));
             for accuracy in [1e-2_f64, 1e-3] {
                 let results = rig.run(&format!("accuracy = {accuracy:e}"));
@@ -142,7 +144,7 @@ fn an_accuracy_asked_is_delivered_or_told() {
 
 #[test]
 fn runs_in_parts_repeat_every_bit_before_and_after_stick_is_lost() {
-    for numerics in ["springs = 30", "accuracy = 1e-2"] {
+    for numerics in ["springs = 60", "accuracy = 1e-2"] {
         let folder = tempfile::tempdir().expect("a folder");
         let scene = PLAIN.scene(numerics);
         let (results, [expected, found], interruptions) = whole_and_in_parts(&scene, folder.path(), 25);

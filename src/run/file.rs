@@ -170,7 +170,7 @@ impl Run {
             || !checkpoint.state.past.fits(
                 &checkpoint.state,
                 Bdf::HIGHEST_ORDER,
-                parts.model.gross().is_some() && checkpoint.state.stick.is_none(),
+                parts.is_on_whole_contact(&checkpoint.state),
             )
             || !checkpoint
                 .state

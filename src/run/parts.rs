@@ -94,6 +94,11 @@ impl Parts {
             && state.stick.is_none() == self.model.gross().is_none()
     }
 
+    /// Whether a state has the mesh of gross slip.
+    pub(super) fn is_on_whole_contact(&self, state: &State) -> bool {
+        state.stick.is_none() && (self.model.gross().is_some() || self.is_taken_up(state))
+    }
+
     /// Whether a state is one of this run.
     pub(super) fn fit(&self, state: &State) -> bool {
         let springs = state.compression.len() + 1;
