@@ -25,7 +25,7 @@ const PRESSURE: Key =
         .range(Range::POSITIVE)
         .example("50 MPa");
 
-/// `dw = k_w (p - p_0)₊ |ds|`.
+/// `dw = k_w (p - p_0)₊ |ds|`; where springs swing below zero pressure, the ground comes back as under Archard's law.
 #[derive(Debug, Clone, Copy)]
 pub struct Threshold {
     /// `k_w`, 1/Pa.
