@@ -25,7 +25,7 @@ const PRESSURE: Key =
         .range(Range::POSITIVE)
         .example("50 MPa");
 
-/// `dw = k_w (p - p_0)₊ |ds|`; where springs swing below zero pressure, the ground comes back as under Archard's law.
+/// `dw = k_w (p - p_0)₊ |ds|`.
 #[derive(Debug, Clone, Copy)]
 pub struct Threshold {
     /// `k_w`, 1/Pa.
@@ -48,9 +48,9 @@ impl WearLaw for Threshold {
     }
 
     fn rate(&self, at: &Rubbing) -> Rate {
-        let slope = if at.pressure > self.pressure || at.pressure < 0.0 { 1.0 } else { 0.0 };
+        let slope = if at.pressure > self.pressure { 1.0 } else { 0.0 };
         Rate {
-            depth: self.coefficient * ((at.pressure - self.pressure).max(0.0) + at.pressure.min(0.0)),
+            depth: self.coefficient * (at.pressure - self.pressure).max(0.0),
             by_pressure: self.coefficient * slope,
         }
     }
