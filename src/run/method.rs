@@ -34,10 +34,10 @@ impl Method {
             mesh: if in_gross_slip { "whole-contact" } else { "slip-annulus" },
             springs,
             time_stepping: simulation.stepper_name(),
-            stick_edge: match (in_gross_slip || model.slides(), model.moving().is_some()) {
-                (true, _) => "none",
-                (false, true) => "moving",
-                (false, false) => "fixed",
+            stick_edge: match model.moving() {
+                Some(moving) if !moving.slides() => "moving",
+                None if !(in_gross_slip || model.slides()) => "fixed",
+                _ => "none",
             },
             memory_expected: operator_bytes(backend, springs),
         }

@@ -73,19 +73,17 @@ impl Parts {
         store: &OperatorStore,
     ) -> Result<Self> {
         let springs = state.compression.len() + 1;
-        let before = match state.stick {
+        let on = |springs| Self::new(scene, numerics, Some(springs), None, store);
+        let first = on(springs);
+        if first.as_ref().is_ok_and(|parts| parts.fit(state)) {
+            return first;
+        }
+        let mut before = match state.stick {
             Some(_) => budget::springs_before(springs)..=budget::springs_before(springs),
             None => budget::springs_before_sliding(springs),
         };
-        for before in before {
-            if let Ok(parts) = Self::new(scene, numerics, Some(before), None, store)
-                && parts.is_taken_up(state)
-                && parts.model.radii() == radii
-            {
-                return Ok(parts);
-            }
-        }
-        Self::new(scene, numerics, Some(springs), None, store)
+        let fits = |parts: &Self| parts.is_taken_up(state) && parts.model.radii() == radii;
+        before.find_map(|springs| on(springs).ok().filter(fits)).map_or(first, Ok)
     }
 
     /// Whether a state is one of the model that takes the run up.
