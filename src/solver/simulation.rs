@@ -150,6 +150,8 @@ pub struct Simulation {
     /// Whether the next step settles a state that was handed over, so that its error does not count.
     settles: bool,
     rejected: Rejected,
+    /// When and where a rig broke the last stick, if it did.
+    let_go: Option<String>,
 }
 
 impl Simulation {
@@ -210,6 +212,7 @@ impl Simulation {
             taking: Taking::Never,
             settles: false,
             rejected: Rejected::default(),
+            let_go: None,
         }
     }
 

@@ -72,11 +72,7 @@ impl Simulation {
 
     /// The moment at which no stick is left under a force that is held, which the contact then no longer bears.
     pub(super) fn slides_off(&self) -> Error {
-        let (model, state) = (&self.model, &self.state);
-        let cycles = state.cycles + model.cycles_to_loss(state);
-        let tau = cycles * model.contact().tau_per_cycle();
-        let radius = self.cycle.stick_radius;
-        let then = match model.schedule().conditions().tangential_control {
+        let then = match self.model.schedule().conditions().tangential_control {
             TangentialControl::Rig { .. } => {
                 "moves as a whole with the rig, which is followed at gradings from -0.5 on where no blocks follow one another, friction has no memory of slip \
                  and wear is local"
@@ -86,9 +82,32 @@ impl Simulation {
         Error::NotConverged {
             what: STEPPING,
             why: format!(
-                "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}), at last within the radius {radius:.4e} m: from there the contact {then}; end \
-                 before (loading.tau), or ask for a smaller amplitude"
+                "{}: from there the contact {then}; end before (loading.tau), or ask for a smaller amplitude",
+                self.moment_of_loss()
             ),
+        }
+    }
+
+    /// When and where stick is lost.
+    pub(super) fn moment_of_loss(&self) -> String {
+        let (model, state) = (&self.model, &self.state);
+        let cycles = state.cycles + model.cycles_to_loss(state);
+        let tau = cycles * model.contact().tau_per_cycle();
+        let radius = self.cycle.stick_radius;
+        format!(
+            "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}), at last within the radius {radius:.4e} m"
+        )
+    }
+
+    /// A failure, with the moment before at which a rig broke the last stick: what is left there of ground that has not worn may be too narrow a column to follow.
+    fn after_loss(&self, why: String) -> String {
+        match &self.let_go {
+            Some(moment) => {
+                format!(
+                    "{moment}: from there the contact moves with the rig, on a narrow column that is followed only so far: {why}"
+                )
+            }
+            None => why,
         }
     }
 
@@ -110,7 +129,7 @@ impl Simulation {
         let [stick, edge] = [model.without_core(self.cycle.stick_radius), model.contact_radius(&self.state)];
         Error::NotConverged {
             what: STEPPING,
-            why: format!(
+            why: self.after_loss(format!(
                 "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m, wear goes on in steps of {:.1e} \
                  cycles{}, and {} were tried on {} springs; end before (loading.tau = {tau:.3e}), or go on by hand (numerics.springs and numerics.tolerance), \
                  however long it takes",
@@ -118,7 +137,7 @@ impl Simulation {
                 thin_layer(model),
                 progress.steps + progress.rejected_steps,
                 model.springs()
-            ),
+            )),
         }
     }
 
@@ -159,11 +178,11 @@ impl Simulation {
         };
         Error::NotConverged {
             what: STEPPING,
-            why: format!(
+            why: self.after_loss(format!(
                 "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}{layer}; \
                  {springs}{cure}",
                 layer = thin_layer(model)
-            ),
+            )),
         }
     }
 }

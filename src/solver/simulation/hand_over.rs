@@ -121,7 +121,8 @@ impl Simulation {
         let progress = Progress { next_step: self.progress.next_step.min(most), ..self.progress };
         let (stepper, plan) = (stepper_of(&model, tolerance), self.plan.clone());
         let taken_up = Self::resume(model, stepper, tolerance, plan, state, progress);
-        let before = std::mem::replace(self, taken_up);
+        let let_go = self.model.gross().is_none().then(|| self.moment_of_loss());
+        let before = std::mem::replace(self, Self { let_go, ..taken_up });
         self.taking = Taking::Done(Box::new(before.model), before.tolerance);
         self.settles = settles;
         true
