@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::Clustering;
-use crate::solver::model::{self, Gross, Model, MovingStick, Schedule};
+use crate::solver::model::{Gross, MOST_IN_GROSS_SLIP, Model, MovingStick, Schedule};
 
 /// Most springs that the program asks for by itself where a scene needs more than others: a minute of run.
 pub(in crate::run) const MOST_RAISED: usize = 600;
@@ -105,7 +105,8 @@ pub(in crate::run) fn springs_for(
 /// The same over the whole contact in gross slip.
 pub(in crate::run) fn springs_in_gross_slip(contact: &InitialContact, accuracy: f64) -> usize {
     let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
-    let most = if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
+    let most =
+        if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_ASKED_IN_GROSS_SLIP };
     (springs * (at / accuracy).powf(power)).max(FEWEST).min(most).ceil() as usize
 }
 
@@ -182,7 +183,7 @@ const FEWEST_UNDER_FORCE: f64 = 28.0;
 const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [17.0, 1e-4, 0.12];
 
 /// Most springs that are asked for there.
-const MOST_IN_GROSS_SLIP: f64 = 60.0;
+const MOST_ASKED_IN_GROSS_SLIP: f64 = 60.0;
 
 /// The same below a grading at which more make the pressure at the edge grow.
 const SOFT: f64 = -0.6;
@@ -212,7 +213,7 @@ pub(in crate::run) fn springs_taken_up(model: &Model) -> usize {
         return springs_to_stick_again(springs);
     }
     let [each, beyond] = TO_SLIDE_ON;
-    (beyond + springs.div_ceil(each)).min(model::MOST_IN_GROSS_SLIP)
+    (beyond + springs.div_ceil(each)).min(MOST_IN_GROSS_SLIP)
 }
 
 /// Springs of gross slip that lead to so many over the slip annulus, or to more.
@@ -225,7 +226,7 @@ pub(in crate::run) fn springs_before(sticking_again: usize) -> usize {
 pub(in crate::run) fn springs_before_sliding(taken_up: usize) -> RangeInclusive<usize> {
     let [each, beyond] = TO_SLIDE_ON;
     let most = each * taken_up.saturating_sub(beyond);
-    let last = if taken_up < model::MOST_IN_GROSS_SLIP { most } else { MOST_RAISED };
+    let last = if taken_up < MOST_IN_GROSS_SLIP { most } else { MOST_RAISED };
     most.saturating_sub(each - 1)..=last
 }
 

@@ -13,7 +13,7 @@ use crate::laws::history::History;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
 use crate::solver::model::{FEWEST_SPRINGS, Model, MovingStick, OperatorStore, Resolution, Schedule, State};
 use crate::solver::simulation::{Flow, HandOver, Observer, Outcome, Plan, Progress, Simulation};
-use crate::solver::stepper::{Bdf, CycleJump, EveryCycle, GrossBdf, GrossSdirk, Sdirk, Stepper};
+use crate::solver::stepper::{self, CycleJump, EveryCycle, GrossSdirk, Stepper};
 
 /// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, most steps that it may try,
 /// most work of all that resolve periods, and what is added to that radius.
@@ -78,8 +78,9 @@ impl Parts {
         if first.as_ref().is_ok_and(|parts| parts.fit(state)) {
             return first;
         }
+        let only = budget::springs_before(springs);
         let mut before = match state.stick {
-            Some(_) => budget::springs_before(springs)..=budget::springs_before(springs),
+            Some(_) => only..=only,
             None => budget::springs_before_sliding(springs),
         };
         let fits = |parts: &Self| parts.is_taken_up(state) && parts.model.radii() == radii;
@@ -155,16 +156,9 @@ impl Parts {
         let tolerance =
             numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy, &model));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
-            StepperChoice::Implicit if model.gross().is_some() => {
-                match model.schedule().is_smooth_in_gross_slip() {
-                    true => Box::new(GrossBdf::new(tolerance)),
-                    false => Box::new(GrossSdirk::new(tolerance)),
-                }
-            }
+            StepperChoice::Implicit => stepper::implicit(&model, tolerance),
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
-            StepperChoice::Implicit if model.wears_steadily() => Box::new(Bdf::new(tolerance)),
-            StepperChoice::Implicit => Box::new(Sdirk::new(tolerance)),
         };
         let whole = numerics.stepper == StepperChoice::EveryCycle;
         let plan =

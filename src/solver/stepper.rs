@@ -48,6 +48,16 @@ impl Trial {
     }
 }
 
+/// The implicit method for a model.
+pub fn implicit(model: &Model, tolerance: f64) -> Box<dyn Stepper + Send> {
+    match model.gross() {
+        Some(_) if model.schedule().is_smooth_in_gross_slip() => Box::new(GrossBdf::new(tolerance)),
+        Some(_) => Box::new(GrossSdirk::new(tolerance)),
+        None if model.wears_steadily() => Box::new(Bdf::new(tolerance)),
+        None => Box::new(Sdirk::new(tolerance)),
+    }
+}
+
 /// Growth of the slip in the first step that is tried, where a method has no reason for another.
 const FIRST_GROWTH: f64 = 1e-3;
 

@@ -3,9 +3,9 @@
 use super::{Plan, Progress, Simulation};
 use crate::error::{Error, Result};
 use crate::solver::model::{Model, State};
-use crate::solver::stepper::{GrossBdf, GrossSdirk, Sdirk, Stepper};
+use crate::solver::stepper;
 
-/// First step after a hand-over, over the cycles before.
+/// First step after a hand-over, over the cycles before, or over the step that was planned where the contact comes to gross slip.
 const SETTLED_IN: f64 = 0.1;
 
 /// How a run goes on once springs stick again after gross slip, or once the last of them slide.
@@ -62,7 +62,7 @@ impl Simulation {
             what: "loading",
             why: "no spring sticks again in this contact, and the last does not give way".into(),
         })?;
-        let stepper = stepper_of(&model, hand_over.tolerance);
+        let stepper = stepper::implicit(&model, hand_over.tolerance);
         let resumed = Self::resume(model, stepper, hand_over.tolerance, plan, state, progress);
         Ok(Self { taking: Taking::Done(Box::new(first), before), ..resumed })
     }
@@ -99,7 +99,7 @@ impl Simulation {
 
     /// Lets the other model take the run up where springs stick again or the last of them give way.
     pub(super) fn hand_over(&mut self) {
-        if self.model.changes_over(&self.state) {
+        if matches!(self.taking, Taking::Ahead(..)) && self.model.changes_over(&self.state) {
             self.take_up();
         }
     }
@@ -119,21 +119,12 @@ impl Simulation {
         let settles = model.gross().is_none();
         let most = SETTLED_IN * if settles { state.cycles } else { self.progress.next_step };
         let progress = Progress { next_step: self.progress.next_step.min(most), ..self.progress };
-        let (stepper, plan) = (stepper_of(&model, tolerance), self.plan.clone());
+        let (stepper, plan) = (stepper::implicit(&model, tolerance), self.plan.clone());
         let taken_up = Self::resume(model, stepper, tolerance, plan, state, progress);
         let let_go = self.model.gross().is_none().then(|| self.moment_of_loss());
         let before = std::mem::replace(self, Self { let_go, ..taken_up });
         self.taking = Taking::Done(Box::new(before.model), before.tolerance);
         self.settles = settles;
         true
-    }
-}
-
-/// What makes the steps of a model that takes a run up.
-fn stepper_of(model: &Model, tolerance: f64) -> Box<dyn Stepper + Send> {
-    match model.gross() {
-        None => Box::new(Sdirk::new(tolerance)),
-        Some(_) if model.schedule().is_smooth_in_gross_slip() => Box::new(GrossBdf::new(tolerance)),
-        Some(_) => Box::new(GrossSdirk::new(tolerance)),
     }
 }
