@@ -151,7 +151,7 @@ impl StickStage<'_> {
         let size = trial.residual.len();
         let mut matrix = Mat::zeros(size, size);
         self.fill_by_compressions(at, trial, &mut matrix);
-        let step = self.difference() * at.slip_area;
+        let step = DIFFERENCE * at.slip_area;
         let moved = Unknowns { slip_area: at.slip_area + step, ..at.clone() };
         self.fill_by_difference(n - 1, step, &moved, trial, &mut matrix)?;
         if self.moving.rests() {
