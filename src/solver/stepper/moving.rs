@@ -1,7 +1,7 @@
 //! Equations of an implicit stage where the edge of stick moves, for Newton's method.
 
 use super::newton::{Correction, Equations, Factorised, Newton};
-use super::resting::{ROUND_OFF, newton_tolerance};
+use super::resting::{ROUND_OFF, is_round_off, newton_tolerance};
 use crate::numerics::linear::Factors;
 use crate::solver::model::{Model, StickStage, StickTrial, Target, Unknowns};
 
@@ -42,6 +42,12 @@ impl<'a> MovingStage<'a> {
         let round_off = ROUNDINGS * stage.rounding() + of_compression;
         let balanced = BALANCED.max(of_compression);
         Self { stage, tolerance, held, round_off, stick_round_off, balanced, trial }
+    }
+
+    /// Whether what is left of the equations of the inner springs and of the contact edge is rounding.
+    fn is_round_off_of_slip(&self) -> bool {
+        let springs = self.stage.target().springs.log_slip.len();
+        is_round_off(&self.trial.residual[..springs], &self.trial.fields)
     }
 
     /// What is left of the balances, behind the equations of springs and edges.
@@ -88,8 +94,13 @@ impl Equations for MovingStage<'_> {
         4
     }
 
+    fn has_kinks(&self) -> bool {
+        self.stage.model().schedule().conditions().wear.has_kink()
+    }
+
     fn is_last(&self, correction: &Correction) -> bool {
-        correction.springs <= self.tolerance * correction.compression + 10.0 * ROUND_OFF + self.round_off
+        let allowed = self.tolerance * correction.compression + 10.0 * ROUND_OFF + self.round_off;
+        (correction.springs <= allowed || self.is_round_off_of_slip())
             && correction.stick <= self.stick_round_off
             && self.balances().iter().all(|it| it.abs() <= self.balanced)
     }

@@ -18,6 +18,14 @@ const RENEWED: f64 = 0.03;
 /// What a correction by factors of compressed matrices may leave of itself: measured 1e-4 to 0.04, the most at the contact edge.
 const NEARLY: f64 = 0.05;
 
+/// Renewals of the matrix where equations have kinks; most by which what is left of them may grow in a correction there; the part of itself to which a correction is
+/// shortened until it does not, and how often; and what may be left in any case, since rounding is of that size.
+const KINKED_RENEWALS: usize = 12;
+const GROWN: f64 = 2.0;
+const SHORTENED: f64 = 0.25;
+const MOST_SHORTENED: usize = 4;
+const NEGLIGIBLE: f64 = 1e-9;
+
 /// Slowest contraction of Newton's corrections that is waited for.
 const SLOWEST: f64 = 0.5;
 
@@ -40,6 +48,9 @@ pub(super) trait Equations {
 
     /// Evaluations of pressure, slip and wear that the matrix takes.
     fn evaluations_of_matrix(&self) -> u64;
+
+    /// Whether their slopes jump somewhere over which whole corrections do not converge.
+    fn has_kinks(&self) -> bool;
 
     /// Whether a correction was the last one needed.
     fn is_last(&self, correction: &Correction) -> bool;
@@ -135,7 +146,13 @@ impl Newton {
             return false;
         }
         let free = equations.evaluations_of_matrix() == 0;
-        for _ in 0..=if free { FREE_RENEWALS } else { RENEWALS } {
+        let kinked = equations.has_kinks();
+        let renewals = match free {
+            _ if kinked => KINKED_RENEWALS,
+            true => FREE_RENEWALS,
+            false => RENEWALS,
+        };
+        for _ in 0..=renewals {
             let fresh = self.linearised.is_none();
             if fresh {
                 *evaluations += equations.evaluations_of_matrix();
@@ -147,13 +164,21 @@ impl Newton {
             self.contraction = 0.0;
             for _ in 0..ITERATIONS {
                 let mut change = ahead.take().unwrap_or_else(|| factors.correction(equations));
-                match &mut mixing {
-                    Some(mixing) => at.correct(&mixed(mixing, &mut change, at, equations.scale())),
-                    None => at.correct(&change),
-                }
-                *evaluations += 1;
-                if !equations.evaluate(at) {
-                    return false;
+                if kinked {
+                    match shortened(equations, at, &change, evaluations) {
+                        Some(true) => break,
+                        Some(false) => {}
+                        None => return false,
+                    }
+                } else {
+                    match &mut mixing {
+                        Some(mixing) => at.correct(&mixed(mixing, &mut change, at, equations.scale())),
+                        None => at.correct(&change),
+                    }
+                    *evaluations += 1;
+                    if !equations.evaluate(at) {
+                        return false;
+                    }
                 }
                 let mut correction = Correction::new(&change, at, equations.scale());
                 let size = correction.size();
@@ -231,6 +256,33 @@ impl Newton {
             compression: at.compression.clone(),
         }));
     }
+}
+
+/// Takes a correction away, or the part of it after which what is left of the equations has not grown; whether it was a part. None if it leads to no contact.
+fn shortened(
+    equations: &mut dyn Equations,
+    at: &mut Unknowns,
+    change: &[f64],
+    evaluations: &mut u64,
+) -> Option<bool> {
+    let (start, before) = (at.clone(), largest(&equations.residual()));
+    let mut part = change.to_vec();
+    let mut found = false;
+    for times in 0..=MOST_SHORTENED {
+        *at = start.clone();
+        at.correct(&part);
+        *evaluations += 1;
+        found = equations.evaluate(at);
+        if found && largest(&equations.residual()) <= (GROWN * before).max(NEGLIGIBLE) {
+            return Some(times > 0);
+        }
+        part.iter_mut().for_each(|it| *it *= SHORTENED);
+    }
+    found.then_some(true)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// A correction improved by those before.

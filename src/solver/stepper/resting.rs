@@ -49,6 +49,15 @@ pub(super) fn newton_tolerance(tolerance: f64) -> f64 {
     (OF_TOLERANCE * tolerance).clamp(least, most)
 }
 
+/// Whether what is left of the equations of some springs is rounding of their slip, which is a difference of the depths without pressure and with it.
+pub(super) fn is_round_off(residual: &[f64], fields: &Fields) -> bool {
+    let round_off = |i: usize| {
+        let cancelled = fields.unworn[i].limit_slip / fields.slip_depth[i];
+        RESIDUAL_ROUND_OFF * f64::EPSILON * (cancelled + fields.log_slip[i].abs())
+    };
+    residual.iter().enumerate().all(|(i, value)| value.abs() <= round_off(i))
+}
+
 impl Equations for RestingStage<'_> {
     fn target(&self) -> &Target {
         &self.target
@@ -125,6 +134,11 @@ impl Equations for RestingStage<'_> {
         0
     }
 
+    /// None over which whole corrections do not converge.
+    fn has_kinks(&self) -> bool {
+        false
+    }
+
     fn is_last(&self, correction: &Correction) -> bool {
         let [least, most] = BOUNDS_MEASURED;
         let allowed = match correction.measured {
@@ -134,14 +148,8 @@ impl Equations for RestingStage<'_> {
         correction.remaining <= allowed * correction.compression || correction.springs <= ROUND_OFF
     }
 
-    /// Slip is a difference of the depths without pressure and with it.
     fn is_round_off(&self) -> bool {
-        let fields = &self.tried.fields;
-        let round_off = |i: usize| {
-            let cancelled = fields.unworn[i].limit_slip / fields.slip_depth[i];
-            RESIDUAL_ROUND_OFF * f64::EPSILON * (cancelled + fields.log_slip[i].abs())
-        };
-        self.residual().iter().enumerate().all(|(i, value)| value.abs() <= round_off(i))
+        is_round_off(&self.residual(), &self.tried.fields)
     }
 }
 

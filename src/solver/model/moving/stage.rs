@@ -79,6 +79,11 @@ impl Model {
 }
 
 impl StickStage<'_> {
+    /// The contact.
+    pub fn model(&self) -> &Model {
+        self.model
+    }
+
     /// What the stage starts from.
     pub fn target(&self) -> &StickTarget {
         &self.target
