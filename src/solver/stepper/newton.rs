@@ -18,9 +18,9 @@ const RENEWED: f64 = 0.03;
 /// What a correction by factors of compressed matrices may leave of itself: measured 1e-4 to 0.04, the most at the contact edge.
 const NEARLY: f64 = 0.05;
 
-/// Renewals of the matrix where equations have kinks; most by which what is left of them may grow in a correction there; the part of itself to which a correction is
-/// shortened until it does not, and how often; and what may be left in any case, since rounding is of that size.
-const KINKED_RENEWALS: usize = 12;
+/// Over kinks: corrections before a step is given up; most by which what is left of the equations may grow in one; the part of itself to which it is shortened until it
+/// does not, and how often; and what may be left in any case, since rounding is of that size.
+const KINKED_CORRECTIONS: usize = 24;
 const GROWN: f64 = 2.0;
 const SHORTENED: f64 = 0.25;
 const MOST_SHORTENED: usize = 4;
@@ -142,17 +142,49 @@ pub(super) struct Newton {
 impl Newton {
     /// Solves the equations of a stage, from and into `at`, and leaves them evaluated there; whether it converged to a contact.
     pub fn solve(&mut self, equations: &mut dyn Equations, at: &mut Unknowns, evaluations: &mut u64) -> bool {
+        let start = equations.has_kinks().then(|| at.clone());
+        self.by_whole_corrections(equations, at, evaluations)
+            || start.is_some_and(|start| {
+                *at = start;
+                self.by_parts_of_corrections(equations, at, evaluations)
+            })
+    }
+
+    /// Corrections that are shortened where what is left of the equations would grow, each by a matrix of its own.
+    fn by_parts_of_corrections(
+        &mut self,
+        equations: &mut dyn Equations,
+        at: &mut Unknowns,
+        evaluations: &mut u64,
+    ) -> bool {
+        if !equations.evaluate(at) {
+            return false;
+        }
+        for _ in 0..KINKED_CORRECTIONS {
+            *evaluations += equations.evaluations_of_matrix();
+            self.factorise(equations, at);
+            let Some(factors) = &self.factors else { return false };
+            let change = factors.correction(equations);
+            let Some(is_whole) = correct_by_part(equations, at, &change, evaluations) else { return false };
+            if is_whole && equations.is_last(&Correction::new(&change, at, equations.scale())) {
+                return true;
+            }
+        }
+        self.outdate();
+        false
+    }
+
+    fn by_whole_corrections(
+        &mut self,
+        equations: &mut dyn Equations,
+        at: &mut Unknowns,
+        evaluations: &mut u64,
+    ) -> bool {
         if !equations.evaluate(at) {
             return false;
         }
         let free = equations.evaluations_of_matrix() == 0;
-        let kinked = equations.has_kinks();
-        let renewals = match free {
-            _ if kinked => KINKED_RENEWALS,
-            true => FREE_RENEWALS,
-            false => RENEWALS,
-        };
-        for _ in 0..=renewals {
+        for _ in 0..=if free { FREE_RENEWALS } else { RENEWALS } {
             let fresh = self.linearised.is_none();
             if fresh {
                 *evaluations += equations.evaluations_of_matrix();
@@ -164,21 +196,13 @@ impl Newton {
             self.contraction = 0.0;
             for _ in 0..ITERATIONS {
                 let mut change = ahead.take().unwrap_or_else(|| factors.correction(equations));
-                if kinked {
-                    match shortened(equations, at, &change, evaluations) {
-                        Some(true) => break,
-                        Some(false) => {}
-                        None => return false,
-                    }
-                } else {
-                    match &mut mixing {
-                        Some(mixing) => at.correct(&mixed(mixing, &mut change, at, equations.scale())),
-                        None => at.correct(&change),
-                    }
-                    *evaluations += 1;
-                    if !equations.evaluate(at) {
-                        return false;
-                    }
+                match &mut mixing {
+                    Some(mixing) => at.correct(&mixed(mixing, &mut change, at, equations.scale())),
+                    None => at.correct(&change),
+                }
+                *evaluations += 1;
+                if !equations.evaluate(at) {
+                    return false;
                 }
                 let mut correction = Correction::new(&change, at, equations.scale());
                 let size = correction.size();
@@ -258,8 +282,9 @@ impl Newton {
     }
 }
 
-/// Takes a correction away, or the part of it after which what is left of the equations has not grown; whether it was a part. None if it leads to no contact.
-fn shortened(
+/// Takes a correction away, or the part of it after which what is left of the equations has not grown, or the least part that is tried; whether it was the whole. None
+/// if the least leads to no contact.
+fn correct_by_part(
     equations: &mut dyn Equations,
     at: &mut Unknowns,
     change: &[f64],
@@ -274,11 +299,11 @@ fn shortened(
         *evaluations += 1;
         found = equations.evaluate(at);
         if found && largest(&equations.residual()) <= (GROWN * before).max(NEGLIGIBLE) {
-            return Some(times > 0);
+            return Some(times == 0);
         }
         part.iter_mut().for_each(|it| *it *= SHORTENED);
     }
-    found.then_some(true)
+    found.then_some(false)
 }
 
 fn largest(values: &[f64]) -> f64 {
