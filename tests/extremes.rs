@@ -188,6 +188,24 @@ fn an_annulus_narrower_than_rounding_beside_an_edge_of_stick_that_moves_is_refus
 }
 
 #[test]
+fn an_edge_of_stick_next_to_which_no_mesh_knows_the_pressure_is_refused_where_wear_asks_for_it() {
+    let nearly_slides = Extreme {
+        grading: -0.3,
+        exponent: 0.78,
+        amplitude: "amplitude_ratio = 0.999999269".into(),
+        end: "tau = 700".into(),
+        ..Extreme::default()
+    };
+    assert_eq!(nearly_slides.run().expect("an end").stop_reason(), StopReason::End);
+    let law = "[wear.power-law]\npressure_exponent = 1.39\nslip_exponent = 0.9\n";
+    let text = nearly_slides.text().replace("[wear.archard]\n", law);
+    let scene = Scene::from_toml(&text, "extreme.toml").expect("a scene");
+    let error = CheckReport::new(&scene).expect_err("refused");
+    assert_eq!(error.exit_code(), 2, "{error}");
+    assert!(error.to_string().contains("the pressure next to the edge of stick by"), "{error}");
+}
+
+#[test]
 fn the_scene_of_a_dead_weight_keeps_to_its_accuracy() {
     let scene: Scene = include_str!("../data/scenes/normal_force.toml").parse().expect("a scene");
     let results = scene.simulate().expect("a run");

@@ -487,9 +487,11 @@ impl Schedule {
         self.friction_along_energy == History::Constant && self.conditions.friction_history.stays(now, later)
     }
 
-    /// Whether neither friction nor the law of wear changes, so that wear alone slows itself down.
-    pub fn changes_by_wear_alone(&self) -> bool {
-        self.keeps_friction() && self.conditions.wear_history == History::Constant
+    /// The part of its first value to which the rate of wear falls at most as friction and the law of wear change; zero where friction rises, which may end all slip.
+    pub fn least_by_laws(&self) -> f64 {
+        let ([least, most], [worn, _]) =
+            (self.friction_change().range(), self.conditions.wear_history.range());
+        if most > 1.0 { 0.0 } else { least * worn }
     }
 
     /// Whether the wear of a cycle is in proportion to pressure and slip, and to nothing else.

@@ -16,6 +16,9 @@ const AHEAD: f64 = 1.02;
 /// Part of the contact radius below which few meshes resolve a layer at its edge.
 const THIN: f64 = 1e-6;
 
+/// Part of the steps of a run that end with a block, from which on blocks are why they are many.
+const OF_STEPS: f64 = 0.3;
+
 /// What most meshes of gross slip do not resolve in a medium that is stiff at its top alone: the pressure, `(a² - r²)^ν` at the contact edge, falls to nothing in a layer as thin as `2^(-1/ν)` of it.
 fn thin_layer(model: &Model) -> String {
     let grading = model.contact().half_space().grading();
@@ -29,6 +32,15 @@ fn thin_layer(model: &Model) -> String {
         " (half_space.grading = {grading}: the pressure at the contact edge falls to half within {width:.0e} of the contact radius, where only few meshes lead on; \
          {widest:.2} leaves a layer of {THIN:.0e})"
     )
+}
+
+/// What cuts steps short where blocks follow one another as fast.
+fn by_blocks(model: &Model, cycles: f64, steps: u64) -> String {
+    let ends = model.schedule().breaks_until(cycles);
+    if ends < OF_STEPS * steps as f64 {
+        return String::new();
+    }
+    format!(" (loading.blocks: {ends:.0} blocks ended on the way, and a step with each)")
 }
 
 /// Why a run cannot begin.
@@ -131,10 +143,11 @@ impl Simulation {
             what: STEPPING,
             why: self.after_loss(format!(
                 "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m, wear goes on in steps of {:.1e} \
-                 cycles{}, and {} were tried on {} springs; end before (loading.tau = {tau:.3e}), or go on by hand (numerics.springs and numerics.tolerance), \
+                 cycles{}{}, and {} were tried on {} springs; end before (loading.tau = {tau:.3e}), or go on by hand (numerics.springs and numerics.tolerance), \
                  however long it takes",
                 progress.next_step,
                 thin_layer(model),
+                by_blocks(model, cycles, progress.steps),
                 progress.steps + progress.rejected_steps,
                 model.springs()
             )),
