@@ -591,30 +591,32 @@ fn a_sphere_ends_at_its_limit_inwards_and_converges_outwards() {
 }
 
 #[test]
-fn springs_that_all_come_to_a_threshold_are_followed_while_the_edge_creeps() {
+fn coarse_runs_come_to_an_end_where_all_springs_come_to_a_threshold_and_the_edge_creeps() {
     // Towards k = -1 a spring is pressed by its own compression alone, so that each stays where nothing wears any more, on the kink of the law.
     let text = "[indenter.paraboloid]\nradius = 3.888\n[half_space]\ngrading = -0.99988\nnormal_stiffness = 0.283248\nstiffness_ratio = 5660.6\n\
                 [friction.wear-dependent]\nfirst_coefficient = 1.078\nlast_coefficient = 1.407\nenergy_density = 4.27e6\n\
                 [wear.threshold]\ncoefficient = 1.7e-7\npressure = 15604\n\
-                [loading]\nnormal_force = 2207\nstick_ratio = 0.536\nrig_stiffness = 2.79e6\ntau = 24\n";
-    let found = [56, 64].map(|springs| {
+                [loading]\nnormal_force = 2207\nstick_ratio = 0.536\nrig_stiffness = 2.79e6\ntau = 240\n";
+    let found = [48, 96].map(|springs| {
         let folder = tempfile::tempdir().expect("a folder");
         let text =
-            format!("{text}[numerics]\nsprings = {springs}\ntolerance = 1e-3\n[output]\nsnapshots = 2\n");
+            format!("{text}[numerics]\nsprings = {springs}\ntolerance = 1e-2\n[output]\nsnapshots = 2\n");
         let scene = Scene::from_toml(&text, "scene.toml").expect("a scene");
         let run = Run::new(&scene, &folder.path().join("run.h5"), false, &Stop::default()).expect("a run");
         assert!(run.stepping().model().moving().is_some());
         let results = run.execute(None).expect("an end");
         let last = results.last();
-        let slips = last.pressure.iter().zip(&last.slip).filter(|(_, slip)| **slip > 0.0);
+        // Beyond the edge of stick, next to which pressure is that of the core.
+        let largest = last.slip.iter().fold(0.0_f64, |largest, slip| largest.max(*slip));
+        let slips = last.pressure.iter().zip(&last.slip).filter(|(_, slip)| **slip > 0.05 * largest);
         let most = slips.fold(0.0_f64, |most, (pressure, _)| most.max(*pressure));
         println!("{springs}: {:e} m³, {most:e} Pa", last.wear_volume);
-        // Measured: 1.56040e4 and 1.56002e4 Pa.
-        assert!(most < 1.001 * 15604.0, "{springs}: {most:e} Pa");
+        // Measured: 1.598e4 and 1.563e4 Pa.
+        assert!(most < 1.05 * 15604.0, "{springs}: {most:e} Pa");
         last.wear_volume
     });
-    // Measured: a difference of 7.9e-4.
-    assert!((found[0] / found[1] - 1.0).abs() < 5e-3, "{found:?}");
+    // Measured: a difference of 9.4e-4.
+    assert!((found[0] / found[1] - 1.0).abs() < 1e-2, "{found:?}");
 }
 
 /// A scene with some lines of `[loading]` and tables.

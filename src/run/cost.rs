@@ -77,9 +77,11 @@ const OVERHEAD: [f64; 2] = [4e3, 4e4];
 /// Power of the springs with which the work of resolved periods grows.
 const OF_RESOLVED: f64 = 1.5;
 
-/// How much longer it takes where the edge of stick moves and slip of the unworn contact is by quadrature in each evaluation: of a table, and of a sphere.
+/// How much longer it takes where a profile is a table and the edge of stick moves: slip of the unworn contact is then by quadrature in each evaluation.
 const OF_TABLE: f64 = 12.0;
-const OF_SPHERE: f64 = 4.0;
+
+/// How much longer an evaluation takes for a sphere, whose slip is by quadrature too. Steps that are found take a third of [`EVALUATIONS`], so that it counts for those that are not.
+const OF_SPHERE: f64 = 3.5;
 
 /// Work of a step that is tried, nanoseconds of one core, about, but for that of the periods that are resolved. The same on every machine, so that a run and one that
 /// was interrupted take the same way.
@@ -89,16 +91,12 @@ fn work_of_step(model: &Model, springs: f64) -> f64 {
     let multiplies = model.gross().is_none() && !schedule.wears_by_pressure_alone();
     let [of_whole, elsewhere] = OVERHEAD;
     let overhead = if model.gross().is_some() { of_whole } else { elsewhere };
-    let profile = model.contact().equivalent_profile();
-    let by_quadrature = match profile.end_of_table() {
-        _ if moves == 0 || profile.exponent().is_some() => 1.0,
-        Some(_) => OF_TABLE,
-        None => OF_SPHERE,
-    };
+    let is_table = model.contact().equivalent_profile().end_of_table().is_some();
+    let table = if is_table && moves == 1 { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
     let once = if model.gross().is_some() { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
     overhead
-        + evaluations(model, springs) * springs * (by_quadrature * once + spread)
+        + evaluations(model, springs) * springs * (table * once + spread)
         + BY_TRIPLE[usize::from(multiplies)] * springs.powi(3)
 }
 
@@ -117,7 +115,10 @@ fn evaluations(model: &Model, springs: f64) -> f64 {
 /// Steps tried so far, or as many as their evaluations make: one that finds no contact takes the most.
 fn tries(progress: &Progress, model: &Model) -> f64 {
     let tried = (progress.steps + progress.rejected_steps) as f64;
-    tried.max(progress.rate_evaluations as f64 / evaluations(model, model.springs() as f64))
+    let profile = model.contact().equivalent_profile();
+    let is_sphere = profile.exponent().is_none() && profile.end_of_table().is_none();
+    let longer = if is_sphere && model.moving().is_some() { OF_SPHERE } else { 1.0 };
+    tried.max(longer * progress.rate_evaluations as f64 / evaluations(model, model.springs() as f64))
 }
 
 /// Work of a run so far without its companions, nanoseconds of one core, about, by what a step takes of the model that it began with.

@@ -47,7 +47,8 @@ impl<'a> MovingStage<'a> {
     /// Whether what is left of the equations of the inner springs and of the contact edge is rounding.
     fn is_round_off_of_slip(&self) -> bool {
         let springs = self.stage.target().springs.log_slip.len();
-        is_round_off(&self.trial.residual[..springs], &self.trial.fields)
+        let residual = &self.trial.residual[..springs];
+        residual.iter().all(|it| it.abs() <= self.tolerance) && is_round_off(residual, &self.trial.fields)
     }
 
     /// What is left of the balances, behind the equations of springs and edges.
@@ -92,10 +93,6 @@ impl Equations for MovingStage<'_> {
 
     fn evaluations_of_matrix(&self) -> u64 {
         4
-    }
-
-    fn has_kinks(&self) -> bool {
-        self.stage.model().schedule().conditions().wear.has_kink()
     }
 
     fn is_last(&self, correction: &Correction) -> bool {

@@ -19,12 +19,13 @@ const RENEWED: f64 = 0.03;
 const NEARLY: f64 = 0.05;
 
 /// Over kinks: corrections before a step is given up; most by which what is left of the equations may grow in one; the part of itself to which it is shortened until it
-/// does not, and how often; and what may be left in any case, since rounding is of that size.
+/// does not, and how often; what is left that counts as nothing, since rounding is of that size; and the most that the last correction may leave.
 const KINKED_CORRECTIONS: usize = 24;
 const GROWN: f64 = 2.0;
 const SHORTENED: f64 = 0.25;
 const MOST_SHORTENED: usize = 4;
 const NEGLIGIBLE: f64 = 1e-9;
+const LEFT: f64 = 1e-8;
 
 /// Slowest contraction of Newton's corrections that is waited for.
 const SLOWEST: f64 = 0.5;
@@ -48,9 +49,6 @@ pub(super) trait Equations {
 
     /// Evaluations of pressure, slip and wear that the matrix takes.
     fn evaluations_of_matrix(&self) -> u64;
-
-    /// Whether their slopes jump somewhere over which whole corrections do not converge.
-    fn has_kinks(&self) -> bool;
 
     /// Whether a correction was the last one needed.
     fn is_last(&self, correction: &Correction) -> bool;
@@ -137,12 +135,14 @@ pub(super) struct Newton {
     linearised: Option<Arc<Linearised>>,
     /// Largest part of a correction that the next one was.
     pub contraction: f64,
+    /// Whether corrections may be shortened where whole ones do not converge, as over kinks.
+    pub by_parts: bool,
 }
 
 impl Newton {
     /// Solves the equations of a stage, from and into `at`, and leaves them evaluated there; whether it converged to a contact.
     pub fn solve(&mut self, equations: &mut dyn Equations, at: &mut Unknowns, evaluations: &mut u64) -> bool {
-        let start = equations.has_kinks().then(|| at.clone());
+        let start = self.by_parts.then(|| at.clone());
         self.by_whole_corrections(equations, at, evaluations)
             || start.is_some_and(|start| {
                 *at = start;
@@ -166,7 +166,9 @@ impl Newton {
             let Some(factors) = &self.factors else { return false };
             let change = factors.correction(equations);
             let Some(is_whole) = correct_by_part(equations, at, &change, evaluations) else { return false };
-            if is_whole && equations.is_last(&Correction::new(&change, at, equations.scale())) {
+            let left = largest(&equations.residual());
+            if is_whole && left <= LEFT && equations.is_last(&Correction::new(&change, at, equations.scale()))
+            {
                 return true;
             }
         }

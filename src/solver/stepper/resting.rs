@@ -134,11 +134,6 @@ impl Equations for RestingStage<'_> {
         0
     }
 
-    /// None over which whole corrections do not converge.
-    fn has_kinks(&self) -> bool {
-        false
-    }
-
     fn is_last(&self, correction: &Correction) -> bool {
         let [least, most] = BOUNDS_MEASURED;
         let allowed = match correction.measured {

@@ -79,11 +79,6 @@ impl Model {
 }
 
 impl StickStage<'_> {
-    /// The contact.
-    pub fn model(&self) -> &Model {
-        self.model
-    }
-
     /// What the stage starts from.
     pub fn target(&self) -> &StickTarget {
         &self.target
@@ -164,7 +159,7 @@ impl StickStage<'_> {
         } else {
             let step = (self.difference() * at.stick_area).min(OF_ANNULUS * at.slip_area);
             let moved = Unknowns { stick_area: at.stick_area + step, ..at.clone() };
-            let step = self.rounded(step, moved.stick_area - at.stick_area);
+            let step = moved.stick_area - at.stick_area;
             self.fill_by_difference(n, step, &moved, trial, &mut matrix)?;
         }
         match self.moving.cause {
@@ -173,7 +168,7 @@ impl StickStage<'_> {
             _ => {
                 let step = self.difference() * trial.stick_zone.slip_compression;
                 let moved = Unknowns { stick_depth: at.stick_depth + step, ..at.clone() };
-                let step = self.rounded(step, moved.stick_depth - at.stick_depth);
+                let step = moved.stick_depth - at.stick_depth;
                 self.fill_by_difference(n + 1, step, &moved, trial, &mut matrix)?;
             }
         }
@@ -519,11 +514,6 @@ impl StickStage<'_> {
     fn difference(&self) -> f64 {
         let most = if self.recedes() { OF_FIRST_SPRING } else { f64::INFINITY };
         DIFFERENCE.min(most * self.model.annulus().operators.abel.nodes()[1])
-    }
-
-    /// What rounding leaves of a step. Where the edge recedes and steps are smaller, on 480 springs half of all steps were rejected with it.
-    fn rounded(&self, step: f64, left: f64) -> f64 {
-        if self.recedes() { step } else { left }
     }
 
     fn fill_by_difference(
