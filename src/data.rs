@@ -232,12 +232,14 @@ pub struct Checkpoint {
 }
 
 /// How a run came to be made anew, so that one that was interrupted takes the same way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attempt {
     /// How often it was made anew on more springs, or need not be any more.
     pub refinements: u64,
     /// Springs on which it came to an end, if less accurately than was asked for; zero where it did not.
     pub ended_on: u64,
+    /// Its estimated error there, relative; 1 where nothing is known of it, or where it did not.
+    pub ended_within: f64,
     /// Work of the attempts before, nanoseconds of one core, about.
     pub work: u64,
 }

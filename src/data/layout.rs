@@ -119,6 +119,10 @@ pub const ENDED_ON: Quantity = quantity(
     "springs on which an attempt came to an end less accurately than was asked for, or 0",
 );
 
+/// Error of the attempt that came to an end, scalar.
+pub const ENDED_WITHIN: Quantity =
+    quantity("ended_within", "1", "estimated error of that attempt, or 1 where nothing is known of it");
+
 /// Work of the attempts of such a run that came before, scalar.
 pub const WORK: Quantity =
     quantity("work", "ns", "work of the attempts before, of one core, about, by what their steps take");

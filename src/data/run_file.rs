@@ -231,6 +231,7 @@ fn put_checkpoint(checkpoint: &Checkpoint) -> Dataset {
     if checkpoint.attempt != Attempt::default() {
         stored.scalar(REFINEMENTS, checkpoint.attempt.refinements);
         stored.scalar(ENDED_ON, checkpoint.attempt.ended_on);
+        stored.scalar(ENDED_WITHIN, checkpoint.attempt.ended_within);
         stored.scalar(WORK, checkpoint.attempt.work);
     }
     if !state.past.points.is_empty() {
@@ -406,6 +407,7 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
         checkpoint.attempt = Attempt {
             refinements: stored.take_scalar(REFINEMENTS)?,
             ended_on: stored.take_scalar(ENDED_ON)?,
+            ended_within: stored.take_scalar(ENDED_WITHIN)?,
             work: stored.take_scalar(WORK)?,
         };
     }

@@ -1,7 +1,7 @@
 //! A run that is made anew on other springs: on more where its error is larger than was asked for, on fewer where it takes too long or finds no end.
 
 use super::attempt::{LAST_RESORT, REFINEMENTS, SPRINGS_OF_LAST_RESORT};
-use super::budget;
+use super::budget::{self, UNKNOWN};
 use super::cost;
 use super::limit::header;
 use super::parts::Parts;
@@ -116,7 +116,7 @@ impl Attempts<'_> {
         if self.stepping.model().gross().is_none() && (far_too_long || cost::is_nearly_spent(work)) {
             return self.last_resort(work);
         }
-        let counted = Attempt { refinements, ended_on: 0, work };
+        let counted = Attempt::without_end(refinements, work);
         let fewer = cost::fewer(self.springs());
         fewer.map(|springs| Anew { springs, on_fewer: true, counted }).into_iter().collect()
     }
@@ -125,11 +125,16 @@ impl Attempts<'_> {
     fn after(&self, outcome: &Result<Outcome>, checkpoint: &Checkpoint, work: u64) -> Vec<Anew> {
         let attempt = self.recorder.attempt;
         let no_end = matches!(outcome, Err(Error::NotConverged { .. }));
-        if no_end && attempt.has_end() && !attempt.ends_again() {
+        if no_end && attempt.may_end_again() {
             return vec![self.end_again(work)];
         }
+        let error = checkpoint.error_estimate.unwrap_or(UNKNOWN);
         if let Some(springs) = self.more_springs(outcome, checkpoint) {
-            return vec![self.finer(springs, outcome.is_ok(), work)];
+            return vec![self.finer(springs, outcome.is_ok().then_some(error), work)];
+        }
+        let ends = outcome.as_ref().is_ok_and(|it| *it != Outcome::Interrupted);
+        if ends && error >= UNKNOWN && attempt.may_end_again() && attempt.knows_error() {
+            return vec![self.end_again(work)];
         }
         if !(no_end && self.looks_for_an_end()) {
             return vec![];
@@ -142,17 +147,24 @@ impl Attempts<'_> {
         }
     }
 
-    /// Finer ones do not end: that which did, once more.
+    /// Finer ones do not end, or know nothing of their error: that which did, once more.
     fn end_again(&self, work: u64) -> Anew {
-        let ended_on = self.recorder.attempt.ended_on;
-        let counted = Attempt { refinements: REFINEMENTS + 1, ended_on, work };
-        Anew { springs: ended_on as usize, on_fewer: false, counted }
+        let counted = Attempt { refinements: REFINEMENTS + 1, work, ..self.recorder.attempt };
+        Anew { springs: counted.ended_on as usize, on_fewer: false, counted }
     }
 
-    fn finer(&self, springs: usize, ended: bool, work: u64) -> Anew {
-        let refinements = self.recorder.attempt.refinements + 1;
-        let ended_on = if ended { self.springs() as u64 } else { 0 };
-        Anew { springs, on_fewer: false, counted: Attempt { refinements, ended_on, work } }
+    /// # Arguments
+    /// * `error` -- estimated, of this attempt, if it came to its end
+    fn finer(&self, springs: usize, error: Option<f64>, work: u64) -> Anew {
+        let before =
+            Attempt { refinements: self.recorder.attempt.refinements + 1, work, ..self.recorder.attempt };
+        let counted = match error {
+            Some(error) if error < UNKNOWN || !before.knows_error() => {
+                Attempt { ended_on: self.springs() as u64, ended_within: error, ..before }
+            }
+            _ => before,
+        };
+        Anew { springs, on_fewer: false, counted }
     }
 
     /// Coarser ones may come to an end where this does not, and tell that nothing is known of the error.
@@ -162,7 +174,7 @@ impl Attempts<'_> {
         let asked = Parts::new(self.scene, self.scene.numerics(), None, known, self.store).ok();
         let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
         let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
-        let counted = Attempt { refinements: REFINEMENTS + 1, ended_on: 0, work };
+        let counted = Attempt::without_end(REFINEMENTS + 1, work);
         let fewer = fewer.map(|springs| Anew { springs, on_fewer: true, counted });
         fewer.into_iter().chain(self.last_resort(work)).collect()
     }
@@ -171,7 +183,7 @@ impl Attempts<'_> {
     fn last_resort(&self, work: u64) -> Vec<Anew> {
         let attempt = self.recorder.attempt;
         let refinements = LAST_RESORT.max(attempt.refinements + 1);
-        let counted = Attempt { refinements, ended_on: 0, work };
+        let counted = Attempt::without_end(refinements, work);
         let all = SPRINGS_OF_LAST_RESORT[usize::from(self.stepping.model().gross().is_none())].iter();
         let tried = match attempt.is_last_resort() {
             true => 1 + all.clone().take_while(|it| **it != self.springs()).count(),

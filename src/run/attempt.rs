@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::budget::UNKNOWN;
 use super::cost;
 use crate::data::Attempt;
 use crate::scene::{Numerics, Scene};
@@ -34,9 +35,24 @@ impl Attempt {
         self.ended_on > 0
     }
 
-    /// Whether it repeats one that came to its end, since finer ones did not.
+    /// Whether it repeats one that came to its end, since finer ones did not, or know nothing of their error.
     pub(super) fn ends_again(&self) -> bool {
         self.refinements > REFINEMENTS && self.has_end()
+    }
+
+    /// Whether there is one to be repeated.
+    pub(super) fn may_end_again(&self) -> bool {
+        self.refinements <= REFINEMENTS && self.has_end()
+    }
+
+    /// Whether the error of one that came to its end is known.
+    pub(super) fn knows_error(&self) -> bool {
+        self.has_end() && self.ended_within < UNKNOWN
+    }
+
+    /// One before which none came to an end.
+    pub(super) fn without_end(refinements: u64, work: u64) -> Self {
+        Self { refinements, ended_on: 0, ended_within: UNKNOWN, work }
     }
 
     /// The numerics with which it is made.

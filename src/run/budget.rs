@@ -312,9 +312,13 @@ pub(in crate::run) fn refined_by_order(
     accuracy: f64,
     lifts: bool,
 ) -> Option<usize> {
+    if shares.springs >= UNKNOWN {
+        // Companions of a finer run may tell.
+        return refined(springs, None, accuracy);
+    }
     let rest = shares.substeps + shares.left_out;
     let aim = AIM * accuracy - rest;
-    if shares.error() <= SURE * accuracy || aim <= 0.0 || shares.springs >= UNKNOWN {
+    if shares.error() <= SURE * accuracy || aim <= 0.0 {
         return None;
     }
     let wanted = |order: f64| {
