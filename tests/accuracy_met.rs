@@ -413,8 +413,7 @@ fn a_run_that_knows_nothing_of_its_error_gives_way_to_one_that_does() {
     let loading = "stick_ratio = 0.85\ntau = 10\n[[loading.blocks]]\ntau = 5\n[[loading.blocks]]\ntau = 5\namplitude_factor = 1.2";
     let scene = both_forces_held("paraboloid]\nradius = 1.0", friction, 420.0, loading);
     let folder = tempfile::tempdir().expect("a folder");
-    let (run, [whole, parts], interruptions) =
-        support::resume::whole_and_in_parts(&scene, folder.path(), 90);
+    let (run, [whole, parts], interruptions) = support::resume::whole_and_in_parts(&scene, folder.path(), 90);
     let estimate = run.error_estimate().expect("the program chose the springs");
     println!("{estimate:e}, {interruptions} interruptions");
     // Measured: 0.12; it was 1.
