@@ -238,7 +238,7 @@ pub struct Attempt {
     pub refinements: u64,
     /// Springs on which it came to an end, if less accurately than was asked for; zero where it did not.
     pub ended_on: u64,
-    /// Its estimated error there, relative; 1 where nothing is known of it, or where it did not.
+    /// Its estimated error there, relative; 1 where nothing is known of it, and zero where it did not.
     pub ended_within: f64,
     /// Work of the attempts before, nanoseconds of one core, about.
     pub work: u64,

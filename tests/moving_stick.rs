@@ -612,11 +612,11 @@ fn coarse_runs_come_to_an_end_where_all_springs_come_to_a_threshold_and_the_edge
         let most = slips.fold(0.0_f64, |most, (pressure, _)| most.max(*pressure));
         println!("{springs}: {:e} m³, {most:e} Pa", last.wear_volume);
         // Measured: 1.598e4 and 1.563e4 Pa.
-        assert!(most < 1.05 * 15604.0, "{springs}: {most:e} Pa");
+        assert!(most < 1.03 * 15604.0, "{springs}: {most:e} Pa");
         last.wear_volume
     });
     // Measured: a difference of 9.4e-4.
-    assert!((found[0] / found[1] - 1.0).abs() < 1e-2, "{found:?}");
+    assert!((found[0] / found[1] - 1.0).abs() < 5e-3, "{found:?}");
 }
 
 /// A scene with some lines of `[loading]` and tables.

@@ -116,7 +116,7 @@ impl Attempts<'_> {
         if self.stepping.model().gross().is_none() && (far_too_long || cost::is_nearly_spent(work)) {
             return self.last_resort(work);
         }
-        let counted = Attempt::without_end(refinements, work);
+        let counted = Attempt { refinements, work, ..Attempt::default() };
         let fewer = cost::fewer(self.springs());
         fewer.map(|springs| Anew { springs, on_fewer: true, counted }).into_iter().collect()
     }
@@ -174,7 +174,7 @@ impl Attempts<'_> {
         let asked = Parts::new(self.scene, self.scene.numerics(), None, known, self.store).ok();
         let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
         let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
-        let counted = Attempt::without_end(REFINEMENTS + 1, work);
+        let counted = Attempt { refinements: REFINEMENTS + 1, work, ..Attempt::default() };
         let fewer = fewer.map(|springs| Anew { springs, on_fewer: true, counted });
         fewer.into_iter().chain(self.last_resort(work)).collect()
     }
@@ -183,7 +183,7 @@ impl Attempts<'_> {
     fn last_resort(&self, work: u64) -> Vec<Anew> {
         let attempt = self.recorder.attempt;
         let refinements = LAST_RESORT.max(attempt.refinements + 1);
-        let counted = Attempt::without_end(refinements, work);
+        let counted = Attempt { refinements, work, ..Attempt::default() };
         let all = SPRINGS_OF_LAST_RESORT[usize::from(self.stepping.model().gross().is_none())].iter();
         let tried = match attempt.is_last_resort() {
             true => 1 + all.clone().take_while(|it| **it != self.springs()).count(),

@@ -7,6 +7,7 @@ use super::cost;
 use crate::data::Attempt;
 use crate::scene::{Numerics, Scene};
 use crate::solver::model::Model;
+use crate::solver::stepper::Sdirk;
 
 /// How often a run is repeated on more springs.
 pub(super) const REFINEMENTS: u64 = 3;
@@ -15,9 +16,8 @@ pub(super) const REFINEMENTS: u64 = 3;
 /// becomes of the contact, and that nothing is known of the error.
 pub(super) const LAST_RESORT: u64 = REFINEMENTS + 2;
 
-/// Tolerance of that attempt, substeps of a period that is sampled, and the springs that it tries one after the other until there is an end: in gross slip, and elsewhere,
+/// Substeps of a period that is sampled in that attempt, and the springs that it tries one after the other until there is an end: in gross slip, and elsewhere,
 /// where a mesh from near the axis needs more.
-const COARSE_STEPS: f64 = 1e-2;
 const COARSE_SUBSTEPS: usize = 48;
 pub(super) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96]];
 
@@ -50,11 +50,6 @@ impl Attempt {
         self.has_end() && self.ended_within < UNKNOWN
     }
 
-    /// One before which none came to an end.
-    pub(super) fn without_end(refinements: u64, work: u64) -> Self {
-        Self { refinements, ended_on: 0, ended_within: UNKNOWN, work }
-    }
-
     /// The numerics with which it is made.
     pub(super) fn numerics(&self, scene: &Scene) -> Numerics {
         let numerics = *scene.numerics();
@@ -63,7 +58,7 @@ impl Attempt {
         }
         let sampled = !scene.conditions().mode.is_tangential();
         let substeps = numerics.substeps.or(sampled.then_some(COARSE_SUBSTEPS));
-        Numerics { tolerance: Some(COARSE_STEPS), substeps, ..numerics }
+        Numerics { tolerance: Some(Sdirk::COARSE), substeps, ..numerics }
     }
 
     /// The part of the work of a run that it may take.

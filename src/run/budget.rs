@@ -312,9 +312,10 @@ pub(in crate::run) fn refined_by_order(
     accuracy: f64,
     lifts: bool,
 ) -> Option<usize> {
+    let most = if lifts { MOST_REFINED_LIFTING } else { MOST_RAISED };
     if shares.springs >= UNKNOWN {
         // Companions of a finer run may tell.
-        return refined(springs, None, accuracy);
+        return refined(springs, None, accuracy).filter(|springs| *springs <= most);
     }
     let rest = shares.substeps + shares.left_out;
     let aim = AIM * accuracy - rest;
@@ -325,7 +326,7 @@ pub(in crate::run) fn refined_by_order(
         let factor = (shares.springs / aim).powf(order.recip()).max(RAISES[0]);
         (springs as f64 * factor).ceil()
     };
-    let most = if lifts { MOST_REFINED_LIFTING } else { MOST_RAISED } as f64;
+    let most = most as f64;
     // On few springs the order may not show yet; more tell whether it is there.
     let refined = wanted(shares.order);
     let refined = if shares.order < SEEN || refined > most { wanted(FULL_ORDER) } else { refined };

@@ -30,11 +30,11 @@ pub struct Sdirk {
     stick_trial: StickTrial,
 }
 
-/// Tolerance from which on parts of corrections lead over kinks. They may end beside the way on which smaller steps would go (docs/numerics.md), so that they are for runs that
-/// only have to come to an end.
-const COARSE: f64 = 1e-2;
-
 impl Sdirk {
+    /// Tolerance of runs that only have to come to an end. From there on parts of corrections lead over kinks, which may end beside the way on which smaller steps would go
+    /// (docs/numerics.md).
+    pub const COARSE: f64 = 1e-2;
+
     /// A stepper whose stages are solved well below the tolerance of the time stepping.
     pub fn new(tolerance: f64) -> Self {
         Self {
@@ -44,9 +44,7 @@ impl Sdirk {
             stick_trial: StickTrial::default(),
         }
     }
-}
 
-impl Sdirk {
     /// A step in which the edge of stick moves to either side.
     fn moved(&mut self, model: &Model, state: &State, stick: &StickEdge, cycles: f64) -> Trial {
         let Self { tolerance, newton, stick_trial, .. } = self;
@@ -70,13 +68,13 @@ impl Stepper for Sdirk {
     }
 
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
-        self.newton.outdate();
         let Some(stick) = &state.stick else {
             let Self { tolerance, newton, tried, .. } = self;
+            newton.outdate();
             return Ok(step(RestingContact::new(model, state, *tolerance, newton, tried), cycles));
         };
         let trial = self.moved(model, state, stick, cycles);
-        let may = self.tolerance >= COARSE && model.schedule().conditions().wear.has_kink();
+        let may = self.tolerance >= Self::COARSE && model.schedule().conditions().wear.has_kink();
         if trial.state.is_some() || !may {
             return Ok(trial);
         }
