@@ -15,6 +15,7 @@ use faer::Mat;
 
 use super::linear::{Factors, dot};
 use super::quadrature::Rule;
+use super::roots::bracketed;
 use crate::error::Result;
 
 /// Jacobi exponent of the nodes at the edge: with one of 1 and more the last node lies too far inside, pressure there turns negative and grows.
@@ -209,19 +210,17 @@ impl WholeContact {
         values.push(0.0);
         let axis = Coordinate { y: 0.0, h: 1.0 };
         let above = (0..inside.len()).rev().find(|i| inside[*i] > level);
-        let mut low = match above {
-            Some(i) => self.nodes[i],
-            None => axis,
+        let low = above.map_or(axis, |i| self.nodes[i]);
+        let high = self.nodes[above.map_or(0, |i| i + 1)];
+        let between = |part: f64| Coordinate {
+            y: low.y + part * (high.y - low.y),
+            h: low.h + part * (high.h - low.h),
         };
-        if self.value(&values, low) <= level {
+        let excess = |part: f64| self.value(&values, between(part)) - level;
+        if excess(0.0) <= 0.0 {
             return None;
         }
-        let mut high = self.nodes[above.map_or(0, |i| i + 1)];
-        for _ in 0..60 {
-            let middle = Coordinate { y: 0.5 * (low.y + high.y), h: 0.5 * (low.h + high.h) };
-            if self.value(&values, middle) > level { low = middle } else { high = middle }
-        }
-        Some(low)
+        bracketed(excess, 0.0, 1.0, 0.0).ok().map(between)
     }
 
     /// Nodes `ξ_g` and weights of `∫_0^ξ(end) ξ^(ν-1) e(ξ) dξ`, with the values there of what is given inside.

@@ -492,7 +492,11 @@ impl Simulation {
     fn accept(&mut self, reached: Reached, target: Option<f64>) -> Result<bool> {
         let Reached { mut state, mut fields, mut cycle, mut rate } = reached;
         let mut depth = self.model.depth_on_springs(&state, &fields);
-        if self.model.gross().is_none() && !self.is_possible(&state, &fields, &depth) {
+        let is_possible = match self.model.gross() {
+            Some(_) => self.spreads(&state),
+            None => self.is_possible(&state, &fields, &depth),
+        };
+        if !is_possible {
             return Ok(false);
         }
         self.healed_at = None;

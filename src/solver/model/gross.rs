@@ -27,6 +27,7 @@ use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::numerics::linear::dot;
 use crate::numerics::whole_contact::WholeContact;
+pub(super) use hand_over::slides_on;
 
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
 const SHOWN: [usize; 2] = [64, 128];
@@ -76,19 +77,22 @@ impl Gross {
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        if contact.regime() != Regime::FullSliding || !Self::carries(contact, schedule) {
+        let slides_on = slides_on(contact, schedule);
+        if !(slides_on || contact.regime() == Regime::FullSliding && Self::carries(contact, schedule)) {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
-        let at_core = depth - height_of_last_core(contact);
-        for loading in schedule.extremes() {
+        // A rig that moves all of the contact in the first cycle does so on this mesh, whatever sticks later.
+        let loadings: Vec<CycleLoading> = match slides_on {
+            true => vec![schedule.loading(0.0, 0.0)],
+            false => schedule.extremes().collect(),
+        };
+        let innermost = if slides_on { depth - height_of_last_core(contact) } else { depth };
+        for loading in loadings {
             let slides = match loading.control {
                 AmplitudeControl::Displacement => loading.slip_compression(ratio) >= depth,
                 AmplitudeControl::Force(_) => false,
-                AmplitudeControl::Rig(_) => {
-                    let innermost = if hand_over::slides_on(contact, schedule) { at_core } else { depth };
-                    slides_on_rig(contact, &loading, innermost)?
-                }
+                AmplitudeControl::Rig(_) => slides_on_rig(contact, &loading, innermost)?,
             };
             if !slides {
                 return Ok(false);

@@ -35,6 +35,7 @@ use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::numerics::grid::Clustering;
 use crate::numerics::roots::bracketed;
+use crate::solver::model::gross::slides_on;
 pub use both_forces::Bearing;
 pub use stage::{StickStage, StickTarget, StickTrial};
 
@@ -151,7 +152,7 @@ impl MovingStick {
 
     /// Whether it may leave worn ground behind.
     fn leaves_ground(&self) -> bool {
-        self.outwards || self.turns || self.in_blocks
+        self.outwards || self.turns
     }
 
     /// The contact with the largest indentation that can come, of which the limit bounds where wear can reach.
@@ -189,6 +190,11 @@ impl MovingStick {
     /// Whether the edge moves inwards, upon unworn ground.
     pub fn recedes(&self) -> bool {
         !self.leaves_ground() && !self.rests()
+    }
+
+    /// Whether the tangential amplitude follows from a balance of forces at the indentation that is held.
+    pub fn is_balanced(&self) -> bool {
+        self.cause == Cause::Tangential
     }
 
     /// Whether the edge moves outwards during steps, over worn ground.
@@ -320,7 +326,9 @@ pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> R
     let depth = contact.indentation();
     let ratio = contact.half_space().stiffness_ratio();
     let at_core = depth - height_of_last_core(contact);
-    for loading in schedule.first_cycles() {
+    // What slides later on a rig is handed over then.
+    let blocks = if slides_on(contact, schedule) { 1 } else { usize::MAX };
+    for loading in schedule.first_cycles().take(blocks) {
         let slides = match loading.control {
             AmplitudeControl::Displacement => false,
             AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
@@ -333,9 +341,12 @@ pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> R
     Ok(false)
 }
 
+/// Area of stick, over that of the contact, below which it is taken for lost under a balance of tangential forces.
+pub(super) const LAST_STICK: f64 = LOST * LAST_CORE * LAST_CORE;
+
 /// Height of the equivalent profile, m, at the last edge of stick that is followed.
 pub(super) fn height_of_last_core(contact: &InitialContact) -> f64 {
-    contact.equivalent_profile().value(LOST.sqrt() * LAST_CORE * contact.contact_radius())
+    contact.equivalent_profile().value(LAST_STICK.sqrt() * contact.contact_radius())
 }
 
 /// Whether springs slip on a rig up to a compression, m, of the unworn contact.
@@ -409,7 +420,7 @@ impl Model {
 
     /// Whether a stick zone that a tangential force takes away in the end has less than so many times the area of the core of the mesh.
     fn shrinks_below(&self, times: f64, state: &State) -> bool {
-        let tangential = self.moving().is_some_and(|moving| moving.cause == Cause::Tangential);
+        let tangential = self.moving().is_some_and(MovingStick::is_balanced);
         let area = times * self.stick_zone.stick_area;
         self.slides && tangential && state.stick.as_ref().is_some_and(|stick| stick.area < area)
     }

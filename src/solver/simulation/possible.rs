@@ -21,7 +21,16 @@ const BEYOND_CONTACT: f64 = 0.3;
 const CORNER: f64 = 2.0;
 const SUDDEN: f64 = 1.5;
 
+/// Relative loss of contact area in a step of gross slip, over the tolerance, that is taken for an error.
+const SHRINKS: f64 = 1e-2;
+
 impl Simulation {
+    /// Whether a contact in gross slip has not become smaller. The equations on a mesh have another solution, in which the edge recedes and pressure in front of it
+    /// grows, and implicit steps that are too long to resolve how it grows may come to it.
+    pub(super) fn spreads(&self, state: &State) -> bool {
+        state.slip_area >= self.state.slip_area * (1.0 - SHRINKS * self.tolerance)
+    }
+
     /// Whether compressions fall to zero at the contact edge. Where the ground wears there as well, the equations have another root: the edge stays or recedes, and
     /// behind it is a corner as that of a punch, which no wear makes.
     fn ends_smoothly(&self, state: &State) -> bool {

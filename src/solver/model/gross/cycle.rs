@@ -11,6 +11,8 @@ use std::f64::consts::PI;
 use faer::Mat;
 
 use super::{Gross, Whole};
+use crate::numerics::linear::dot;
+use crate::numerics::roots::bracketed;
 use crate::numerics::whole_contact::{Coordinate, WholeContact};
 use crate::solver::model::cycle::Surface;
 use crate::solver::model::motion::{Bearing, Energies, Motion};
@@ -48,7 +50,7 @@ struct ClosedForm {
 struct Stick {
     /// `c²/a²`.
     fraction: f64,
-    /// `ξ`, weight of `∫ ξ^(ν-1) dξ`, and `b`.
+    /// `ξ`, weight of `∫ ξ^(ν-1) dξ`, and `b`; empty where the latter is that of the polynomials.
     within: Vec<[f64; 3]>,
 }
 
@@ -144,20 +146,47 @@ impl Model {
         let plain = friction.coefficient().is_some();
         // Springs lose contact by round-off only.
         let resisting = |q: &f64| friction.kinetic_strength(q.abs()).copysign(*q) / coefficient;
-        let borne: Vec<f64> =
+        let mut borne: Vec<f64> =
             if plain { compression.to_vec() } else { compression.iter().map(resisting).collect() };
-        let carried = if plain { whole.elastic.clone() } else { mesh.profile(&borne) };
+        let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
         let [by_force, _] = loading.control.factors();
-        let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu) * mesh.load(&borne);
-        let amplitude = loading.amplitude - by_force * force;
-        let (per_depth, level) = (coefficient / ratio, ratio * amplitude / coefficient);
-        // At held indentation compressions only fall.
-        let sticking = friction.compression_at(ratio * amplitude);
-        let pressed = gross.holds_force().then(|| mesh.last_above(compression, sticking)).flatten();
-        let stick = pressed.and_then(|end| {
-            let within = mesh.up_to(end, &borne).ok()?;
-            Some(Stick { fraction: mesh.fraction(end), within })
-        });
+        let (per_depth, depth_of) = (coefficient / ratio, |amplitude: f64| ratio * amplitude / coefficient);
+        let (amplitude, stick) = match by_force > 0.0 {
+            true => {
+                let most = borne.iter().copied().fold(0.0, f64::max);
+                // Springs that stick bear `M U` each.
+                let capped = |level: f64| borne.iter().map(move |b| b.min(level));
+                let bearing = |level: f64| dot(&capped(level).collect::<Vec<_>>(), mesh.load_weights());
+                let excess =
+                    |amplitude: f64| amplitude + by_force * force * bearing(depth_of(amplitude)) - loading.amplitude;
+                let sliding = loading.amplitude - by_force * force * mesh.load(&borne);
+                if depth_of(sliding) >= most {
+                    (sliding, None)
+                } else {
+                    let amplitude = bracketed(excess, 0.0, loading.amplitude, 0.0).unwrap_or(f64::NAN);
+                    let level = depth_of(amplitude);
+                    let end = mesh.last_above(&borne, level);
+                    borne = capped(level).collect();
+                    let stick = end.map(|end| Stick { fraction: mesh.fraction(end), within: vec![] });
+                    (amplitude, stick)
+                }
+            }
+            false => {
+                // Where indentation and amplitude are held compressions only fall.
+                let sticking = friction.compression_at(ratio * loading.amplitude);
+                let pressed = gross.holds_force().then(|| mesh.last_above(compression, sticking)).flatten();
+                let stick = pressed.and_then(|end| {
+                    let within = mesh.up_to(end, &borne).ok()?;
+                    Some(Stick { fraction: mesh.fraction(end), within })
+                });
+                (loading.amplitude, stick)
+            }
+        };
+        let level = depth_of(amplitude);
+        let carried = match plain && by_force == 0.0 {
+            true => whole.elastic.clone(),
+            false => mesh.profile(&borne),
+        };
         // Of the springs but for those that stick.
         let sum = |value: &dyn Fn(f64, f64) -> f64| -> f64 {
             let all = borne.iter().zip(mesh.load_weights());

@@ -45,7 +45,7 @@ fn is_followed(schedule: &Schedule) -> bool {
 }
 
 /// Whether a rig goes on to move a contact whose stick it has broken.
-pub(super) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
+pub(in crate::solver::model) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
     let on_rig = matches!(conditions.tangential_control, TangentialControl::Rig { .. });
     // Springs that remember their slip break away all at once.
@@ -70,8 +70,8 @@ impl Model {
         match self.gross() {
             Some(gross) => gross.holds_force() && is_followed(self.schedule()),
             None => {
-                let recedes = self.slides && self.moving().is_some_and(MovingStick::recedes);
-                recedes && slides_on(self.contact(), self.schedule())
+                let gives_way = self.slides && self.moving().is_some_and(MovingStick::is_balanced);
+                gives_way && slides_on(self.contact(), self.schedule())
             }
         }
     }
@@ -142,7 +142,7 @@ impl Model {
         let compression_at = |fraction: &f64| {
             let squared = fraction * area;
             match squared < stick.area {
-                true => held - profile.value(squared.sqrt()),
+                true => held - profile.value(squared.sqrt()) - stick.ground_at_rest(squared)[0],
                 false => self.between_springs(&all, (squared - stick.area) / state.slip_area),
             }
         };

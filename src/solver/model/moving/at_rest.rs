@@ -14,7 +14,7 @@ const SAME_PLACE: f64 = 1e-10;
 impl StickEdge {
     /// By how much wear has raised the equivalent profile at rest within the edge of stick, m, and its derivative by the squared radius, 1/m: by
     /// cubics through the nearest places known.
-    pub(super) fn ground_at_rest(&self, squared: f64) -> [f64; 2] {
+    pub(in crate::solver::model) fn ground_at_rest(&self, squared: f64) -> [f64; 2] {
         let (places, raised) = (&self.places_at_rest, &self.raised_at_rest);
         let (Some(first), Some(last)) = (places.first(), places.last()) else { return [0.0; 2] };
         if squared <= *first {

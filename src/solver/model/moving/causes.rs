@@ -1,13 +1,13 @@
 //! What moves the edge of stick, and where it is not followed.
 
 use super::breakaway::check_memory;
-use super::{Cause, MovingStick, follows_held_force};
+use super::{Cause, MovingStick, follows_held_force, height_of_last_core, slides_on_rig};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::laws::conditions::Conditions;
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
-use crate::solver::model::schedule::{CycleLoading, Schedule};
+use crate::solver::model::schedule::{AmplitudeControl, CycleLoading, Schedule};
 
 /// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
@@ -68,7 +68,8 @@ impl MovingStick {
             (false, TangentialControl::Displacement) => return Self::by_friction(schedule, contact),
             (false, _) if !follows => return Ok(None),
             (false, _) => {
-                Self { outwards: rises, turns: rises || in_blocks, in_blocks, ..Self::by(Cause::Tangential) }
+                let turns = rises || in_blocks && !only_grows(schedule, contact)?;
+                Self { outwards: rises, turns, in_blocks, ..Self::by(Cause::Tangential) }
             }
         };
         Ok(Some(moving))
@@ -129,6 +130,21 @@ impl MovingStick {
         }
         Ok(changes.then_some(Self { outwards: rises, ..by }))
     }
+}
+
+/// Whether no block slips less far than one before, up to that in which a rig moves the contact as a whole, if there is one.
+fn only_grows(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
+    let conditions = schedule.conditions();
+    let blocks = &conditions.blocks;
+    let grow = |until: usize| blocks[..until].is_sorted_by_key(|block| block.amplitude_factor);
+    let at_core = contact.indentation() - height_of_last_core(contact);
+    for (block, loading) in schedule.first_cycles().enumerate() {
+        let on_rig = matches!(loading.control, AmplitudeControl::Rig(_));
+        if on_rig && slides_on_rig(contact, &loading, at_core)? {
+            return Ok(grow(block + 1));
+        }
+    }
+    Ok(!conditions.repeat && grow(blocks.len()))
 }
 
 /// Whether blocks differ by their amplitudes alone.
