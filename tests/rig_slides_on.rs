@@ -23,6 +23,8 @@ struct Rig<'a> {
     tau: f64,
     wear: &'a str,
     friction: &'a str,
+    /// In TOML.
+    blocks: &'a str,
 }
 
 const PARABOLOID: &str = "paraboloid]\nradius = 0.5";
@@ -37,14 +39,18 @@ const PLAIN: Rig = Rig {
     tau: 5.0,
     wear: ARCHARD,
     friction: COULOMB,
+    blocks: "",
 };
 
 impl Rig<'_> {
     fn scene(&self, numerics: &str) -> Scene {
-        let Self { indenter, grading, amplitude, stiffness, tau, wear, friction } = self;
+        let Self { indenter, grading, amplitude, stiffness, tau, wear, friction, blocks } = self;
+        // An infinite one holds the amplitude.
+        let rig =
+            if stiffness.is_finite() { format!("rig_stiffness = {stiffness:e}") } else { String::new() };
         let text = format!(
             "[indenter.{indenter}\n[half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.8\n[friction.{friction}\n[wear.{wear}\n\
-             [loading]\nindentation = {DEPTH:e}\n{amplitude}\nfrequency = 1\ntau = {tau}\nrig_stiffness = {stiffness:e}\n[numerics]\n{numerics}\n\
+             [loading]\nindentation = {DEPTH:e}\n{amplitude}\nfrequency = 1\ntau = {tau}\n{rig}\n{blocks}\n[numerics]\n{numerics}\n\
              [output]\nsnapshots = 12\n"
         );
         Scene::from_toml(&text, "scene.toml").expect("a scene")
@@ -144,12 +150,131 @@ fn an_accuracy_asked_is_delivered_or_told() {
 
 #[test]
 fn runs_in_parts_repeat_every_bit_before_and_after_stick_is_lost() {
+    let blocks =
+        ["", &blocks_of(&[(0.5, 1.0), (0.5, 1.9)], true), &blocks_of(&[(0.5, 2.2), (0.5, 0.8)], true)];
     for numerics in ["springs = 60", "accuracy = 1e-2"] {
-        let folder = tempfile::tempdir().expect("a folder");
-        let scene = PLAIN.scene(numerics);
-        let (results, [expected, found], interruptions) = whole_and_in_parts(&scene, folder.path(), 25);
-        assert!(slides(&results));
-        assert!(interruptions >= 3, "{interruptions}");
-        assert!(found == expected, "{numerics}");
+        for blocks in blocks {
+            let folder = tempfile::tempdir().expect("a folder");
+            let scene = Rig { blocks, ..PLAIN }.scene(numerics);
+            let (results, [expected, found], interruptions) = whole_and_in_parts(&scene, folder.path(), 25);
+            assert!(blocks.contains("0.8") || slides(&results));
+            assert!(interruptions >= 3, "{interruptions}");
+            assert!(found == expected, "{numerics}, {blocks}");
+        }
+    }
+}
+
+/// Durations, in τ, and amplitude factors.
+fn blocks_of(blocks: &[(f64, f64)], repeat: bool) -> String {
+    let of = |(tau, factor): &(f64, f64)| format!("{{ tau = {tau}, amplitude_factor = {factor} }}");
+    format!("blocks = [{}]\nrepeat = {repeat}", blocks.iter().map(of).collect::<Vec<_>>().join(", "))
+}
+
+/// Blocks that grow until one breaks stick, at once or in the end: energy, and a run of twice the springs.
+#[test]
+fn blocks_that_grow_break_stick_and_slide_on() {
+    for (indenter, grading, stiffness) in [
+        (PARABOLOID, 0.0, 1e8),
+        (PARABOLOID, 0.5, 1e5),
+        (PARABOLOID, -0.3, 1e10),
+        ("cone]\nslope = 1e-3", 0.0, 1e8),
+    ] {
+        for last in [1.2, 1.5, 3.0] {
+            let blocks = &blocks_of(&[(1.0, 1.0), (9.0, last)], false);
+            let rig = Rig { indenter, grading, stiffness, tau: 10.0, blocks, ..PLAIN };
+            let fine = rig.run("springs = 240\ntolerance = 1e-5");
+            let by_energy = WEAR / FRICTION * fine.last().dissipated_energy;
+            let results = rig.run("accuracy = 1e-3");
+            let [off, of_energy] = [volume(&results), by_energy].map(|it| it / volume(&fine) - 1.0);
+            let estimate = results.error_estimate().expect("an estimate");
+            println!(
+                "{indenter:.10}, k = {grading}, {last}: {off:.1e}, estimate {estimate:.1e}, by energy {of_energy:.1e}"
+            );
+            assert!(slides(&results) && results.accuracy_met() == Some(true), "{estimate:e}");
+            assert!(off.abs() < 1e-3 && of_energy.abs() < 1e-3, "{off:e}, {of_energy:e}");
+        }
+    }
+}
+
+/// A rig of a hundred thousand times the contact's stiffness holds the amplitude, of which the mesh keeps a core of a thousandth of the radius.
+#[test]
+fn what_slides_and_sticks_again_on_a_stiff_rig_is_the_contact_without_one() {
+    for grading in [0.0, 0.5] {
+        for blocks in [&[(0.5, 1.0), (0.5, 2.2), (2.0, 1.0)][..], &[(0.5, 1.0), (0.5, 2.2), (2.0, 0.4)]] {
+            let blocks = &blocks_of(blocks, false);
+            let held = Rig { grading, blocks, tau: 3.0, stiffness: f64::INFINITY, ..PLAIN };
+            let expected = volume(&held.run("springs = 240\ntolerance = 1e-6"));
+            let results = Rig { stiffness: 1e13, ..held }.run("accuracy = 1e-3");
+            let (off, estimate) =
+                (volume(&results) / expected - 1.0, results.error_estimate().expect("an estimate"));
+            println!("k = {grading}, {blocks:.80}: {off:.1e}, estimate {estimate:.1e}");
+            assert!(!slides(&results) && off.abs() < 1.5e-3, "k = {grading}, {blocks}: {off:e}");
+        }
+    }
+}
+
+/// Blocks that begin in gross slip, with and without a rig: the balance of energy, finer runs, and a pause that changes nothing.
+#[test]
+fn smaller_blocks_stick_again_after_gross_slip() {
+    for (grading, stiffness) in
+        [(-0.5, f64::INFINITY), (-0.3, 1e10), (0.0, f64::INFINITY), (0.0, 1e8), (0.5, 1e5)]
+    {
+        for (smaller, tau) in [(1.0, 2.5), (0.4, 3.0)] {
+            let blocks = &blocks_of(&[(0.5, 2.2), (2.5, smaller)], false);
+            let rig = Rig { grading, stiffness, tau, blocks, ..PLAIN };
+            let fine = rig.run("springs = 60\ntolerance = 1e-6");
+            let results = rig.run("accuracy = 1e-3");
+            let by_energy = WEAR / FRICTION * results.last().dissipated_energy;
+            let [off, of_energy] = [volume(&fine), by_energy].map(|it| volume(&results) / it - 1.0);
+            let estimate = results.error_estimate().expect("an estimate");
+            println!(
+                "k = {grading}, {stiffness:e}, {smaller}: {off:.1e}, estimate {estimate:.1e}, by energy {of_energy:.1e}, stick {:.1e}",
+                results.last().stick_radius
+            );
+            assert!(off.abs() < estimate.max(1e-3) && of_energy.abs() < 1e-3, "{off:e}, {of_energy:e}");
+        }
+        let [volume_of, shorter] = [&[(0.5, 2.2), (0.5, 0.0)][..], &[(0.5, 2.2)]].map(|blocks| {
+            let blocks = &blocks_of(blocks, true);
+            let rig = Rig {
+                grading,
+                stiffness,
+                tau: 0.5 * (1 + blocks.matches("tau").count()) as f64,
+                blocks,
+                ..PLAIN
+            };
+            volume(&rig.run("springs = 30\ntolerance = 1e-6"))
+        });
+        assert!((volume_of / shorter - 1.0).abs() < 1e-5, "{volume_of:e}, {shorter:e}");
+    }
+}
+
+/// The equations have another solution, in which the contact edge recedes: at an indentation that is held wear makes no contact smaller.
+#[test]
+fn a_contact_in_gross_slip_does_not_become_smaller() {
+    for factor in [1.5, 2.0, 3.0] {
+        let blocks = &blocks_of(&[(1.0, factor), (1.0, factor)], false);
+        let rig = Rig { grading: 0.5, stiffness: 1e5, tau: 0.3, blocks, ..PLAIN };
+        let results = rig.run("springs = 60\ntolerance = 1e-5");
+        let radii: Vec<f64> = results.snapshots().iter().map(|it| it.contact_radius).collect();
+        let off = volume(&results) / (WEAR / FRICTION * results.last().dissipated_energy) - 1.0;
+        println!("{factor}: {off:.1e}");
+        assert!(radii.is_sorted() && off.abs() < 1e-5, "{off:e}, {radii:?}");
+    }
+}
+
+/// `p = c_N/π ∫_r^a g' (x²-r²)^(-μ) dx` of the first contact bears its force.
+#[test]
+fn the_first_pressure_of_gross_slip_bears_the_force() {
+    for grading in [-0.5, -0.3, 0.0, 0.5] {
+        let rig = Rig { grading, amplitude: "amplitude = 1e-6", stiffness: f64::INFINITY, ..PLAIN };
+        let results = rig.run("accuracy = 1e-2");
+        let (first, radii) = (&results.snapshots()[0], results.radius());
+        let rings = (1..radii.len()).map(|i| {
+            PI * (first.pressure[i] * radii[i] + first.pressure[i - 1] * radii[i - 1])
+                * (radii[i] - radii[i - 1])
+        });
+        let off = rings.sum::<f64>() / first.normal_force - 1.0;
+        println!("k = {grading}: {off:.1e}");
+        assert!(first.pressure.iter().all(|p| *p >= 0.0) && off.abs() < 1e-2, "k = {grading}: {off:e}");
     }
 }

@@ -132,6 +132,12 @@ impl WholeContact {
         &self.fractions
     }
 
+    /// `1 - ξ` at the inner nodes, to full relative accuracy.
+    pub fn distances(&self) -> impl Iterator<Item = f64> {
+        let (edge, inner) = (self.nodes[self.inner()], &self.nodes[..self.inner()]);
+        inner.iter().map(move |node| self.rise(edge, *node, node.h))
+    }
+
     /// `F q` at the nodes, of `q` inside, which is zero at the edge.
     pub fn profile(&self, inside: &[f64]) -> Vec<f64> {
         product(&self.profile, inside)
@@ -212,10 +218,8 @@ impl WholeContact {
         let above = (0..inside.len()).rev().find(|i| inside[*i] > level);
         let low = above.map_or(axis, |i| self.nodes[i]);
         let high = self.nodes[above.map_or(0, |i| i + 1)];
-        let between = |part: f64| Coordinate {
-            y: low.y + part * (high.y - low.y),
-            h: low.h + part * (high.h - low.h),
-        };
+        let between =
+            |part: f64| Coordinate { y: low.y + part * (high.y - low.y), h: low.h + part * (high.h - low.h) };
         let excess = |part: f64| self.value(&values, between(part)) - level;
         if excess(0.0) <= 0.0 {
             return None;

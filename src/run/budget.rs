@@ -7,7 +7,6 @@ use std::ops::RangeInclusive;
 
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
-use crate::laws::conditions::Conditions;
 use crate::numerics::grid::Clustering;
 use crate::solver::model::{Gross, MOST_IN_GROSS_SLIP, Model, MovingStick, Schedule};
 
@@ -204,13 +203,6 @@ pub(in crate::run) fn springs_to_stick_again(in_gross_slip: usize) -> usize {
 /// profile is steep.
 const TO_SLIDE_ON: [usize; 2] = [4, 16];
 
-/// The same where a block breaks it at once, or sticks again: the ground has a kink where the edge of stick was.
-const TO_SLIDE_IN_BLOCKS: [usize; 2] = [2, 30];
-
-fn to_slide_on(conditions: &Conditions) -> [usize; 2] {
-    if conditions.blocks.is_empty() { TO_SLIDE_ON } else { TO_SLIDE_IN_BLOCKS }
-}
-
 /// Part of the tolerance of partial slip that is then that of gross slip.
 pub(in crate::run) const OF_SLIDING_ON: f64 = OF_STEPS * OF_TIME / OF_TIME_LOSING_STICK;
 
@@ -220,7 +212,7 @@ pub(in crate::run) fn springs_taken_up(model: &Model) -> usize {
     if model.gross().is_some() {
         return springs_to_stick_again(springs);
     }
-    let [each, beyond] = to_slide_on(model.schedule().conditions());
+    let [each, beyond] = TO_SLIDE_ON;
     (beyond + springs.div_ceil(each)).min(MOST_IN_GROSS_SLIP)
 }
 
@@ -231,11 +223,8 @@ pub(in crate::run) fn springs_before(sticking_again: usize) -> usize {
 }
 
 /// Springs over the slip annulus that lead to so many of gross slip.
-pub(in crate::run) fn springs_before_sliding(
-    conditions: &Conditions,
-    taken_up: usize,
-) -> RangeInclusive<usize> {
-    let [each, beyond] = to_slide_on(conditions);
+pub(in crate::run) fn springs_before_sliding(taken_up: usize) -> RangeInclusive<usize> {
+    let [each, beyond] = TO_SLIDE_ON;
     let most = each * taken_up.saturating_sub(beyond);
     let last = if taken_up < MOST_IN_GROSS_SLIP { most } else { MOST_RAISED };
     most.saturating_sub(each - 1)..=last

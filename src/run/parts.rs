@@ -81,7 +81,7 @@ impl Parts {
         let only = budget::springs_before(springs);
         let mut before = match state.stick {
             Some(_) => only..=only,
-            None => budget::springs_before_sliding(scene.conditions(), springs),
+            None => budget::springs_before_sliding(springs),
         };
         let fits = |parts: &Self| parts.is_taken_up(state) && parts.model.radii() == radii;
         before.find_map(|springs| on(springs).ok().filter(fits)).map_or(first, Ok)

@@ -23,11 +23,13 @@ use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
+use crate::contact::transforms::Transforms;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::numerics::linear::dot;
 use crate::numerics::whole_contact::WholeContact;
 pub(super) use hand_over::slides_on;
+use hand_over::sticks_again;
 
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
 const SHOWN: [usize; 2] = [64, 128];
@@ -77,7 +79,7 @@ impl Gross {
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        let slides_on = slides_on(contact, schedule);
+        let slides_on = sticks_again(contact, schedule);
         if !(slides_on || contact.regime() == Regime::FullSliding && Self::carries(contact, schedule)) {
             return Ok(false);
         }
@@ -148,11 +150,10 @@ impl Gross {
     }
 }
 
-/// `q_0 = d - g_0` inside the first contact, m.
+/// `q_0 = g_0(a_0) - g_0` inside the first contact, m, to full relative accuracy at its edge as well.
 fn unworn_compression(contact: &InitialContact, mesh: &WholeContact) -> Vec<f64> {
-    let inner = &mesh.fractions()[..mesh.inner()];
-    let profile = contact.equivalent_profile();
-    inner.iter().map(|x| contact.indentation() - profile.value(contact.contact_radius() * x.sqrt())).collect()
+    let (profile, edge) = (contact.equivalent_profile(), contact.contact_radius());
+    mesh.distances().map(|distance| -profile.rise(edge, -edge * edge * distance)).collect()
 }
 
 impl Model {
@@ -342,6 +343,16 @@ impl Model {
         }
     }
 
+    /// Pressure, Pa, of the first contact at a radius, m, where the polynomials do not have it: below `k = 0`, by which they are chosen, `q ~ 1-ξ` at the contact edge is none of
+    /// them. It becomes one within the first wear.
+    fn unworn_pressure(&self, radius: f64) -> Option<f64> {
+        let (half_space, profile) = (self.contact.half_space(), self.contact.equivalent_profile());
+        let grading = Some(half_space.grading()).filter(|grading| *grading < 0.0)?;
+        let transforms = Transforms::new(grading, &[]).ok()?;
+        let pressure = transforms.pressure(|x| profile.derivative(x), radius, self.contact.contact_radius());
+        pressure.ok().map(|pressure| half_space.normal_stiffness() * pressure)
+    }
+
     pub(super) fn gross_radial_fields(&self, gross: &Gross, state: &State) -> RadialFields {
         let offsets = self.output.offsets();
         let [mut wear_depth, mut pressure, mut slip] = [(); 3].map(|()| vec![0.0; offsets.len()]);
@@ -354,7 +365,8 @@ impl Model {
                 let elastic = mesh.value(&whole.elastic, coordinate);
                 let unworn = self.contact.indenter().profile(squared.sqrt());
                 wear_depth[i] = (whole.indentation - elastic - unworn).max(0.0);
-                pressure[i] = mesh.value_inside(&whole.pressure, coordinate);
+                let unworn = if state.cycles == 0.0 { self.unworn_pressure(squared.sqrt()) } else { None };
+                pressure[i] = unworn.unwrap_or_else(|| mesh.value_inside(&whole.pressure, coordinate));
                 slip[i] = sliding.slip_at(mesh, &cycle, coordinate).max(0.0);
             }
         }

@@ -11,12 +11,12 @@ use std::f64::consts::PI;
 use faer::Mat;
 
 use super::{Gross, Whole};
-use crate::numerics::linear::dot;
 use crate::numerics::roots::bracketed;
 use crate::numerics::whole_contact::{Coordinate, WholeContact};
 use crate::solver::model::cycle::Surface;
 use crate::solver::model::motion::{Bearing, Energies, Motion};
-use crate::solver::model::schedule::CycleLoading;
+use crate::solver::model::moving::LAST_STICK;
+use crate::solver::model::schedule::{AmplitudeControl, CycleLoading};
 use crate::solver::model::{CycleFields, Model};
 
 /// What the springs do in a period, as it is seen on the surface.
@@ -50,8 +50,16 @@ struct ClosedForm {
 struct Stick {
     /// `c²/a²`.
     fraction: f64,
+    /// As how much they count: less than 1 where they are so few that a rig counts as moving all.
+    part: f64,
     /// `ξ`, weight of `∫ ξ^(ν-1) dξ`, and `b`; empty where the latter is that of the polynomials.
     within: Vec<[f64; 3]>,
+}
+
+/// `3 x² - 2 x³` from 0 to 1, constant beyond.
+fn smooth_step(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
 }
 
 impl ClosedForm {
@@ -59,7 +67,7 @@ impl ClosedForm {
     fn slip_depth(&self, carried: f64, fraction: f64) -> f64 {
         let Some(stick) = &self.stick else { return self.level - carried };
         if fraction <= stick.fraction {
-            return 0.0;
+            return (1.0 - stick.part) * (self.level - carried);
         }
         let parts = stick
             .within
@@ -148,45 +156,18 @@ impl Model {
         let resisting = |q: &f64| friction.kinetic_strength(q.abs()).copysign(*q) / coefficient;
         let mut borne: Vec<f64> =
             if plain { compression.to_vec() } else { compression.iter().map(resisting).collect() };
-        let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
-        let [by_force, _] = loading.control.factors();
-        let (per_depth, depth_of) = (coefficient / ratio, |amplitude: f64| ratio * amplitude / coefficient);
-        let (amplitude, stick) = match by_force > 0.0 {
-            true => {
-                let most = borne.iter().copied().fold(0.0, f64::max);
-                // Springs that stick bear `M U` each.
-                let capped = |level: f64| borne.iter().map(move |b| b.min(level));
-                let bearing = |level: f64| dot(&capped(level).collect::<Vec<_>>(), mesh.load_weights());
-                let excess =
-                    |amplitude: f64| amplitude + by_force * force * bearing(depth_of(amplitude)) - loading.amplitude;
-                let sliding = loading.amplitude - by_force * force * mesh.load(&borne);
-                if depth_of(sliding) >= most {
-                    (sliding, None)
-                } else {
-                    let amplitude = bracketed(excess, 0.0, loading.amplitude, 0.0).unwrap_or(f64::NAN);
-                    let level = depth_of(amplitude);
-                    let end = mesh.last_above(&borne, level);
-                    borne = capped(level).collect();
-                    let stick = end.map(|end| Stick { fraction: mesh.fraction(end), within: vec![] });
-                    (amplitude, stick)
-                }
-            }
+        let per_depth = coefficient / ratio;
+        let presses = gross.holds_force() && loading.control == AmplitudeControl::Displacement;
+        let (amplitude, stick) = match presses {
+            true => (loading.amplitude, self.pressed_to_stick(gross, loading, compression, &borne)),
             false => {
-                // Where indentation and amplitude are held compressions only fall.
-                let sticking = friction.compression_at(ratio * loading.amplitude);
-                let pressed = gross.holds_force().then(|| mesh.last_above(compression, sticking)).flatten();
-                let stick = pressed.and_then(|end| {
-                    let within = mesh.up_to(end, &borne).ok()?;
-                    Some(Stick { fraction: mesh.fraction(end), within })
-                });
-                (loading.amplitude, stick)
+                let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
+                self.sticking(gross, loading, force, &mut borne)
             }
         };
-        let level = depth_of(amplitude);
-        let carried = match plain && by_force == 0.0 {
-            true => whole.elastic.clone(),
-            false => mesh.profile(&borne),
-        };
+        let level = amplitude / per_depth;
+        let as_pressed = plain && (presses || stick.is_none());
+        let carried = if as_pressed { whole.elastic.clone() } else { mesh.profile(&borne) };
         // Of the springs but for those that stick.
         let sum = |value: &dyn Fn(f64, f64) -> f64| -> f64 {
             let all = borne.iter().zip(mesh.load_weights());
@@ -221,6 +202,64 @@ impl Model {
             stuck: closed.stick.as_ref().map_or(0.0, |stick| stick.fraction),
             closed: Some(closed),
         }
+    }
+
+    /// The springs that are pressed so hard under a held normal force, as the ground around them wears, that they stick again, if there are any.
+    fn pressed_to_stick(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        compression: &[f64],
+        borne: &[f64],
+    ) -> Option<Stick> {
+        let ratio = self.contact.half_space().stiffness_ratio();
+        let sticking = loading.friction.compression_at(ratio * loading.amplitude);
+        let end = gross.mesh.last_above(compression, sticking)?;
+        let within = gross.mesh.up_to(end, borne).ok()?;
+        Some(Stick { fraction: gross.mesh.fraction(end), part: 1.0, within })
+    }
+
+    /// The amplitude, m, and the springs that stick under a balance of forces, or in a block that moves them less far: each bears `M U`, and so the polynomials
+    /// through the nodes do.
+    ///
+    /// # Arguments
+    /// * `force` -- `μ c_N A^ν`, N, over the sum of the springs
+    /// * `borne` -- `b`, m; what springs bear on return
+    fn sticking(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        force: f64,
+        borne: &mut [f64],
+    ) -> (f64, Option<Stick>) {
+        let (mesh, [by_force, _]) = (&gross.mesh, loading.control.factors());
+        let per_depth =
+            loading.friction.reference_coefficient() / self.contact.half_space().stiffness_ratio();
+        let by_force = by_force * force;
+        let sliding = loading.amplitude - by_force * mesh.load(borne);
+        if borne.iter().all(|b| *b <= sliding / per_depth) {
+            return (sliding, None);
+        }
+        let stuck = |level: f64| {
+            let fraction = mesh.fraction(mesh.last_above(borne, level)?);
+            let part = smooth_step(fraction / LAST_STICK - 1.0);
+            Some(Stick { fraction, part, within: vec![] })
+        };
+        let bearing = |level: f64| -> Vec<f64> {
+            let part = stuck(level).map_or(0.0, |stick| stick.part);
+            borne.iter().map(|b| b - part * (b - level).max(0.0)).collect()
+        };
+        let excess = |amplitude: f64| {
+            amplitude + by_force * mesh.load(&bearing(amplitude / per_depth)) - loading.amplitude
+        };
+        let amplitude = match by_force > 0.0 && excess(sliding.max(0.0)) < 0.0 {
+            true => bracketed(excess, sliding.max(0.0), loading.amplitude, 0.0).unwrap_or(f64::NAN),
+            false => sliding,
+        };
+        let level = amplitude / per_depth;
+        let (stick, held) = (stuck(level), bearing(level));
+        borne.copy_from_slice(&held);
+        (amplitude, stick)
     }
 
     /// Along a path.

@@ -46,12 +46,17 @@ fn is_followed(schedule: &Schedule) -> bool {
 
 /// Whether a rig goes on to move a contact whose stick it has broken.
 pub(in crate::solver::model) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
+    let on_rig = matches!(schedule.conditions().tangential_control, TangentialControl::Rig { .. });
+    on_rig && sticks_again(contact, schedule)
+}
+
+/// Whether springs that stick again at an indentation that is held, in smaller blocks or under friction that rises, may do so on the mesh of gross slip.
+pub(super) fn sticks_again(contact: &InitialContact, schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
-    let on_rig = matches!(conditions.tangential_control, TangentialControl::Rig { .. });
     // Springs that remember their slip break away all at once.
     let remembers = conditions.friction.remembers_slip() || schedule.resolves();
     let fits = contact.half_space().grading() >= SOFT && Gross::carries(contact, schedule);
-    on_rig && !conditions.holds_normal_force && !remembers && fits
+    !conditions.holds_normal_force && !remembers && fits
 }
 
 impl Gross {
