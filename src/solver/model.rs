@@ -28,6 +28,7 @@ mod past;
 mod schedule;
 mod spreading;
 mod stage;
+mod whole;
 
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -20,22 +20,17 @@ use std::f64::consts::PI;
 
 use super::moving::{height_of_last_core, slides_on_rig};
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
+use super::whole::{carries, sticks_again};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::contact::transforms::Transforms;
 use crate::error::{Error, Result};
-use crate::laws::history::History;
 use crate::numerics::linear::dot;
 use crate::numerics::whole_contact::WholeContact;
-pub(super) use hand_over::slides_on;
-use hand_over::sticks_again;
 
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
 const SHOWN: [usize; 2] = [64, 128];
-
-/// Difference of a slope of friction from that of its strength at all of the indentation, relative, that is round-off.
-const EVEN: f64 = 1e-12;
 
 /// The mesh of a contact in gross slip.
 #[derive(Debug, Clone)]
@@ -79,17 +74,17 @@ impl Gross {
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        let slides_on = sticks_again(contact, schedule);
-        if !(slides_on || contact.regime() == Regime::FullSliding && Self::carries(contact, schedule)) {
+        let by_first = sticks_again(contact, schedule);
+        if !(by_first || contact.regime() == Regime::FullSliding && carries(contact, schedule)) {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
-        // A rig that moves all of the contact in the first cycle does so on this mesh, whatever sticks later.
-        let loadings: Vec<CycleLoading> = match slides_on {
+        // What moves all of the contact in the first cycle does so on this mesh, whatever sticks later.
+        let loadings: Vec<CycleLoading> = match by_first {
             true => vec![schedule.loading(0.0, 0.0)],
             false => schedule.extremes().collect(),
         };
-        let innermost = if slides_on { depth - height_of_last_core(contact) } else { depth };
+        let innermost = if by_first { depth - height_of_last_core(contact) } else { depth };
         for loading in loadings {
             let slides = match loading.control {
                 AmplitudeControl::Displacement => loading.slip_compression(ratio) >= depth,
@@ -111,22 +106,6 @@ impl Gross {
             });
         }
         Ok(true)
-    }
-
-    /// Whether polynomials over the whole contact carry what happens in it, once all of it slides.
-    pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
-        let conditions = schedule.conditions();
-        let along_energy = *schedule.friction_along_energy() != History::Constant;
-        let both = along_energy && conditions.friction_history != History::Constant;
-        // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
-        let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
-        let spreads = conditions.wear.spreading().is_some();
-        // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
-        let friction = &conditions.friction;
-        let depth = contact.indentation();
-        let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
-        let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
-        !(both || lifted || spreads || uneven)
     }
 
     pub(super) fn new(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Result<Self> {

@@ -35,7 +35,7 @@ use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::numerics::grid::Clustering;
 use crate::numerics::roots::bracketed;
-use crate::solver::model::gross::slides_on;
+use crate::solver::model::whole::slides_on;
 pub use both_forces::Bearing;
 pub use stage::{StickStage, StickTarget, StickTrial};
 

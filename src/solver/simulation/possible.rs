@@ -26,9 +26,11 @@ const SHRINKS: f64 = 1e-2;
 
 impl Simulation {
     /// Whether a contact in gross slip has not become smaller. The equations on a mesh have another solution, in which the edge recedes and pressure in front of it
-    /// grows, and implicit steps that are too long to resolve how it grows may come to it.
+    /// grows, and implicit steps that are too long to resolve how it grows may come to it. Below `k = 0`, where the first contact is none of the polynomials, the edge settles by some
+    /// 1e-6 in a first step of any length, and is not looked at.
     pub(super) fn spreads(&self, state: &State) -> bool {
-        state.slip_area >= self.state.slip_area * (1.0 - SHRINKS * self.tolerance)
+        let settles = self.model.contact().half_space().grading() < 0.0;
+        settles || state.slip_area >= self.state.slip_area * (1.0 - SHRINKS * self.tolerance)
     }
 
     /// Whether compressions fall to zero at the contact edge. Where the ground wears there as well, the equations have another root: the edge stays or recedes, and

@@ -19,6 +19,7 @@ use crate::error::Result;
 use crate::laws::loading::TangentialControl;
 use crate::solver::model::moving::{MovingStick, StickEdge};
 use crate::solver::model::schedule::Schedule;
+use crate::solver::model::whole::{SOFT, slides_on};
 use crate::solver::model::{Model, Past, State, StickZone};
 
 /// Stick radius, over that of the contact, from which on its edge is followed. Up to there the kink at the edge costs the polynomials over the whole contact
@@ -31,9 +32,6 @@ const BEGINS_BELOW: f64 = 0.09;
 /// Radius of the core of the mesh that follows it, over that of the first contact.
 const CORE: f64 = 0.03;
 
-/// Grading below which the mesh of gross slip holds the compressions less well than that of an edge of stick.
-const SOFT: f64 = -0.5;
-
 /// Whether the edge of springs that stick again is followed.
 fn is_followed(schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
@@ -42,21 +40,6 @@ fn is_followed(schedule: &Schedule) -> bool {
         && conditions.tangential_control == TangentialControl::Displacement;
     let local = conditions.wear.spreading().is_none() && !schedule.resolves();
     stays && local && conditions.friction.coefficient().is_some()
-}
-
-/// Whether a rig goes on to move a contact whose stick it has broken.
-pub(in crate::solver::model) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
-    let on_rig = matches!(schedule.conditions().tangential_control, TangentialControl::Rig { .. });
-    on_rig && sticks_again(contact, schedule)
-}
-
-/// Whether springs that stick again at an indentation that is held, in smaller blocks or under friction that rises, may do so on the mesh of gross slip.
-pub(super) fn sticks_again(contact: &InitialContact, schedule: &Schedule) -> bool {
-    let conditions = schedule.conditions();
-    // Springs that remember their slip break away all at once.
-    let remembers = conditions.friction.remembers_slip() || schedule.resolves();
-    let fits = contact.half_space().grading() >= SOFT && Gross::carries(contact, schedule);
-    !conditions.holds_normal_force && !remembers && fits
 }
 
 impl Gross {

@@ -1,0 +1,46 @@
+//! Which contacts polynomials over the whole of them carry.
+
+use super::schedule::Schedule;
+use crate::contact::InitialContact;
+use crate::laws::history::History;
+use crate::laws::loading::TangentialControl;
+
+/// Difference of a slope of friction from that of its strength at all of the indentation, relative, that is round-off.
+const EVEN: f64 = 1e-12;
+
+/// Grading below which the mesh of gross slip holds the compressions less well than that of an edge of stick.
+pub(super) const SOFT: f64 = -0.5;
+
+/// Whether polynomials over the whole contact carry what happens in it, once all of it slides.
+pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
+    let conditions = schedule.conditions();
+    let along_energy = *schedule.friction_along_energy() != History::Constant;
+    let both = along_energy && conditions.friction_history != History::Constant;
+    // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
+    let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
+    let spreads = conditions.wear.spreading().is_some();
+    // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
+    let friction = &conditions.friction;
+    let depth = contact.indentation();
+    let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
+    let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
+    !(both || lifted || spreads || uneven)
+}
+
+/// Whether a rig goes on to move a contact whose stick it has broken.
+pub(super) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
+    let on_rig = matches!(schedule.conditions().tangential_control, TangentialControl::Rig { .. });
+    on_rig && !schedule.resolves() && sticks_again(contact, schedule)
+}
+
+/// Whether springs that stick again in smaller blocks, at an indentation that is held, may do so on the mesh of gross slip.
+pub(super) fn sticks_again(contact: &InitialContact, schedule: &Schedule) -> bool {
+    let conditions = schedule.conditions();
+    // Springs that remember their slip break away all at once.
+    let remembers = conditions.friction.remembers_slip();
+    // The edge would creep over worn ground, of which the polynomials do not resolve the kink: 3 % of the volume at k = 0.
+    let [_, creeps] = schedule.friction_change().directions();
+    let turns = schedule.resolves() && !conditions.mode.is_tangential();
+    let fits = contact.half_space().grading() >= SOFT && carries(contact, schedule);
+    !conditions.holds_normal_force && !remembers && !creeps && !turns && fits
+}
