@@ -69,7 +69,8 @@ pub struct GrossRates {
 }
 
 impl Gross {
-    /// Whether a contact is in gross slip in every cycle: each is so on the unworn contact, at the largest indentation of the run, or at once on a rig.
+    /// Whether a contact begins on the mesh of gross slip: the first cycle slides, and [what sticks later](sticks_again) may do so there; or every cycle slides on the unworn
+    /// contact, at the largest indentation of the run.
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
@@ -322,14 +323,18 @@ impl Model {
         }
     }
 
-    /// Pressure, Pa, of the first contact at a radius, m, where the polynomials do not have it: below `k = 0`, by which they are chosen, `q ~ 1-ξ` at the contact edge is none of
+    /// Transforms for the pressure of a state where the polynomials do not have it: the first contact below `k = 0`, by which they are chosen, as `q ~ 1-ξ` at its edge is none of
     /// them. It becomes one within the first wear.
-    fn unworn_pressure(&self, radius: f64) -> Option<f64> {
-        let (half_space, profile) = (self.contact.half_space(), self.contact.equivalent_profile());
-        let grading = Some(half_space.grading()).filter(|grading| *grading < 0.0)?;
-        let transforms = Transforms::new(grading, &[]).ok()?;
-        let pressure = transforms.pressure(|x| profile.derivative(x), radius, self.contact.contact_radius());
-        pressure.ok().map(|pressure| half_space.normal_stiffness() * pressure)
+    fn beside_polynomials(&self, state: &State) -> Option<Transforms> {
+        let grading = self.contact.half_space().grading();
+        (state.cycles == 0.0 && grading < 0.0).then(|| Transforms::new(grading, &[]).ok()).flatten()
+    }
+
+    /// Pressure, Pa, of the first contact at a radius, m; none where the transform does not converge.
+    fn unworn_pressure(&self, transforms: &Transforms, radius: f64) -> Option<f64> {
+        let (profile, edge) = (self.contact.equivalent_profile(), self.contact.contact_radius());
+        let pressure = transforms.pressure(|x| profile.derivative(x), radius, edge).ok()?;
+        Some(self.contact.half_space().normal_stiffness() * pressure)
     }
 
     pub(super) fn gross_radial_fields(&self, gross: &Gross, state: &State) -> RadialFields {
@@ -339,13 +344,14 @@ impl Model {
             let mesh = &gross.mesh;
             let loading = self.loading_in(state, self.schedule.loading(state.cycles, state.cycles));
             let (_, cycle, sliding) = self.gross_wear(gross, &loading, &state.compression, &whole);
+            let transforms = self.beside_polynomials(state);
             for (i, squared) in offsets.iter().enumerate().take_while(|(_, squared)| **squared < whole.area) {
                 let coordinate = mesh.coordinate(squared / whole.area);
                 let elastic = mesh.value(&whole.elastic, coordinate);
                 let unworn = self.contact.indenter().profile(squared.sqrt());
                 wear_depth[i] = (whole.indentation - elastic - unworn).max(0.0);
-                let unworn = if state.cycles == 0.0 { self.unworn_pressure(squared.sqrt()) } else { None };
-                pressure[i] = unworn.unwrap_or_else(|| mesh.value_inside(&whole.pressure, coordinate));
+                let first = transforms.as_ref().and_then(|it| self.unworn_pressure(it, squared.sqrt()));
+                pressure[i] = first.unwrap_or_else(|| mesh.value_inside(&whole.pressure, coordinate));
                 slip[i] = sliding.slip_at(mesh, &cycle, coordinate).max(0.0);
             }
         }

@@ -323,22 +323,29 @@ pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) 
 /// # Errors
 /// As [`EquivalentProfile::radius_at`].
 pub(super) fn slides_at_once(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
-    let depth = contact.indentation();
-    let ratio = contact.half_space().stiffness_ratio();
-    let at_core = depth - height_of_last_core(contact);
+    let first = first_to_slide(schedule, contact)?;
     // What slides later on a rig is handed over then.
-    let blocks = if slides_on(contact, schedule) { 1 } else { usize::MAX };
-    for loading in schedule.first_cycles().take(blocks) {
+    Ok(first.is_some_and(|block| block == 0 || !slides_on(contact, schedule)))
+}
+
+/// The first block whose balance of tangential forces leaves no more stick on the unworn contact than that core.
+///
+/// # Errors
+/// As [`EquivalentProfile::radius_at`].
+fn first_to_slide(schedule: &Schedule, contact: &InitialContact) -> Result<Option<usize>> {
+    let ratio = contact.half_space().stiffness_ratio();
+    let at_core = contact.indentation() - height_of_last_core(contact);
+    for (block, loading) in schedule.first_cycles().enumerate() {
         let slides = match loading.control {
             AmplitudeControl::Displacement => false,
             AmplitudeControl::Force(_) => loading.slip_compression(ratio) >= at_core,
             AmplitudeControl::Rig(_) => slides_on_rig(contact, &loading, at_core)?,
         };
         if slides {
-            return Ok(true);
+            return Ok(Some(block));
         }
     }
-    Ok(false)
+    Ok(None)
 }
 
 /// Area of stick, over that of the contact, below which it is taken for lost under a balance of tangential forces.

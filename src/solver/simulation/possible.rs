@@ -28,7 +28,7 @@ impl Simulation {
     /// Whether a contact in gross slip has not become smaller. The equations on a mesh have another solution, in which the edge recedes and pressure in front of it
     /// grows, and implicit steps that are too long to resolve how it grows may come to it. Below `k = 0`, where the first contact is none of the polynomials, the edge settles by some
     /// 1e-6 in a first step of any length, and is not looked at.
-    pub(super) fn spreads(&self, state: &State) -> bool {
+    pub(super) fn has_not_shrunk(&self, state: &State) -> bool {
         let settles = self.model.contact().half_space().grading() < 0.0;
         settles || state.slip_area >= self.state.slip_area * (1.0 - SHRINKS * self.tolerance)
     }

@@ -157,13 +157,11 @@ impl Model {
         let mut borne: Vec<f64> =
             if plain { compression.to_vec() } else { compression.iter().map(resisting).collect() };
         let per_depth = coefficient / ratio;
+        let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
         let presses = gross.holds_force() && loading.control == AmplitudeControl::Displacement;
         let (amplitude, stick) = match presses {
             true => (loading.amplitude, self.pressed_to_stick(gross, loading, compression, &borne)),
-            false => {
-                let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
-                self.sticking(gross, loading, force, &mut borne)
-            }
+            false => self.sticking(gross, loading, force, &mut borne),
         };
         let level = amplitude / per_depth;
         let as_pressed = plain && (presses || stick.is_none());
@@ -175,7 +173,7 @@ impl Model {
             all.map(|(b, weight)| value(*weight, *b)).sum::<f64>()
                 - stuck.map(|[_, weight, b]| value(*weight, *b)).sum::<f64>()
         };
-        let scale = 4.0 * coefficient * per_depth * half_space.normal_stiffness() * whole.area.powf(nu);
+        let scale = 4.0 * per_depth * force;
         let dissipation = scale * sum(&|weight, b| weight * b * (level - b));
         let jump_loss = match friction.static_factor() - 1.0 {
             0.0 => 0.0,
@@ -245,19 +243,21 @@ impl Model {
             let part = smooth_step(fraction / LAST_STICK - 1.0);
             Some(Stick { fraction, part, within: vec![] })
         };
-        let bearing = |level: f64| -> Vec<f64> {
-            let part = stuck(level).map_or(0.0, |stick| stick.part);
+        let held = |level: f64, stick: Option<&Stick>| -> Vec<f64> {
+            let part = stick.map_or(0.0, |stick| stick.part);
             borne.iter().map(|b| b - part * (b - level).max(0.0)).collect()
         };
         let excess = |amplitude: f64| {
-            amplitude + by_force * mesh.load(&bearing(amplitude / per_depth)) - loading.amplitude
+            let level = amplitude / per_depth;
+            amplitude + by_force * mesh.load(&held(level, stuck(level).as_ref())) - loading.amplitude
         };
         let amplitude = match by_force > 0.0 && excess(sliding.max(0.0)) < 0.0 {
             true => bracketed(excess, sliding.max(0.0), loading.amplitude, 0.0).unwrap_or(f64::NAN),
             false => sliding,
         };
         let level = amplitude / per_depth;
-        let (stick, held) = (stuck(level), bearing(level));
+        let stick = stuck(level);
+        let held = held(level, stick.as_ref());
         borne.copy_from_slice(&held);
         (amplitude, stick)
     }

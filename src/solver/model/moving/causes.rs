@@ -1,13 +1,13 @@
 //! What moves the edge of stick, and where it is not followed.
 
 use super::breakaway::check_memory;
-use super::{Cause, MovingStick, follows_held_force, height_of_last_core, slides_on_rig};
+use super::{Cause, MovingStick, first_to_slide, follows_held_force};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::laws::conditions::Conditions;
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
-use crate::solver::model::schedule::{AmplitudeControl, CycleLoading, Schedule};
+use crate::solver::model::schedule::{CycleLoading, Schedule};
 
 /// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
@@ -137,14 +137,10 @@ fn only_grows(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
     let blocks = &conditions.blocks;
     let grow = |until: usize| blocks[..until].is_sorted_by_key(|block| block.amplitude_factor);
-    let at_core = contact.indentation() - height_of_last_core(contact);
-    for (block, loading) in schedule.first_cycles().enumerate() {
-        let on_rig = matches!(loading.control, AmplitudeControl::Rig(_));
-        if on_rig && slides_on_rig(contact, &loading, at_core)? {
-            return Ok(grow(block + 1));
-        }
-    }
-    Ok(!conditions.repeat && grow(blocks.len()))
+    Ok(match first_to_slide(schedule, contact)? {
+        Some(block) => grow(block + 1),
+        None => !conditions.repeat && grow(blocks.len()),
+    })
 }
 
 /// Whether blocks differ by their amplitudes alone.
