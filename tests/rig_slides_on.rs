@@ -266,6 +266,41 @@ fn a_contact_in_gross_slip_does_not_become_smaller() {
     }
 }
 
+/// Where nothing presses any more the edge moves by round-off, either way, and that tells nothing of an error.
+#[test]
+fn a_contact_that_has_worn_out_in_gross_slip_keeps_its_accuracy() {
+    for (grading, tau) in [(0.0, 1e3), (0.0, 7.5e3), (0.5, 1e4), (0.9, 1e5)] {
+        for accuracy in [1e-2, 1e-3, 1e-4] {
+            let rig = Rig { grading, amplitude: "amplitude_ratio = 100", stiffness: 1e7, tau, ..PLAIN };
+            let results = rig.run(&format!("accuracy = {accuracy:e}"));
+            let off = volume(&results) / (WEAR / FRICTION * results.last().dissipated_energy) - 1.0;
+            let estimate = results.error_estimate().expect("an estimate");
+            println!("k = {grading}, τ = {tau:e}, {accuracy:e}: {off:.1e}, estimate {estimate:.1e}");
+            assert!(estimate < accuracy && off.abs() < accuracy, "{off:e}, {estimate:e}");
+        }
+    }
+}
+
+/// Amplitudes that move all of the contact under friction that depends on the load, and would not with its coefficient at the compression of reference.
+#[test]
+fn friction_that_depends_on_the_load_keeps_its_accuracy_next_to_gross_slip() {
+    let friction = &format!(
+        "load-dependent]\ncoefficient = 0.3\nexponent = -0.07\nreference_compression = {:e}",
+        0.1 * DEPTH
+    );
+    for ratio in [0.86, 0.9, 0.95, 0.99] {
+        let amplitude = &format!("amplitude = {:e}", ratio * FRICTION * DEPTH / 0.8);
+        let contact =
+            Rig { grading: 0.76, amplitude, stiffness: f64::INFINITY, tau: 0.004, friction, ..PLAIN };
+        let fine = contact.run("springs = 120\ntolerance = 1e-6");
+        let results = contact.run("accuracy = 1e-4");
+        let off = volume(&results) / volume(&fine) - 1.0;
+        let estimate = results.error_estimate().expect("an estimate");
+        println!("{ratio}: {off:.1e}, estimate {estimate:.1e}");
+        assert!(slides(&results) && estimate < 1e-4 && off.abs() < 1e-4, "{ratio}: {off:e}, {estimate:e}");
+    }
+}
+
 /// `p = c_N/π ∫_r^a g' (x²-r²)^(-μ) dx` of the first contact bears its force.
 #[test]
 fn the_first_pressure_of_gross_slip_bears_the_force() {

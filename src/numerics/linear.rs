@@ -42,6 +42,11 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+/// Largest magnitude, zero of none.
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+}
+
 /// LU factors with partial pivoting of a square matrix.
 #[derive(Debug, Clone)]
 pub struct Factors<T = f64> {

@@ -493,7 +493,7 @@ impl Simulation {
         let Reached { mut state, mut fields, mut cycle, mut rate } = reached;
         let mut depth = self.model.depth_on_springs(&state, &fields);
         let is_possible = match self.model.gross() {
-            Some(_) => self.has_not_shrunk(&state),
+            Some(gross) => self.has_not_shrunk(gross, &state),
             None => self.is_possible(&state, &fields, &depth),
         };
         if !is_possible {

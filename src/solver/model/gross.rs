@@ -26,7 +26,7 @@ use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::contact::transforms::Transforms;
 use crate::error::{Error, Result};
-use crate::numerics::linear::dot;
+use crate::numerics::linear::{dot, largest};
 use crate::numerics::whole_contact::WholeContact;
 
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
@@ -75,8 +75,11 @@ impl Gross {
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        let by_first = sticks_again(contact, schedule);
-        if !(by_first || contact.regime() == Regime::FullSliding && carries(contact, schedule)) {
+        let slides = contact.regime() == Regime::FullSliding;
+        // Under other laws than Coulomb's the core may be left out: that the mesh of gross slip has a few springs stick costs more, 1e-4 of the volume.
+        let by_first = sticks_again(contact, schedule)
+            && (slides || schedule.conditions().friction.coefficient().is_some());
+        if !(by_first || slides && carries(contact, schedule)) {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
@@ -321,6 +324,12 @@ impl Model {
                 springs.map(|(weight, factor)| fields.slip_area * weight * factor).collect()
             }
         }
+    }
+
+    /// What errors of the compressions in gross slip, m, are relative to: under a held force, under which wear goes on without end, the largest; else the indentation, which is
+    /// as deep as anything wears.
+    pub(crate) fn error_scale(&self, gross: &Gross, compression: &[f64]) -> f64 {
+        if gross.holds_force() { largest(compression) } else { self.contact.indentation() }
     }
 
     /// Transforms for the pressure of a state where the polynomials do not have it: the first contact below `k = 0`, by which they are chosen, as `q ~ 1-ξ` at its edge is none of

@@ -2,7 +2,8 @@
 
 use super::Simulation;
 use crate::numerics::grid::Clustering;
-use crate::solver::model::{Fields, State};
+use crate::numerics::linear::largest;
+use crate::solver::model::{Fields, Gross, State};
 
 /// Largest loss of wear depth in a step, relative to the limit's largest depth, that is taken for an error of interpolation between moving
 /// springs: this, or `(3/n)^4` if that is larger, on a smooth mesh. It rejects explicit steps before they are unstable.
@@ -21,16 +22,19 @@ const BEYOND_CONTACT: f64 = 0.3;
 const CORNER: f64 = 2.0;
 const SUDDEN: f64 = 1.5;
 
-/// Relative loss of contact area in a step of gross slip, over the tolerance, that is taken for an error.
+/// Relative loss of contact area in a step of gross slip, over the tolerance of the compressions relative to the largest of them, that is taken for an error.
 const SHRINKS: f64 = 1e-2;
 
 impl Simulation {
     /// Whether a contact in gross slip has not become smaller. The equations on a mesh have another solution, in which the edge recedes and pressure in front of it
     /// grows, and implicit steps that are too long to resolve how it grows may come to it. Below `k = 0`, where the first contact is none of the polynomials, the edge settles by some
     /// 1e-6 in a first step of any length, and is not looked at.
-    pub(super) fn has_not_shrunk(&self, state: &State) -> bool {
+    pub(super) fn has_not_shrunk(&self, gross: &Gross, state: &State) -> bool {
         let settles = self.model.contact().half_space().grading() < 0.0;
-        settles || state.slip_area >= self.state.slip_area * (1.0 - SHRINKS * self.tolerance)
+        // Where little presses any more, errors of the compressions move the edge the farther.
+        let error = self.tolerance * self.model.error_scale(gross, &state.compression);
+        let loss = 1.0 - state.slip_area / self.state.slip_area;
+        settles || loss * largest(&state.compression) <= SHRINKS * error
     }
 
     /// Whether compressions fall to zero at the contact edge. Where the ground wears there as well, the equations have another root: the edge stays or recedes, and

@@ -8,7 +8,7 @@ use super::bdf::{REMEMBERED, TimesBefore, choose, state_of};
 use super::tableau::ALEXANDER;
 use super::{Stepper, Trial};
 use crate::error::{Error, Result};
-use crate::numerics::linear::Factors;
+use crate::numerics::linear::{Factors, largest};
 use crate::solver::model::{CycleLoading, Gross, GrossRates, Linearised, Model, Past, PastPoint, State};
 
 /// Change of a compression, over the largest, by which Newton's matrix is found.
@@ -228,7 +228,7 @@ impl GrossBdf {
             true => Past { order: 1, points: vec![PastPoint::new(state, &[])], linearised: None },
             false => state.past.clone(),
         };
-        let (now, scale) = (state.cycles + cycles, whole(model, gross, &state.compression));
+        let (now, scale) = (state.cycles + cycles, model.error_scale(gross, &state.compression));
         let loading = model.schedule().loading(state.cycles, now);
         let times = TimesBefore::new(model, now, &past);
         let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
@@ -373,7 +373,7 @@ fn step(
         let loading = model.after_energy(model.schedule().loading(state.cycles, at), energy);
         model.gross_rates(gross, &loading, compression)
     };
-    let scale = whole(model, gross, start);
+    let scale = model.error_scale(gross, start);
     let first = rates(state.cycles, state.dissipated_energy, start, evaluations)?;
     let step = cycles * ALEXANDER.diagonal;
     let slopes = slopes(start, &first, evaluations, |compression| {
@@ -431,14 +431,4 @@ fn step(
         ..state.clone()
     };
     Some(Trial { state: Some(end), fields: None, error, rate_evaluations: *evaluations, next_step: None })
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
-}
-
-/// What errors of the compressions, m, are relative to: under a held force, under which wear goes on without end, the largest; else the indentation, which is as
-/// deep as anything wears.
-fn whole(model: &Model, gross: &Gross, compression: &[f64]) -> f64 {
-    if gross.holds_force() { largest(compression) } else { model.contact().indentation() }
 }

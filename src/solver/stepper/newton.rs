@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::mixing::Mixing;
-use crate::numerics::linear::Factors;
+use crate::numerics::linear::{Factors, largest};
 use crate::solver::model::{Linearised, StageFactors, Target, Unknowns};
 
 /// Newton iterations before the matrix is renewed, and renewals before the step is given up; the same where the matrix takes no evaluations.
@@ -306,10 +306,6 @@ fn correct_by_part(
         part.iter_mut().for_each(|it| *it *= SHORTENED);
     }
     found.then_some(false)
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// A correction improved by those before.
