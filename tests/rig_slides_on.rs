@@ -99,6 +99,42 @@ fn the_end_is_the_flat_that_bears_nothing() {
     }
 }
 
+/// Wear by a power of the pressure below one takes off all that presses in a finite time, after which nothing wears: the worn flat, `f(a∞) = d`, stays.
+#[test]
+fn wear_by_a_power_below_one_comes_to_its_end_in_a_finite_time() {
+    for grading in [0.0, 0.4, 0.76_f64] {
+        for exponent in [0.4, 0.7, 0.9] {
+            let coefficient = 1e-14 * 1.2e8_f64.powf(1.0 - exponent);
+            let wear = &format!(
+                "power-law]\ncoefficient = {coefficient:e}\npressure_exponent = {exponent}\nslip_exponent = 1"
+            );
+            let contact = Rig {
+                grading,
+                amplitude: "amplitude_ratio = 5",
+                stiffness: f64::INFINITY,
+                tau: 4e3,
+                wear,
+                ..PLAIN
+            };
+            for accuracy in [1e-2, 1e-3] {
+                let results = contact.run(&format!("accuracy = {accuracy}"));
+                let flat = PI * 0.5 * DEPTH * DEPTH;
+                let off = volume(&results) / flat - 1.0;
+                let estimate = results.error_estimate().expect("an estimate");
+                println!(
+                    "k = {grading}, p^{exponent}, {accuracy}: {off:.1e}, estimate {estimate:.1e}, {} steps, {:?}",
+                    results.steps(),
+                    results.warnings()
+                );
+                assert!(
+                    off.abs() < accuracy && estimate < accuracy && results.warnings().is_empty(),
+                    "{off:e}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn volumes_pass_the_transition_of_the_first_cycle_without_a_jump() {
     // What slides at first: U + μ_f F_N/k_r with M U = μ_f d, and F_N = 2 c_N d a0 2/3 of a paraboloid.

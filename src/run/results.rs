@@ -12,6 +12,9 @@ use crate::data::{
 /// Largest part of the normal force that tension within the contact may take without a word. Where wear is local it takes 2e-3 at most, next to one node.
 const TENSION: f64 = 1e-2;
 
+/// Part of the largest normal force of a run below which a contact is worn out, so that its pressure is round-off.
+const LEAST_FORCE: f64 = 1e-3;
+
 /// What a run came to: snapshots from its start to its end, the limiting shape, the estimated error. SI units throughout.
 ///
 /// Series have one value for each snapshot, curves one row of them: their shapes are `(time,)` and `(time, node)`. The first snapshot is the
@@ -253,23 +256,26 @@ impl Results {
         [self.inaccuracy(), self.pulls()].into_iter().flatten().collect()
     }
 
-    /// Part of the normal force that tension within the contact takes.
+    /// Part of the normal force, or of [`LEAST_FORCE`] of the largest of the run, N, that tension within the contact takes.
     ///
     /// ```text
     /// ∫ max(-p, 0) 2π r dr / F
     /// ```
-    fn tension(&self, snapshot: &Snapshot) -> f64 {
+    fn tension(&self, snapshot: &Snapshot, largest: f64) -> f64 {
         let radii = self.radius();
         let pulled = |i: usize| (-snapshot.pressure[i]).max(0.0) * radii[i];
         let rings = (1..radii.len()).map(|i| PI * (pulled(i - 1) + pulled(i)) * (radii[i] - radii[i - 1]));
-        rings.sum::<f64>() / snapshot.normal_force
+        rings.sum::<f64>() / snapshot.normal_force.max(LEAST_FORCE * largest)
     }
 
     /// A word where springs pull: debris has worn the ground away from under the pressure.
     fn pulls(&self) -> Option<String> {
-        let seen = self.snapshots.iter().chain([&self.last]);
-        let pulling: Vec<(f64, f64)> =
-            seen.map(|it| (it.tau, self.tension(it))).filter(|(_, part)| *part > TENSION).collect();
+        let seen = || self.snapshots.iter().chain([&self.last]);
+        let largest = seen().map(|it| it.normal_force).fold(0.0, f64::max);
+        let pulling: Vec<(f64, f64)> = seen()
+            .map(|it| (it.tau, self.tension(it, largest)))
+            .filter(|(_, part)| *part > TENSION)
+            .collect();
         let (first, _) = *pulling.first()?;
         let (at, most) = *pulling.iter().max_by(|one, other| one.1.total_cmp(&other.1))?;
         Some(format!(

@@ -3,6 +3,7 @@
 use super::{End, Simulation, largest};
 use crate::error::Result;
 use crate::laws::loading::has_come;
+use crate::numerics::linear;
 use crate::solver::model::{Past, State};
 
 /// Safety factor and bounds of the choice of steps.
@@ -15,6 +16,9 @@ pub(super) const SMALLEST_GROWTH: f64 = 1e-13;
 
 /// Growth of slip up to the next break, over the tolerance, below which nothing wears.
 const SPENT: f64 = 1e-6;
+
+/// Largest compression, over what a step may be off by, of a contact that has worn out.
+const WORN_OUT: f64 = 10.0;
 
 /// Steps shorter than this part of the planned one, because they end at an output or a break, do not decide the next.
 const CUT_SHORT: f64 = 1e-3;
@@ -108,8 +112,17 @@ impl Simulation {
     fn rests_until(&self, target: f64) -> bool {
         let now = self.state.cycles;
         let is_spent = || largest(&self.cycle.growth) * (target - now) <= SPENT * self.tolerance;
-        let leads_nowhere = || self.rejected.last.is_some() && is_spent();
-        self.is_still() || leads_nowhere() && self.model.schedule().keeps_friction_until(now, target)
+        let stays =
+            || self.is_worn_out() || is_spent() && self.model.schedule().keeps_friction_until(now, target);
+        self.is_still() || self.rejected.last.is_some() && stays()
+    }
+
+    /// Whether gross slip at a held indentation has worn off all that presses, to the tolerance. Where wear goes by a power of the pressure below one that is so after a finite
+    /// time, when the slope of the rate is infinite.
+    fn is_worn_out(&self) -> bool {
+        let Some(gross) = self.model.gross().filter(|it| !it.holds_force()) else { return false };
+        let compression = &self.state.compression;
+        linear::largest(compression) <= WORN_OUT * self.tolerance * self.model.error_scale(gross, compression)
     }
 
     /// Whether nothing moves from now on to the next break: the block under way asks for no amplitude.
@@ -120,7 +133,7 @@ impl Simulation {
 
     /// The state at a later time up to which nothing wears; what slips without wear goes on to dissipate.
     pub(super) fn resting_until(&self, cycles: f64) -> State {
-        let passed = if self.is_still() { 0.0 } else { cycles - self.state.cycles };
+        let passed = if self.is_still() || self.is_worn_out() { 0.0 } else { cycles - self.state.cycles };
         State {
             cycles,
             dissipated_energy: self.state.dissipated_energy + passed * self.cycle.dissipation,
