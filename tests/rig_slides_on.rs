@@ -116,13 +116,15 @@ fn wear_by_a_power_below_one_comes_to_its_end_in_a_finite_time() {
                 wear,
                 ..PLAIN
             };
-            for accuracy in [1e-2, 1e-3] {
-                let results = contact.run(&format!("accuracy = {accuracy}"));
+            for (accuracy, end) in [(1e-2, "tau = 4000"), (1e-3, "tau = 4000"), (1e-2, "until_rate = 1e-9")] {
+                let text = contact.scene(&format!("accuracy = {accuracy}")).text().replace("tau = 4000", end);
+                let scene = Scene::from_toml(&text, "scene.toml").expect("a scene");
+                let results = scene.simulate().expect("an end");
                 let flat = PI * 0.5 * DEPTH * DEPTH;
                 let off = volume(&results) / flat - 1.0;
                 let estimate = results.error_estimate().expect("an estimate");
                 println!(
-                    "k = {grading}, p^{exponent}, {accuracy}: {off:.1e}, estimate {estimate:.1e}, {} steps, {:?}",
+                    "k = {grading}, p^{exponent}, {accuracy}, {end}: {off:.1e}, estimate {estimate:.1e}, {} steps, {:?}",
                     results.steps(),
                     results.warnings()
                 );

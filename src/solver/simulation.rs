@@ -399,7 +399,8 @@ impl Simulation {
                     && self.wear_rate() <= fraction * self.progress.first_rate
                     && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
                 let limit = WORN_OUT * self.model.contact().slip_compression();
-                let worn_out = self.state.compression.iter().all(|q| q.abs() <= limit);
+                let worn_out =
+                    self.state.compression.iter().all(|q| q.abs() <= limit) || self.wears_no_more();
                 spent.then_some(Outcome::Rate).or(worn_out.then_some(Outcome::WornOut))
             }
         }
@@ -444,6 +445,9 @@ impl Simulation {
             self.settles |= self.rejected.are_alike_with(error, step) && self.begins_block();
             if self.reject(observers)? == Flow::Stop {
                 return Ok(None);
+            }
+            if self.outcome().is_some() {
+                return Ok(Some(false));
             }
         }
     }

@@ -31,6 +31,9 @@ const ALIKE: f64 = 0.02;
 const SHORTER: f64 = 0.7;
 const ENOUGH: usize = 4;
 
+/// Steps of a contact that has worn out, each shorter than the one before, after which none leads on.
+const NO_STEP: usize = 3;
+
 /// Largest such error, over the tolerance: with blocks that recur that is the accuracy asked for.
 const MOST_OF_JUMP: f64 = 30.0;
 
@@ -43,6 +46,7 @@ const BEFORE: f64 = 1e-9;
 pub(super) struct Rejected {
     /// Error over the tolerance, and length, of the last.
     last: Option<[f64; 2]>,
+    count: usize,
     alike: usize,
 }
 
@@ -52,6 +56,7 @@ impl Rejected {
         let alike = self
             .last
             .is_some_and(|[before, longer]| (error / before - 1.0).abs() < ALIKE && step < SHORTER * longer);
+        self.count += 1;
         self.alike = if alike { self.alike + 1 } else { 0 };
         self.last = Some([error, step]);
         self.alike >= ENOUGH && error < MOST_OF_JUMP
@@ -114,7 +119,12 @@ impl Simulation {
         let is_spent = || largest(&self.cycle.growth) * (target - now) <= SPENT * self.tolerance;
         let stays =
             || self.is_worn_out() || is_spent() && self.model.schedule().keeps_friction_until(now, target);
-        self.is_still() || self.rejected.last.is_some() && stays()
+        self.is_still() || self.rejected.count > 0 && stays()
+    }
+
+    /// Whether no step leads on from a contact that has worn out.
+    pub(super) fn wears_no_more(&self) -> bool {
+        self.rejected.count >= NO_STEP && self.is_worn_out()
     }
 
     /// Whether gross slip at a held indentation has worn off all that presses, to the tolerance. Where wear goes by a power of the pressure below one that is so after a finite
