@@ -32,6 +32,9 @@ use crate::numerics::whole_contact::WholeContact;
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
 const SHOWN: [usize; 2] = [64, 128];
 
+/// Grading below which a core that is left out costs more than what a few springs that stick do on the mesh of gross slip under other laws than Coulomb's: 1e-4 of the volume.
+const CORE_COUNTS: f64 = 0.4;
+
 /// The mesh of a contact in gross slip.
 #[derive(Debug, Clone)]
 pub struct Gross {
@@ -76,9 +79,9 @@ impl Gross {
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
         let slides = contact.regime() == Regime::FullSliding;
-        // Under other laws than Coulomb's the core may be left out: that the mesh of gross slip has a few springs stick costs more, 1e-4 of the volume.
-        let by_first = sticks_again(contact, schedule)
-            && (slides || schedule.conditions().friction.coefficient().is_some());
+        let constant = schedule.conditions().friction.coefficient().is_some();
+        let core_counts = contact.half_space().grading() < CORE_COUNTS;
+        let by_first = sticks_again(contact, schedule) && (slides || constant || core_counts);
         if !(by_first || slides && carries(contact, schedule)) {
             return Ok(false);
         }
