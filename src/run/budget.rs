@@ -302,7 +302,7 @@ pub(in crate::run) fn refined(springs: usize, error: Option<f64>, accuracy: f64)
     (refined <= MOST_REFINED).then_some(refined)
 }
 
-/// As [`refined`] where the order of convergence was observed: only if the springs that this order asks for are within what a run may take.
+/// As [`refined`] where the order of convergence was observed: as many as this order asks for, or twice as many where that is more than a run may take, if twice as many are not.
 ///
 /// # Arguments
 /// * `lifts` -- whether the normal load changes along the period, which then takes long
@@ -330,5 +330,7 @@ pub(in crate::run) fn refined_by_order(
     // On few springs the order may not show yet; more tell whether it is there.
     let refined = wanted(shares.order);
     let refined = if shares.order < SEEN || refined > most { wanted(FULL_ORDER) } else { refined };
+    // An estimate as large may be one of meshes too coarse to tell.
+    let refined = if refined > most { RAISES[1] * springs as f64 } else { refined };
     (refined <= most).then_some(refined as usize)
 }

@@ -10,7 +10,7 @@ use crate::laws::friction::FrictionLaw;
 
 /// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed, where one limit holds it and where slip begins at a static one; of a column of
 /// slip at a spring, by what is done with it there, by the response of a table and by steps, and by each other spring that it is carried to; and of a column of loads there.
-const BY_SUBSTEP: [f64; 2] = [15.0, 50.0];
+const BY_SUBSTEP: [f64; 2] = [15.0, 60.0];
 const BY_COLUMN: [f64; 2] = [30.0, 45.0];
 const BY_PAIR: f64 = 0.05;
 const BY_LOAD: f64 = 15.0;
