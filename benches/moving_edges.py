@@ -1,11 +1,15 @@
 """Edges of stick that move, judged on scenes of which no test was made: what runs at an accuracy deliver, and the order with which the volume converges.
 
     python3 benches/moving_edges.py target/release/fretwear [ACCURACY] ["SCENE;..."]
+    python3 benches/moving_edges.py target/release/fretwear ACCURACY references
 
 A row: scene, springs, by how much volume and edge of stick miss those on 480 springs by hand (at a thirtieth of the tolerance), estimate,
 exit code, and the order of the volume over 60, 120, 240 and 480 springs at that tolerance. Volumes are over the limit's or, where there is none, the run's
 own; the edge is over the contact radius. Where 480 springs come to no end, 240 are the last. It ends with exit code 1 if a run that ended with exit code 0
 misses by more than its accuracy, or an order is below two.
+
+`references` judges runs by data/reference/moving_edges.csv instead, which another code made: the volume relative to the last of its case, and the edge over the first contact radius.
+Where an edge jumps at the moment of a row, that row has the one before.
 """
 
 import csv
@@ -51,7 +55,52 @@ def title(indenter, grading, stick_ratio, tau, control, factor):
     return f"{control}{'' if factor == 1 else f' × {factor:g}'}, {indenter}, k = {grading:g}, c/a0 = {stick_ratio:g}, τ = {tau:g}"
 
 
+# Cases of data/reference/moving_edges.csv: what is held, and blocks as ends, τ, and amplitude factors.
+CASES = {
+    "A": ("normal force held", {}),
+    "C": ("tangential force held", {"more": 'tangential_control = "force"'}),
+    "D-2": ("rig of twice the contact's stiffness", {"more": "rig_stiffness = {rig}"}),
+    "J1": ("amplitude halved at τ = 1", {"more": blocks((1, 1, 1), (1e3, 0.5, 1))}),
+    "E": ("amplitude halved for 1 < τ < 3", {"more": blocks((1, 1, 1), (2, 0.5, 1), (1e3, 1, 1))}),
+}
+
+
+def references():
+    """Prints the rows of another code's table beside what runs deliver; how many miss by more than the accuracy without a word."""
+    depth, wrong = 1e-6, 0
+    table = pathlib.Path(__file__).parent.parent / "data/reference/moving_edges.csv"
+    with open(table, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    print("| case | k | τ | volume misses | of the table | edge misses | estimate | exit |\n|---|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for row in rows:
+            grading, tau, volume = float(row["k"]), float(row["tau"]), float(row["V/(a0^2 d0)"])
+            title, keys = CASES[row["case"]]
+            radius = math.sqrt(depth * (1 + grading))
+            punch = 2 * radius ** (1 + grading) / (1 + grading)
+            keys = {key: text.replace("{rig}", str(2 * 2e11 * 2 / 3 * punch)) for key, text in keys.items()}
+            if row["case"] == "A":
+                keys["load"] = f"normal_force = {2e11 * punch * depth * 2 / (3 + grading)}"
+            found, code, _ = run(folder, scene(f"accuracy = {ACCURACY}", grading=grading, tau=tau, **keys), 300)
+            last = max(float(it["V/(a0^2 d0)"]) for it in rows if it["case"] == row["case"] and it["k"] == row["k"])
+            misses = abs(found["wear_volume"] / (radius**2 * depth) - volume) / last
+            uncertain = float(row["V_err"]) / last
+            jumps = (row["case"], tau) in [("J1", 1), ("E", 1), ("E", 3)]
+            edge = 0 if jumps else abs(found["stick_radius"] / radius - float(row["c/a0 now"]))
+            bad = code == 0 and not (misses <= ACCURACY + uncertain and edge <= 10 * ACCURACY)
+            wrong += bad
+            print(
+                f"| {title} | {grading:g} | {tau:g} | {misses:.1e} | {uncertain:.1e} | {'jumps' if jumps else f'{edge:.1e}'} "
+                f"| {found['error_estimate']:.1e} | {code}{' WRONG' if bad else ''} |",
+                flush=True,
+            )
+    return wrong
+
+
 def main():
+    if KINDS == ["references"]:
+        sys.exit(1 if references() else 0)
     wrong = 0
     print("| scene | springs | volume misses | edge misses | estimate | exit | order | seconds |\n|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
