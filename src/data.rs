@@ -76,6 +76,7 @@ use serde::Serialize;
 use crate::contact::indenter::TabulatedProfile;
 use crate::contact::stick_slip::{FrettingRegime, Regime};
 use crate::laws::motion::RecordedPath;
+use crate::numerics::linear::largest;
 use crate::solver::model::State;
 use crate::solver::simulation::Progress;
 
@@ -148,11 +149,6 @@ pub(crate) const SAME_CYCLES: f64 = 1e-9;
 /// Whether a number of cycles of one run is that of another.
 pub(crate) fn same_cycles(one: f64, other: f64) -> bool {
     (one - other).abs() <= SAME_CYCLES * other
-}
-
-/// Largest of some depths, at least zero.
-pub(crate) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest: f64, &value| largest.max(value))
 }
 
 /// The contact after some number of cycles.

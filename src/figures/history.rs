@@ -3,8 +3,9 @@
 use super::measure::{Measure, points};
 use super::run::RunResults;
 use crate::contact::closed_form::LimitingShape;
-use crate::data::{Snapshot, largest};
+use crate::data::Snapshot;
 use crate::figures::drawing::{Colour, DISTINCT, Dash, Panel, Row, Series, Spacing, Style};
+use crate::numerics::linear::largest;
 use crate::report::Scale;
 
 const LIMIT: Style = Style::Line { width: 1.2, dash: Dash::Dashed };

@@ -5,9 +5,10 @@ use std::path::Path;
 use super::Kind;
 use super::measure::Measure;
 use crate::contact::closed_form::LimitingShape;
-use crate::data::{RunFile, Snapshot, largest};
+use crate::data::{RunFile, Snapshot};
 use crate::error::Result;
 use crate::figures::drawing::{Axis, Bar, Colour, Spacing, graded};
+use crate::numerics::linear::largest;
 use crate::report::Scale;
 use crate::scene::Scene;
 

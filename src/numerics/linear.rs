@@ -42,8 +42,13 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Largest magnitude, zero of none.
+/// Largest of some values, at least zero.
 pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| most.max(*value))
+}
+
+/// Largest magnitude, zero of none.
+pub fn largest_magnitude(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 

@@ -7,9 +7,10 @@ use serde::Serialize;
 use super::text::{self, Scale, TextTable, shown};
 use crate::contact::indenter::Shape;
 use crate::data::quantity::{Entries, Reading, Value, number, word};
-use crate::data::{Checkpoint, DatasetSummary, LimitDistance, ResultPath, RunFile, Snapshot, largest};
+use crate::data::{Checkpoint, DatasetSummary, LimitDistance, ResultPath, RunFile, Snapshot};
 use crate::error::Result;
 use crate::laws::motion::Mode;
+use crate::numerics::linear::largest;
 
 /// The content of a result file in SI; the fields are the keys of the JSON.
 #[derive(Debug, Clone, Serialize)]

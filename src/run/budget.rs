@@ -302,7 +302,7 @@ pub(in crate::run) fn refined(springs: usize, error: Option<f64>, accuracy: f64)
     (refined <= MOST_REFINED).then_some(refined)
 }
 
-/// As [`refined`] where the order of convergence was observed: as many as this order asks for, or twice as many where that is more than a run may take, if twice as many are not.
+/// As [`refined`] where the order of convergence was observed: the first that a run may take of the springs that this order asks for, those that the full one does, and twice as many.
 ///
 /// # Arguments
 /// * `lifts` -- whether the normal load changes along the period, which then takes long
@@ -327,10 +327,8 @@ pub(in crate::run) fn refined_by_order(
         (springs as f64 * factor).ceil()
     };
     let most = most as f64;
-    // On few springs the order may not show yet; more tell whether it is there.
-    let refined = wanted(shares.order);
-    let refined = if shares.order < SEEN || refined > most { wanted(FULL_ORDER) } else { refined };
-    // An estimate as large may be one of meshes too coarse to tell.
-    let refined = if refined > most { RAISES[1] * springs as f64 } else { refined };
-    (refined <= most).then_some(refined as usize)
+    // On few springs the order may not show yet, nor may the estimate be one: more tell.
+    let by_order = (shares.order >= SEEN).then(|| wanted(shares.order));
+    let by_others = [wanted(FULL_ORDER), RAISES[1] * springs as f64];
+    by_order.into_iter().chain(by_others).find(|springs| *springs <= most).map(|springs| springs as usize)
 }

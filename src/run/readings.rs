@@ -4,8 +4,9 @@ use super::Results;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::data::quantity::{Reading, named, number, word};
-use crate::data::{LimitDistance, Value, largest};
+use crate::data::{LimitDistance, Value};
 use crate::error::{Error, Result};
+use crate::numerics::linear::largest;
 use crate::scene::Scene;
 
 /// The results of a run, in the order of the keys of the JSON.

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
+use crate::numerics::linear::largest;
 use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper, Trial};
 
@@ -548,11 +549,6 @@ fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
     let cells = (1..last).map(|i| 0.5 * (wear(i - 1) + wear(i)) * (nodes[i + 1] - nodes[i]));
     let trapezoids = PI * fields.slip_area * (first + cells.sum::<f64>());
     cycle.volume.max(CERTAIN_WEAR * trapezoids)
-}
-
-/// Largest of some rates of growth, at least zero.
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m: f64, value| m.max(*value))
 }
 
 /// The cycle that follows a state, in the block that is under way at `start`.

@@ -20,20 +20,17 @@ use std::f64::consts::PI;
 
 use super::moving::{height_of_last_core, slides_on_rig};
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::whole::{carries, sticks_again};
+use super::whole::{begins, carries};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::contact::transforms::Transforms;
 use crate::error::{Error, Result};
-use crate::numerics::linear::{dot, largest};
+use crate::numerics::linear::{dot, largest_magnitude};
 use crate::numerics::whole_contact::WholeContact;
 
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
 const SHOWN: [usize; 2] = [64, 128];
-
-/// Grading below which a core that is left out costs more than what a few springs that stick do on the mesh of gross slip under other laws than Coulomb's: 1e-4 of the volume.
-const CORE_COUNTS: f64 = 0.4;
 
 /// The mesh of a contact in gross slip.
 #[derive(Debug, Clone)]
@@ -72,17 +69,14 @@ pub struct GrossRates {
 }
 
 impl Gross {
-    /// Whether a contact begins on the mesh of gross slip: the first cycle slides, and [what sticks later](sticks_again) may do so there; or every cycle slides on the unworn
+    /// Whether a contact begins on the mesh of gross slip: the first cycle slides, and [what sticks later](begins) may do so there; or every cycle slides on the unworn
     /// contact, at the largest indentation of the run.
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        let slides = contact.regime() == Regime::FullSliding;
-        let constant = schedule.conditions().friction.coefficient().is_some();
-        let core_counts = contact.half_space().grading() < CORE_COUNTS;
-        let by_first = sticks_again(contact, schedule) && (slides || constant || core_counts);
-        if !(by_first || slides && carries(contact, schedule)) {
+        let by_first = begins(contact, schedule);
+        if !(by_first || contact.regime() == Regime::FullSliding && carries(contact, schedule)) {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
@@ -331,8 +325,8 @@ impl Model {
 
     /// What errors of the compressions in gross slip, m, are relative to: under a held force, under which wear goes on without end, the largest; else the indentation, which is
     /// as deep as anything wears.
-    pub(crate) fn error_scale(&self, gross: &Gross, compression: &[f64]) -> f64 {
-        if gross.holds_force() { largest(compression) } else { self.contact.indentation() }
+    pub(crate) fn gross_error_scale(&self, gross: &Gross, compression: &[f64]) -> f64 {
+        if gross.holds_force() { largest_magnitude(compression) } else { self.contact.indentation() }
     }
 
     /// Transforms for the pressure of a state where the polynomials do not have it: the first contact below `k = 0`, by which they are chosen, as `q ~ 1-ξ` at its edge is none of

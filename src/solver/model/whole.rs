@@ -2,6 +2,7 @@
 
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
+use crate::contact::stick_slip::Regime;
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 
@@ -10,6 +11,9 @@ const EVEN: f64 = 1e-12;
 
 /// Grading below which the mesh of gross slip holds the compressions less well than that of an edge of stick.
 pub(super) const SOFT: f64 = -0.5;
+
+/// Grading below which a core that is left out costs more than what a few springs that stick do on the mesh of gross slip under other laws than Coulomb's: 1e-4 of the volume.
+const CORE_COUNTS: f64 = 0.4;
 
 /// Whether polynomials over the whole contact carry what happens in it, once all of it slides.
 pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
@@ -43,4 +47,11 @@ pub(super) fn sticks_again(contact: &InitialContact, schedule: &Schedule) -> boo
     let turns = schedule.resolves() && !conditions.mode.is_tangential();
     let fits = contact.half_space().grading() >= SOFT && carries(contact, schedule);
     !conditions.holds_normal_force && !remembers && !creeps && !turns && fits
+}
+
+/// Whether a contact whose first cycle slides is on that mesh from then on, whatever sticks later.
+pub(super) fn begins(contact: &InitialContact, schedule: &Schedule) -> bool {
+    let constant = schedule.conditions().friction.coefficient().is_some();
+    let core_counts = contact.half_space().grading() < CORE_COUNTS;
+    sticks_again(contact, schedule) && (contact.regime() == Regime::FullSliding || constant || core_counts)
 }

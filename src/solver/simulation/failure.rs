@@ -1,9 +1,10 @@
 //! Why a run cannot begin, or go on: the physical moment, and what can be done.
 
+use super::Simulation;
 use super::step::{SMALLEST_FACTOR, SMALLEST_GROWTH};
-use super::{Simulation, largest};
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
+use crate::numerics::linear::largest;
 use crate::numerics::roots::SEARCH;
 use crate::solver::model::{FEWEST_SPRINGS, Model};
 

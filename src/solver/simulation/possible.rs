@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::numerics::grid::Clustering;
-use crate::numerics::linear::largest;
+use crate::numerics::linear::largest_magnitude;
 use crate::solver::model::{Fields, Gross, State};
 
 /// Largest loss of wear depth in a step, relative to the limit's largest depth, that is taken for an error of interpolation between moving
@@ -32,9 +32,9 @@ impl Simulation {
     pub(super) fn has_not_shrunk(&self, gross: &Gross, state: &State) -> bool {
         let settles = self.model.contact().half_space().grading() < 0.0;
         // Where little presses any more, errors of the compressions move the edge the farther.
-        let error = self.tolerance * self.model.error_scale(gross, &state.compression);
+        let error = self.tolerance * self.model.gross_error_scale(gross, &state.compression);
         let loss = 1.0 - state.slip_area / self.state.slip_area;
-        settles || loss * largest(&state.compression) <= SHRINKS * error
+        settles || loss * largest_magnitude(&state.compression) <= SHRINKS * error
     }
 
     /// Whether compressions fall to zero at the contact edge. Where the ground wears there as well, the equations have another root: the edge stays or recedes, and

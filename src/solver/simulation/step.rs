@@ -1,9 +1,9 @@
 //! Which step to try, and where it lands; where nothing wears it is a rest.
 
-use super::{End, Simulation, largest};
+use super::{End, Simulation};
 use crate::error::Result;
 use crate::laws::loading::has_come;
-use crate::numerics::linear;
+use crate::numerics::linear::{largest, largest_magnitude};
 use crate::solver::model::{Past, State};
 
 /// Safety factor and bounds of the choice of steps.
@@ -17,8 +17,8 @@ pub(super) const SMALLEST_GROWTH: f64 = 1e-13;
 /// Growth of slip up to the next break, over the tolerance, below which nothing wears.
 const SPENT: f64 = 1e-6;
 
-/// Largest compression, over what a step may be off by, of a contact that has worn out.
-const WORN_OUT: f64 = 10.0;
+/// Largest compression, over what a step may be off by, of a contact in gross slip that has worn out.
+const NOTHING_PRESSES: f64 = 10.0;
 
 /// Steps shorter than this part of the planned one, because they end at an output or a break, do not decide the next.
 const CUT_SHORT: f64 = 1e-3;
@@ -132,7 +132,8 @@ impl Simulation {
     fn is_worn_out(&self) -> bool {
         let Some(gross) = self.model.gross().filter(|it| !it.holds_force()) else { return false };
         let compression = &self.state.compression;
-        linear::largest(compression) <= WORN_OUT * self.tolerance * self.model.error_scale(gross, compression)
+        let error = self.tolerance * self.model.gross_error_scale(gross, compression);
+        largest_magnitude(compression) <= NOTHING_PRESSES * error
     }
 
     /// Whether nothing moves from now on to the next break: the block under way asks for no amplitude.

@@ -8,7 +8,7 @@ use super::bdf::{REMEMBERED, TimesBefore, choose, state_of};
 use super::tableau::ALEXANDER;
 use super::{Stepper, Trial};
 use crate::error::{Error, Result};
-use crate::numerics::linear::{Factors, largest};
+use crate::numerics::linear::{Factors, largest_magnitude};
 use crate::solver::model::{CycleLoading, Gross, GrossRates, Linearised, Model, Past, PastPoint, State};
 
 /// Change of a compression, over the largest, by which Newton's matrix is found.
@@ -106,7 +106,7 @@ fn slopes(
     rates: impl Fn(&[f64]) -> Option<GrossRates>,
 ) -> Option<Mat<f64>> {
     let n = compression.len();
-    let difference = DIFFERENCE * largest(compression);
+    let difference = DIFFERENCE * largest_magnitude(compression);
     *evaluations += n as u64;
     let mut moved = compression.to_vec();
     let mut matrix = Mat::zeros(n, n);
@@ -159,7 +159,7 @@ impl Stage<'_> {
                 .map(|i| compression[i] - self.gathered[i] - self.step * there.compression[i])
                 .collect();
             factors.solve(&mut change);
-            let size = largest(&change);
+            let size = largest_magnitude(&change);
             compression.iter_mut().zip(&change).for_each(|(q, change)| *q -= change);
             if before.is_finite() {
                 contraction = contraction.max(size / before);
@@ -228,7 +228,7 @@ impl GrossBdf {
             true => Past { order: 1, points: vec![PastPoint::new(state, &[])], linearised: None },
             false => state.past.clone(),
         };
-        let (now, scale) = (state.cycles + cycles, model.error_scale(gross, &state.compression));
+        let (now, scale) = (state.cycles + cycles, model.gross_error_scale(gross, &state.compression));
         let loading = model.schedule().loading(state.cycles, now);
         let times = TimesBefore::new(model, now, &past);
         let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
@@ -284,7 +284,7 @@ impl GrossBdf {
             let Some(weights) = times.error_weights(order) else { return f64::INFINITY };
             let off = PastPoint::sum(&weights, &past.points);
             let relative = |off: f64, scale: f64| if scale > 0.0 { off.abs() / scale } else { 0.0 };
-            (largest(&off.compression) / scale)
+            (largest_magnitude(&off.compression) / scale)
                 .max(relative(off.dissipated_energy, of_energy))
                 .max(relative(off.volume_by_rate, of_volume))
         };
@@ -293,7 +293,7 @@ impl GrossBdf {
             true => {
                 let apart: Vec<f64> =
                     end.compression.iter().zip(&guess).map(|(q, guess)| q - guess).collect();
-                0.5 * largest(&apart) / scale
+                0.5 * largest_magnitude(&apart) / scale
             }
             false => error_at(past.order),
         };
@@ -373,7 +373,7 @@ fn step(
         let loading = model.after_energy(model.schedule().loading(state.cycles, at), energy);
         model.gross_rates(gross, &loading, compression)
     };
-    let scale = model.error_scale(gross, start);
+    let scale = model.gross_error_scale(gross, start);
     let first = rates(state.cycles, state.dissipated_energy, start, evaluations)?;
     let step = cycles * ALEXANDER.diagonal;
     let slopes = slopes(start, &first, evaluations, |compression| {

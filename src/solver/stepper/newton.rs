@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::mixing::Mixing;
-use crate::numerics::linear::{Factors, largest};
+use crate::numerics::linear::{Factors, largest_magnitude};
 use crate::solver::model::{Linearised, StageFactors, Target, Unknowns};
 
 /// Newton iterations before the matrix is renewed, and renewals before the step is given up; the same where the matrix takes no evaluations.
@@ -75,17 +75,17 @@ pub(super) struct Correction {
 impl Correction {
     fn new(change: &[f64], at: &Unknowns, scale: f64) -> Self {
         let (of_springs, others) = change.split_at(at.compression.len());
-        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, q| m.max(q.abs())) / scale;
+        let relative = |values: &[f64]| largest_magnitude(values) / scale;
         let stick = match others {
-            [_, area, depths @ ..] => (area.abs() / at.stick_area).max(largest(depths)),
+            [_, area, depths @ ..] => (area.abs() / at.stick_area).max(relative(depths)),
             _ => 0.0,
         };
         Self {
-            springs: largest(of_springs).max(others[0].abs() / at.slip_area),
+            springs: relative(of_springs).max(others[0].abs() / at.slip_area),
             stick,
             remaining: f64::INFINITY,
             measured: false,
-            compression: largest(&at.compression),
+            compression: relative(&at.compression),
         }
     }
 
@@ -166,7 +166,7 @@ impl Newton {
             let Some(factors) = &self.factors else { return false };
             let change = factors.correction(equations);
             let Some(is_whole) = correct_by_part(equations, at, &change, evaluations) else { return false };
-            let left = largest(&equations.residual());
+            let left = largest_magnitude(&equations.residual());
             if is_whole && left <= LEFT && equations.is_last(&Correction::new(&change, at, equations.scale()))
             {
                 return true;
@@ -292,7 +292,7 @@ fn correct_by_part(
     change: &[f64],
     evaluations: &mut u64,
 ) -> Option<bool> {
-    let (start, before) = (at.clone(), largest(&equations.residual()));
+    let (start, before) = (at.clone(), largest_magnitude(&equations.residual()));
     let mut part = change.to_vec();
     let mut found = false;
     for times in 0..=MOST_SHORTENED {
@@ -300,7 +300,7 @@ fn correct_by_part(
         at.correct(&part);
         *evaluations += 1;
         found = equations.evaluate(at);
-        if found && largest(&equations.residual()) <= (GROWN * before).max(NEGLIGIBLE) {
+        if found && largest_magnitude(&equations.residual()) <= (GROWN * before).max(NEGLIGIBLE) {
             return Some(times == 0);
         }
         part.iter_mut().for_each(|it| *it *= SHORTENED);

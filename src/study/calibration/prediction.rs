@@ -13,9 +13,9 @@ use std::collections::HashMap;
 
 use super::journal::Runs;
 use super::trajectory::{Trajectory, along_loop, linear};
-use crate::data::largest;
 use crate::error::{Domain, Error, Result};
 use crate::laws::history::History;
+use crate::numerics::linear::largest;
 use crate::scene::{Calibration, Measured, Scene, Stepper};
 
 /// Snapshots in a factor of ten of time, between which cubics in `ln t` are right to 1e-5.

@@ -1,6 +1,7 @@
 //! What a run came to at times, as far as one kind of data needs it.
 
-use crate::data::{Snapshot, StopReason, largest};
+use crate::data::{Snapshot, StopReason};
+use crate::numerics::linear::largest;
 use crate::run::Results;
 use crate::scene::Measured;
 

@@ -2,9 +2,10 @@
 
 use super::profile::Shape;
 use crate::contact::closed_form::{GibsonTransient, LimitingShape};
-use crate::data::{RunFile, SAME_CYCLES, Snapshot, largest, same_cycles};
+use crate::data::{RunFile, SAME_CYCLES, Snapshot, same_cycles};
 use crate::error::Result;
 use crate::numerics::curve::distance_from_curve;
+use crate::numerics::linear::largest;
 use crate::scene::Scene;
 
 /// An error is a number of its own from so many times the uncertainty of the reference on; below it is bounded.

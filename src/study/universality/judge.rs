@@ -1,9 +1,10 @@
 //! How far the end of a run is from the limit that its own course predicts.
 
 use crate::contact::closed_form::LimitingShape;
-use crate::data::{RunFile, Snapshot, StopReason, largest};
+use crate::data::{RunFile, Snapshot, StopReason};
 use crate::error::{Error, Result};
 use crate::laws::history::History;
+use crate::numerics::linear::largest;
 use crate::scene::{Scene, Tolerances};
 
 use super::CURVE_POINTS;
