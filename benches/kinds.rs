@@ -28,11 +28,16 @@ use shown::{Dense, Shown, errors};
 const ACCURACIES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
 /// Springs of a reference over those of the run at the last accuracy, the most of them, where periods are resolved and in gross slip as well, and what it may take.
+/// Where that is more than the most, it is this many times the run's.
 const FINER: usize = 4;
+const TWICE_AS_FINE: usize = 2;
 const MOST_SPRINGS: usize = 480;
 const MOST_RESOLVED: usize = 240;
 const MOST_IN_GROSS_SLIP: usize = 120;
 const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Springs of a reference over those of the run at the last accuracy, even where that is more than the most.
+const LEAST_FINER: usize = 2;
 
 /// What is kept of a reference, and by which code; another number asks for all of them anew.
 const FORMAT: u32 = 2;
@@ -283,7 +288,8 @@ fn reference(kind: &Kind, springs: usize) -> Option<Shown> {
     let stepper = if kind.numerics.is_empty() { "" } else { "by default" };
     // A reference of an explicit stepper is an implicit one.
     let kind = Kind { numerics: "", ..*kind };
-    let finest = (FINER * springs).min(most);
+    // One that the program raised further needs a finer judge yet.
+    let finest = (FINER * springs).min(most.max(LEAST_FINER * springs));
     for springs in [finest, finest * 3 / 4, finest / 2] {
         let mut numerics = format!("springs = {springs}\ntolerance = 3e-6\n");
         if resolved {

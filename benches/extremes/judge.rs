@@ -24,7 +24,7 @@ pub struct Row {
     pub name: String,
     /// `done`, `told`, `refused`, `named`, `failed`, `late` or `wrong`.
     pub end: String,
-    /// Of the processor.
+    /// Of the processor, for a run; none while it is not known.
     pub seconds: f64,
     pub why: String,
 }
@@ -34,12 +34,12 @@ impl Row {
         let why = why.into().lines().next().unwrap_or_default().replace('|', "/");
         // The folder of a scene is another each time.
         let why = why.split_once("scene.toml:").map_or(why.as_str(), |(_, words)| words).to_owned();
-        Self { name: name.into(), end: end.into(), seconds: seconds(), why }
+        Self { name: name.into(), end: end.into(), seconds: 0.0, why }
     }
 
     /// That of a scene which does not stop when it is asked to.
     pub fn lost(name: &str) -> Self {
-        Self::new(name, "late", "does not stop when it is asked to")
+        Self { seconds: HANGS, ..Self::new(name, "late", "does not stop when it is asked to") }
     }
 
     pub fn written(&self) -> String {
@@ -79,16 +79,27 @@ fn stop() -> Stop {
     stop
 }
 
+/// Processor time at which the run under way began, s.
+static BEGUN: Mutex<f64> = Mutex::new(0.0);
+
+fn begins() {
+    *BEGUN.lock().unwrap_or_else(PoisonError::into_inner) = seconds();
+}
+
+fn used() -> f64 {
+    seconds() - *BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Judges a scene, asks it to stop when it has used its time, and ends the process where it does not.
 pub fn watched(patience: f64, lost: impl Fn() + Sync, judged: impl FnOnce() -> Row) -> Row {
-    let begun = seconds();
+    begins();
     let late = AtomicBool::new(false);
     let (done, waits) = mpsc::channel::<()>();
     let judged = std::thread::scope(|scope| {
         scope.spawn(|| {
             let waits = waits;
             while waits.recv_timeout(Duration::from_millis(50)) == Err(mpsc::RecvTimeoutError::Timeout) {
-                let used = seconds() - begun;
+                let used = used();
                 if used > patience {
                     late.store(true, Ordering::Relaxed);
                     if let Some(stop) = &*STOP.lock().unwrap_or_else(PoisonError::into_inner) {
@@ -113,7 +124,7 @@ pub fn watched(patience: f64, lost: impl Fn() + Sync, judged: impl FnOnce() -> R
     if late.load(Ordering::Relaxed) && row.end != "wrong" {
         row = Row { end: "late".into(), ..row };
     }
-    let seconds = seconds() - begun;
+    let seconds = if row.seconds > 0.0 { row.seconds } else { used() };
     Row { seconds, ..row }
 }
 
@@ -202,7 +213,7 @@ impl Observer for StopAfter {
     }
 }
 
-/// Runs a scene with a file, and once more in two parts, which have to come to the same.
+/// Runs a scene with a file, and once more in two parts, which have to come to the same; each has its time.
 pub fn judge_in_parts(name: &str, text: &str) -> Row {
     let stop = stop();
     let folder = tempfile::tempdir().expect("a folder");
@@ -218,7 +229,8 @@ pub fn judge_in_parts(name: &str, text: &str) -> Row {
         Ok(results) => results,
         Err(error) => return refused_or_failed(name, &error, false),
     };
-    let row = ended(name, &whole, scene.numerics().accuracy);
+    let row = Row { seconds: used(), ..ended(name, &whole, scene.numerics().accuracy) };
+    begins();
     let wrong = |why: &str| Row::new(name, "wrong", format!("resumed: {why}"));
     if whole.steps() < 2 || row.end == "wrong" || !whole.is_complete() {
         return row;
