@@ -58,6 +58,7 @@ fn the_same_physics_in_other_words_is_the_same_run() {
         let other = scene(friction, wear, more, "");
         let told = other.warnings().iter().filter(|it| it.contains("left out")).count();
         assert_eq!(told, usize::from(!exactly), "{name}: {:?}", other.warnings());
+        assert!(other.conditions().is_plain(), "{name}");
         let found = other.simulate().unwrap();
         let [volume, expected] = [&found, &plain].map(|it| it.last().wear_volume);
         assert!((volume / expected - 1.0).abs() < 1e-12, "{name}: {volume:e}, {expected:e}");

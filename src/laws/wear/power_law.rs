@@ -74,6 +74,11 @@ impl WearLaw for PowerLaw {
         self.coefficient * factor
     }
 
+    fn departure(&self, _: f64, _: f64) -> f64 {
+        let is_archard = self.pressure_exponent == 1.0 && self.slip_exponent == 1.0;
+        if is_archard { 0.0 } else { f64::INFINITY }
+    }
+
     fn path_exponent(&self) -> f64 {
         self.slip_exponent - 1.0
     }
