@@ -116,13 +116,12 @@ impl Schedule {
         if !slides {
             return Ok(Envelope { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
         }
-        let held = self.conditions().tangential_control != TangentialControl::Displacement;
         let core = if follows { LAST_CORE } else { CORE };
         let contact = contact.with_core(depth, core * radius)?;
         let at_core = contact.slip_compression();
         let surplus = (compression - at_core).clamp(LEAST_SURPLUS * at_core, LARGEST_SURPLUS * at_core);
-        // Under a held tangential force the core gives way only in the end, and all slip is counted from there.
-        Ok(Envelope { contact, slides, surplus: if held { 0.0 } else { surplus } })
+        // An edge of stick that is followed gives way only in the end, and all slip is counted from there.
+        Ok(Envelope { contact, slides, surplus: if follows { 0.0 } else { surplus } })
     }
 
     /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the
