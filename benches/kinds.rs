@@ -28,7 +28,6 @@ use shown::{Dense, Shown, errors};
 const ACCURACIES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
 /// Springs of a reference over those of the run at the last accuracy, the most of them, where periods are resolved and in gross slip as well, and what it may take.
-/// Where that is more than the most, it is this many times the run's.
 const FINER: usize = 4;
 const MOST_SPRINGS: usize = 480;
 const MOST_RESOLVED: usize = 240;
