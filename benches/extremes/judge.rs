@@ -24,7 +24,7 @@ pub struct Row {
     pub name: String,
     /// `done`, `told`, `refused`, `named`, `failed`, `late` or `wrong`.
     pub end: String,
-    /// Of the processor, for a run; none while it is not known.
+    /// Of the processor.
     pub seconds: f64,
     pub why: String,
 }
@@ -34,7 +34,7 @@ impl Row {
         let why = why.into().lines().next().unwrap_or_default().replace('|', "/");
         // The folder of a scene is another each time.
         let why = why.split_once("scene.toml:").map_or(why.as_str(), |(_, words)| words).to_owned();
-        Self { name: name.into(), end: end.into(), seconds: 0.0, why }
+        Self { name: name.into(), end: end.into(), seconds: used(), why }
     }
 
     /// That of a scene which does not stop when it is asked to.
@@ -124,8 +124,7 @@ pub fn watched(patience: f64, lost: impl Fn() + Sync, judged: impl FnOnce() -> R
     if late.load(Ordering::Relaxed) && row.end != "wrong" {
         row = Row { end: "late".into(), ..row };
     }
-    let seconds = if row.seconds > 0.0 { row.seconds } else { used() };
-    Row { seconds, ..row }
+    row
 }
 
 /// What is not a number, or less than nothing.
@@ -229,7 +228,7 @@ pub fn judge_in_parts(name: &str, text: &str) -> Row {
         Ok(results) => results,
         Err(error) => return refused_or_failed(name, &error, false),
     };
-    let row = Row { seconds: used(), ..ended(name, &whole, scene.numerics().accuracy) };
+    let row = ended(name, &whole, scene.numerics().accuracy);
     begins();
     let wrong = |why: &str| Row::new(name, "wrong", format!("resumed: {why}"));
     if whole.steps() < 2 || row.end == "wrong" || !whole.is_complete() {
