@@ -232,8 +232,12 @@ pub struct Checkpoint {
 pub struct Attempt {
     /// How often it was made anew on more springs, or need not be any more.
     pub refinements: u64,
+    /// Tolerance of its time stepping where that is smaller than the accuracy asks for, else zero.
+    pub tolerance: f64,
     /// Springs on which it came to an end, if less accurately than was asked for; zero where it did not.
     pub ended_on: u64,
+    /// [`Attempt::tolerance`] there.
+    pub ended_with: f64,
     /// Its estimated error there, relative; 1 where nothing is known of it, and zero where it did not.
     pub ended_within: f64,
     /// Work of the attempts before, nanoseconds of one core, about.

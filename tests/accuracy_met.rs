@@ -406,6 +406,25 @@ fn a_run_whose_companions_tell_nothing_is_made_anew_on_more_springs() {
     assert!(estimate < 1e-2, "{estimate:e}");
 }
 
+/// Under a threshold at k = -0.4 companions of 1e-2 differ by their steps, on however many springs: 26, 52, 108 and 218 were tried for an estimate of 2e-2.
+#[test]
+fn a_run_that_more_springs_do_not_help_is_made_anew_in_finer_steps() {
+    let scene = |numerics: &str| {
+        let text = format!(
+            "[indenter.paraboloid]\nradius = 1.0\n[half_space]\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\ngrading = -0.4\n\
+             [friction.coulomb]\ncoefficient = 0.5\n[wear.threshold]\ncoefficient = 1.667e-13\npressure = 1e7\n\
+             [loading]\nindentation = 1e-6\nstick_ratio = 0.7\ntau = 3\n[output]\nsnapshots = 12\n[numerics]\n{numerics}\n"
+        );
+        Scene::from_toml(&text, "scene.toml").expect("a scene")
+    };
+    let [run, finer] = ["accuracy = 1e-2", "springs = 240"].map(|it| scene(it).simulate().expect("an end"));
+    let (estimate, met) = (run.error_estimate().expect("an estimate"), run.accuracy_met());
+    let missed = (run.last().wear_volume / finer.last().wear_volume - 1.0).abs();
+    println!("{} springs, off by {missed:e}, told {estimate:e}", run.springs());
+    assert!(met == Some(true) && run.springs() < 100, "{} springs, {estimate:e}", run.springs());
+    assert!(missed < estimate.max(1e-3), "off by {missed:e}, told {estimate:e}");
+}
+
 /// Companions of the third finer run take too long, so that it knows nothing of its error; the one before does. Interrupted runs take the same way.
 #[test]
 fn a_run_that_knows_nothing_of_its_error_gives_way_to_one_that_does() {

@@ -146,7 +146,14 @@ fn checkpoint() -> Checkpoint {
         wall_seconds: 0.1,
         error_estimate: Some(f64::NAN),
         accuracy: Some(1e-4),
-        attempt: Attempt { refinements: 2, ended_on: 57, ended_within: 0.02, work: 3_000_000_000 },
+        attempt: Attempt {
+            refinements: 2,
+            tolerance: 3e-5,
+            ended_on: 57,
+            ended_with: 1e-4,
+            ended_within: 0.02,
+            work: 3_000_000_000,
+        },
     }
 }
 

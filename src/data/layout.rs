@@ -113,13 +113,17 @@ pub const ACCURACY_MET: Quantity =
 /// How a run came to be made anew, scalars, in the group of the checkpoint; absent where it was not.
 pub const REFINEMENTS: Quantity =
     quantity("refinements", "1", "how often the run was made anew on more springs, or need not be any more");
+pub const TIGHTENED: Quantity =
+    quantity("tolerance", "1", "tolerance of the time stepping where it was made smaller for that, or 0");
 pub const ENDED_ON: Quantity = quantity(
     "ended_on",
     "1",
     "springs on which an attempt came to an end less accurately than was asked for, or 0",
 );
 
-/// Error of the attempt that came to an end, scalar.
+/// Tolerance and error of the attempt that came to an end, scalars.
+pub const ENDED_WITH: Quantity =
+    quantity("ended_with", "1", "tolerance of that attempt where it had been made smaller, or 0");
 pub const ENDED_WITHIN: Quantity =
     quantity("ended_within", "1", "estimated error of that attempt, or 1 where nothing is known of it");
 

@@ -1,7 +1,7 @@
 //! A run that is made anew on other springs: on more where its error is larger than was asked for, on fewer where it takes too long or finds no end.
 
 use super::attempt::{LAST_RESORT, REFINEMENTS, SPRINGS_OF_LAST_RESORT};
-use super::budget::{self, UNKNOWN};
+use super::budget::{self, TIGHTER, UNKNOWN};
 use super::cost;
 use super::limit::header;
 use super::parts::Parts;
@@ -9,7 +9,7 @@ use super::recorder::Recorder;
 use crate::contact::closed_form::LimitingShape;
 use crate::data::{Attempt, Checkpoint};
 use crate::error::{Error, Result};
-use crate::scene::Scene;
+use crate::scene::{Scene, Stepper};
 use crate::solver::model::OperatorStore;
 use crate::solver::simulation::{Observer, Outcome, Simulation};
 
@@ -130,7 +130,11 @@ impl Attempts<'_> {
         }
         let error = checkpoint.error_estimate.unwrap_or(UNKNOWN);
         if let Some(springs) = self.more_springs(outcome, checkpoint) {
-            return vec![self.finer(springs, outcome.is_ok().then_some(error), work)];
+            let error = outcome.is_ok().then_some(error);
+            return vec![match self.is_too_coarse_in_time(outcome) {
+                true => self.finer(self.springs(), TIGHTER, error, work),
+                false => self.finer(springs, 1.0, error, work),
+            }];
         }
         let ends = outcome.as_ref().is_ok_and(|it| *it != Outcome::Interrupted);
         if ends && error >= UNKNOWN && attempt.may_end_again() && attempt.knows_error() {
@@ -149,21 +153,26 @@ impl Attempts<'_> {
 
     /// Finer ones do not end, or know nothing of their error: that which did, once more.
     fn end_again(&self, work: u64) -> Anew {
-        let counted = Attempt { refinements: REFINEMENTS + 1, work, ..self.recorder.attempt };
+        let before = self.recorder.attempt;
+        let counted = Attempt { refinements: REFINEMENTS + 1, tolerance: before.ended_with, work, ..before };
         Anew { springs: counted.ended_on as usize, on_fewer: false, counted }
     }
 
     /// # Arguments
+    /// * `of_tolerance` -- the tolerance of the time stepping over that of this attempt
     /// * `error` -- estimated, of this attempt, if it came to its end
-    fn finer(&self, springs: usize, error: Option<f64>, work: u64) -> Anew {
-        let before =
-            Attempt { refinements: self.recorder.attempt.refinements + 1, work, ..self.recorder.attempt };
-        let counted = match error {
-            Some(error) if error < UNKNOWN || !before.knows_error() => {
-                Attempt { ended_on: self.springs() as u64, ended_within: error, ..before }
+    fn finer(&self, springs: usize, of_tolerance: f64, error: Option<f64>, work: u64) -> Anew {
+        let now = self.recorder.attempt;
+        let ended = match error {
+            Some(error) if error < UNKNOWN || !now.knows_error() => {
+                let ended_on = self.springs() as u64;
+                Attempt { ended_on, ended_with: now.tolerance, ended_within: error, ..now }
             }
-            _ => before,
+            _ => now,
         };
+        let (_, tolerance) = self.stepping.first();
+        let tolerance = if of_tolerance < 1.0 { of_tolerance * tolerance } else { now.tolerance };
+        let counted = Attempt { refinements: now.refinements + 1, tolerance, work, ..ended };
         Anew { springs, on_fewer: false, counted }
     }
 
@@ -215,6 +224,18 @@ impl Attempts<'_> {
         };
         let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, attempt.work));
         if simulation.sticks_after_gross_slip() { wanted.map(budget::springs_before) } else { wanted }
+    }
+
+    /// Whether more springs have not helped, so that it is the steps that its companions differ by, where the program chooses them.
+    fn is_too_coarse_in_time(&self, outcome: &Result<Outcome>) -> bool {
+        let (numerics, attempt) = (self.scene.numerics(), self.recorder.attempt);
+        let chosen = numerics.tolerance.is_none() && numerics.stepper != Stepper::EveryCycle;
+        let on_fewer = attempt.knows_error() && attempt.ended_on < self.springs() as u64;
+        let shares = || self.recorder.companions()?.shares(&self.stepping, self.recorder.writer.snapshots());
+        chosen
+            && on_fewer
+            && outcome.is_ok()
+            && shares().is_some_and(|it| it.stands_still(attempt.ended_within))
     }
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.

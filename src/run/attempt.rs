@@ -54,7 +54,8 @@ impl Attempt {
     pub(super) fn numerics(&self, scene: &Scene) -> Numerics {
         let numerics = *scene.numerics();
         if !self.is_last_resort() {
-            return numerics;
+            let tightened = (self.tolerance > 0.0).then_some(self.tolerance);
+            return Numerics { tolerance: tightened.or(numerics.tolerance), ..numerics };
         }
         let sampled = !scene.conditions().mode.is_tangential();
         let substeps = numerics.substeps.or(sampled.then_some(COARSE_SUBSTEPS));

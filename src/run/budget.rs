@@ -64,6 +64,10 @@ const AIM: f64 = 0.5;
 const SEEN: f64 = 1.0;
 const FULL_ORDER: f64 = 2.0;
 
+/// Part of an error that more springs left which shows that it is not one of springs; tolerance over that before with which such a run is repeated.
+const STANDS_STILL: f64 = 0.8;
+pub(in crate::run) const TIGHTER: f64 = 0.2;
+
 /// `n ln(a0/c)`: the logarithm of the profile's height at the first contact edge over that at the edge of stick.
 pub(in crate::run) fn smallness(contact: &InitialContact) -> f64 {
     exponent(contact) * contact.stick_logarithm().unwrap_or(0.0)
@@ -287,6 +291,14 @@ impl Shares {
     /// The whole of it.
     pub fn error(&self) -> f64 {
         self.springs + self.substeps + self.left_out
+    }
+
+    /// Whether more springs have not helped, so that it is the steps that companions differ by: no order is seen.
+    ///
+    /// # Arguments
+    /// * `before` -- the error on fewer springs
+    pub fn stands_still(&self, before: f64) -> bool {
+        self.springs < UNKNOWN && self.order < SEEN && self.error() > STANDS_STILL * before
     }
 }
 
