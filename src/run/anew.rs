@@ -129,12 +129,11 @@ impl Attempts<'_> {
             return vec![self.end_again(work)];
         }
         let error = checkpoint.error_estimate.unwrap_or(UNKNOWN);
+        if self.is_too_coarse_in_time(outcome) {
+            return vec![self.finer(self.springs(), TIGHTER, Some(error), work)];
+        }
         if let Some(springs) = self.more_springs(outcome, checkpoint) {
-            let error = outcome.is_ok().then_some(error);
-            return vec![match self.is_too_coarse_in_time(outcome) {
-                true => self.finer(self.springs(), TIGHTER, error, work),
-                false => self.finer(springs, 1.0, error, work),
-            }];
+            return vec![self.finer(springs, 1.0, outcome.is_ok().then_some(error), work)];
         }
         let ends = outcome.as_ref().is_ok_and(|it| *it != Outcome::Interrupted);
         if ends && error >= UNKNOWN && attempt.may_end_again() && attempt.knows_error() {
@@ -205,10 +204,7 @@ impl Attempts<'_> {
     fn more_springs(&self, outcome: &Result<Outcome>, checkpoint: &Checkpoint) -> Option<usize> {
         let (scene, simulation, attempt) = (self.scene, &self.stepping, &self.recorder.attempt);
         let (accuracy, springs) = (scene.numerics().accuracy, simulation.springs());
-        let companions = self.recorder.companions().filter(|_| scene.numerics().springs.is_none())?;
-        if attempt.refinements >= REFINEMENTS || simulation.model().is_losing_stick(simulation.state()) {
-            return None;
-        }
+        let companions = self.recorder.companions().filter(|_| self.may_be_finer())?;
         let wanted = match outcome {
             Ok(Outcome::Interrupted) => None,
             // The companion of a finer run may come to an end.
@@ -226,16 +222,27 @@ impl Attempts<'_> {
         if simulation.sticks_after_gross_slip() { wanted.map(budget::springs_before) } else { wanted }
     }
 
+    /// Whether a run may be repeated on other springs, or in other steps: the program chose the springs, and it is not a stick zone that is about to be lost.
+    fn may_be_finer(&self) -> bool {
+        let simulation = &self.stepping;
+        let chosen = self.scene.numerics().springs.is_none();
+        let again = self.recorder.attempt.refinements < REFINEMENTS;
+        chosen && again && !simulation.model().is_losing_stick(simulation.state())
+    }
+
     /// Whether more springs have not helped, so that it is the steps that its companions differ by, where the program chooses them.
     fn is_too_coarse_in_time(&self, outcome: &Result<Outcome>) -> bool {
         let (numerics, attempt) = (self.scene.numerics(), self.recorder.attempt);
         let chosen = numerics.tolerance.is_none() && numerics.stepper != Stepper::EveryCycle;
-        let on_fewer = attempt.knows_error() && attempt.ended_on < self.springs() as u64;
+        let ended =
+            matches!(outcome, Ok(outcome) if *outcome != Outcome::Interrupted) && attempt.knows_error();
+        if !(chosen && ended && self.may_be_finer()) {
+            return false;
+        }
+        let before = (attempt.ended_on as usize, attempt.ended_within);
         let shares = || self.recorder.companions()?.shares(&self.stepping, self.recorder.writer.snapshots());
-        chosen
-            && on_fewer
-            && outcome.is_ok()
-            && shares().is_some_and(|it| it.stands_still(attempt.ended_within))
+        shares().is_some_and(|it| it.stand_still(self.springs(), before, numerics.accuracy))
+            && cost::allows(&self.stepping, self.springs(), attempt.work)
     }
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.

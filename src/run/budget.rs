@@ -64,8 +64,9 @@ const AIM: f64 = 0.5;
 const SEEN: f64 = 1.0;
 const FULL_ORDER: f64 = 2.0;
 
-/// Part of an error that more springs left which shows that it is not one of springs; tolerance over that before with which such a run is repeated.
+/// Part of an error that is left by so many times the springs, which shows that it is not one of springs; tolerance over that before with which such a run is repeated.
 const STANDS_STILL: f64 = 0.8;
+const MANY_MORE: f64 = 1.2;
 pub(in crate::run) const TIGHTER: f64 = 0.2;
 
 /// `n ln(a0/c)`: the logarithm of the profile's height at the first contact edge over that at the edge of stick.
@@ -296,9 +297,13 @@ impl Shares {
     /// Whether more springs have not helped, so that it is the steps that companions differ by: no order is seen.
     ///
     /// # Arguments
-    /// * `before` -- the error on fewer springs
-    pub fn stands_still(&self, before: f64) -> bool {
-        self.springs < UNKNOWN && self.order < SEEN && self.error() > STANDS_STILL * before
+    /// * `springs` -- of the run
+    /// * `before` -- springs and error of a run before
+    pub fn stand_still(&self, springs: usize, before: (usize, f64), accuracy: f64) -> bool {
+        let (fewer, error) = before;
+        let helped = self.order >= SEEN || self.error() <= STANDS_STILL * error;
+        let beyond = self.springs < UNKNOWN && self.error() > SURE * accuracy;
+        beyond && springs as f64 > MANY_MORE * fewer as f64 && !helped
     }
 }
 
