@@ -1,4 +1,4 @@
-//! A run that is made anew on other springs: on more where its error is larger than was asked for, on fewer where it takes too long or finds no end.
+//! A run that is made anew: on more springs where its error is larger than was asked for, in finer steps where those do not help, on fewer where it takes too long or finds no end.
 
 use super::attempt::{LAST_RESORT, REFINEMENTS, SPRINGS_OF_LAST_RESORT};
 use super::budget::{self, TIGHTER, UNKNOWN};
