@@ -32,8 +32,11 @@ fn main() {
 fn links_debians() -> Option<()> {
     let architecture = env::var("CARGO_CFG_TARGET_ARCH").ok()?;
     let archives = format!("/usr/lib/{architecture}-linux-gnu/hdf5/serial");
-    let settings = fs::read_to_string(format!("{archives}/libhdf5.settings")).ok()?;
-    let needs = settings.lines().find_map(|line| line.trim().strip_prefix("Extra libraries:"))?;
+    let settings = format!("{archives}/libhdf5.settings");
+    let text = fs::read_to_string(&settings).ok()?;
+    // It comes and goes with the archives.
+    println!("cargo::rerun-if-changed={settings}");
+    let needs = text.lines().find_map(|line| line.trim().strip_prefix("Extra libraries:"))?;
     let folder = Path::new(&env::var_os("OUT_DIR")?).join("hdf5");
     // Linkers take such a text for the library of that name.
     let stand_in = |name: &str, needs: &str| {

@@ -230,7 +230,7 @@ pub struct Checkpoint {
 /// How a run came to be made anew, so that one that was interrupted takes the same way.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attempt {
-    /// How often it was made anew on more springs, or need not be any more.
+    /// How often it was made anew on more springs or in finer steps, or need not be any more.
     pub refinements: u64,
     /// Tolerance of its time stepping where that is smaller than the accuracy asks for, else zero.
     pub tolerance: f64,

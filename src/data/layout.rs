@@ -113,7 +113,7 @@ pub const ACCURACY_MET: Quantity =
 /// How a run came to be made anew, scalars, in the group of the checkpoint; absent where it was not.
 pub const REFINEMENTS: Quantity =
     quantity("refinements", "1", "how often the run was made anew on more springs, or need not be any more");
-pub const TIGHTENED: Quantity =
+pub const TOLERANCE: Quantity =
     quantity("tolerance", "1", "tolerance of the time stepping where it was made smaller for that, or 0");
 pub const ENDED_ON: Quantity = quantity(
     "ended_on",

@@ -230,7 +230,7 @@ fn put_checkpoint(checkpoint: &Checkpoint) -> Dataset {
     }
     if checkpoint.attempt != Attempt::default() {
         stored.scalar(REFINEMENTS, checkpoint.attempt.refinements);
-        stored.scalar(TIGHTENED, checkpoint.attempt.tolerance);
+        stored.scalar(TOLERANCE, checkpoint.attempt.tolerance);
         stored.scalar(ENDED_ON, checkpoint.attempt.ended_on);
         stored.scalar(ENDED_WITH, checkpoint.attempt.ended_with);
         stored.scalar(ENDED_WITHIN, checkpoint.attempt.ended_within);
@@ -408,7 +408,7 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
     if stored.has(REFINEMENTS.name) {
         checkpoint.attempt = Attempt {
             refinements: stored.take_scalar(REFINEMENTS)?,
-            tolerance: stored.take_scalar(TIGHTENED)?,
+            tolerance: stored.take_scalar(TOLERANCE)?,
             ended_on: stored.take_scalar(ENDED_ON)?,
             ended_with: stored.take_scalar(ENDED_WITH)?,
             ended_within: stored.take_scalar(ENDED_WITHIN)?,

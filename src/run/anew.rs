@@ -129,13 +129,14 @@ impl Attempts<'_> {
             return vec![self.end_again(work)];
         }
         let error = checkpoint.error_estimate.unwrap_or(UNKNOWN);
-        if self.is_too_coarse_in_time(outcome) {
-            return vec![self.finer(self.springs(), TIGHTER, Some(error), work)];
+        let ends = outcome.as_ref().is_ok_and(|it| *it != Outcome::Interrupted);
+        if ends && self.is_too_coarse_in_time() {
+            let (_, tolerance) = self.stepping.first();
+            return vec![self.finer(self.springs(), TIGHTER * tolerance, Some(error), work)];
         }
         if let Some(springs) = self.more_springs(outcome, checkpoint) {
-            return vec![self.finer(springs, 1.0, outcome.is_ok().then_some(error), work)];
+            return vec![self.finer(springs, attempt.tolerance, outcome.is_ok().then_some(error), work)];
         }
-        let ends = outcome.as_ref().is_ok_and(|it| *it != Outcome::Interrupted);
         if ends && error >= UNKNOWN && attempt.may_end_again() && attempt.knows_error() {
             return vec![self.end_again(work)];
         }
@@ -158,9 +159,9 @@ impl Attempts<'_> {
     }
 
     /// # Arguments
-    /// * `of_tolerance` -- the tolerance of the time stepping over that of this attempt
+    /// * `tolerance` -- as [`Attempt::tolerance`]
     /// * `error` -- estimated, of this attempt, if it came to its end
-    fn finer(&self, springs: usize, of_tolerance: f64, error: Option<f64>, work: u64) -> Anew {
+    fn finer(&self, springs: usize, tolerance: f64, error: Option<f64>, work: u64) -> Anew {
         let now = self.recorder.attempt;
         let ended = match error {
             Some(error) if error < UNKNOWN || !now.knows_error() => {
@@ -169,8 +170,6 @@ impl Attempts<'_> {
             }
             _ => now,
         };
-        let (_, tolerance) = self.stepping.first();
-        let tolerance = if of_tolerance < 1.0 { of_tolerance * tolerance } else { now.tolerance };
         let counted = Attempt { refinements: now.refinements + 1, tolerance, work, ..ended };
         Anew { springs, on_fewer: false, counted }
     }
@@ -211,7 +210,7 @@ impl Attempts<'_> {
             _ if companions.is_smooth() && companions.is_lost() => budget::refined(springs, None, accuracy),
             Ok(_) if companions.is_smooth() => budget::refined(springs, checkpoint.error_estimate, accuracy),
             Ok(_) => {
-                let shares = companions.shares(simulation, self.recorder.writer.snapshots())?;
+                let shares = self.recorder.shares(simulation)?;
                 budget::refined_by_order(springs, shares, accuracy, simulation.model().schedule().lifts())
             }
             // More springs may find an end where few do not.
@@ -231,17 +230,15 @@ impl Attempts<'_> {
     }
 
     /// Whether more springs have not helped, so that it is the steps that its companions differ by, where the program chooses them.
-    fn is_too_coarse_in_time(&self, outcome: &Result<Outcome>) -> bool {
+    fn is_too_coarse_in_time(&self) -> bool {
         let (numerics, attempt) = (self.scene.numerics(), self.recorder.attempt);
         let chosen = numerics.tolerance.is_none() && numerics.stepper != Stepper::EveryCycle;
-        let ended =
-            matches!(outcome, Ok(outcome) if *outcome != Outcome::Interrupted) && attempt.knows_error();
-        if !(chosen && ended && self.may_be_finer()) {
+        if !(chosen && attempt.knows_error() && self.may_be_finer()) {
             return false;
         }
         let before = (attempt.ended_on as usize, attempt.ended_within);
-        let shares = || self.recorder.companions()?.shares(&self.stepping, self.recorder.writer.snapshots());
-        shares().is_some_and(|it| it.stand_still(self.springs(), before, numerics.accuracy))
+        let shares = self.recorder.shares(&self.stepping);
+        shares.is_some_and(|it| it.stand_still(self.springs(), before, numerics.accuracy))
             && cost::allows(&self.stepping, self.springs(), attempt.work)
     }
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::Shared;
 use super::accuracy::companion::Dear;
 use super::accuracy::estimate::{Coarsening, Companions};
-use super::budget;
+use super::budget::{self, Shares};
 use super::cost;
 use super::limit::worn_profile;
 use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
@@ -216,9 +216,13 @@ impl Recorder {
         if self.attempt.is_last_resort() {
             return Some(budget::UNKNOWN);
         }
-        let shares = companions.shares(simulation, self.writer.snapshots());
         let balance = || if companions.is_smooth() { balance_error(simulation) } else { None };
-        shares.map(|shares| shares.error()).or_else(balance)
+        self.shares(simulation).map(|shares| shares.error()).or_else(balance)
+    }
+
+    /// What the companions tell of the error; as [`Companions::shares`].
+    pub(super) fn shares(&self, simulation: &Simulation) -> Option<Shares> {
+        self.companions.as_ref()?.shares(simulation, self.writer.snapshots())
     }
 
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {
