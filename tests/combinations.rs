@@ -247,7 +247,7 @@ fn every_pair_runs_as_accurately_as_is_asked_or_is_refused_with_its_reason() {
     // An estimate next to what is asked may fall to either side of it on another machine.
     let [page, kept] = [&page, &kept].map(|page| page.replace("told", "yes"));
     assert_eq!(page, kept, "docs/combinations.md is not what the program does");
-    assert!(counts[1] <= 30, "{} of {} pairs are told", counts[1], cells.len());
+    assert!(counts[1] <= 4, "{} of {} pairs are told", counts[1], cells.len());
 }
 
 fn page(cells: &BTreeMap<[(usize, usize); 2], Cell>) -> String {
