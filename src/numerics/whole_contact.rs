@@ -35,6 +35,10 @@ const NODES_OF_POWER: f64 = 24.0;
 /// Nodes of the rules on a panel beside half of those of the polynomial.
 const BEYOND_DEGREE: usize = 16;
 
+/// Nodes of a local polynomial, and their exponent `m`: with one of 2 swings next to the edge grow, one of 4 leaves compressions there no digits.
+const LOCAL: usize = 4;
+const POWER_OF_CUBICS: f64 = 3.0;
+
 /// Width of the last of the panels, each half as wide as the one before, over which an end that is not analytic is integrated.
 const LAST_PANEL: f64 = 1e-7;
 
@@ -52,6 +56,15 @@ impl Coordinate {
     }
 }
 
+/// What is between the nodes.
+#[derive(Debug, Clone)]
+enum Between {
+    /// One polynomial through all of them, by its barycentric weights.
+    Polynomial(Vec<f64>),
+    /// Cubics through the four next to a place.
+    Cubics,
+}
+
 /// Operators on the values at nodes, of which the last is the edge.
 #[derive(Debug, Clone)]
 pub struct WholeContact {
@@ -61,8 +74,7 @@ pub struct WholeContact {
     power: f64,
     /// The inner nodes, outwards, and the edge.
     nodes: Vec<Coordinate>,
-    /// Barycentric weights.
-    weights: Vec<f64>,
+    between: Between,
     /// `ξ` of the nodes.
     fractions: Vec<f64>,
     profile: Mat<f64>,
@@ -74,14 +86,12 @@ pub struct WholeContact {
 }
 
 impl WholeContact {
-    /// Operators for a grading, on so many nodes inside the edge.
+    /// Operators for a grading on one polynomial through so many nodes inside the edge.
     ///
     /// # Errors
     /// Those of the quadrature.
     pub fn new(grading: f64, inner: usize) -> Result<Self> {
         let most = POWER * NODES_OF_POWER.ln() / (inner as f64).ln();
-        let at_edge = if grading < SOFT { POWER + FALL * grading } else { POWER / (1.0 - grading.min(0.0)) };
-        let power = at_edge.min(most).max(1.0);
         let zeros = Rule::jacobi(inner, AT_EDGE, 0.0)?;
         let mut nodes: Vec<Coordinate> =
             zeros.nodes.iter().zip(&zeros.complements).map(|(y, h)| Coordinate { y: *y, h: *h }).collect();
@@ -91,10 +101,27 @@ impl WholeContact {
             let others = (0..=inner).filter(|j| *j != i);
             others.map(|j| 4.0 * difference(nodes[i], nodes[j])).product::<f64>().recip()
         });
+        let between = Between::Polynomial(weights.collect());
+        Self::on(grading, power_at_edge(grading).min(most).max(1.0), nodes, between)
+    }
+
+    /// The same on cubics between nodes that are even in `y`, for what has kinks along the contact, or grows no smoother by wear.
+    ///
+    /// # Errors
+    /// Those of the quadrature.
+    pub fn on_cubics(grading: f64, inner: usize) -> Result<Self> {
+        // The axis lies in the middle of a cell.
+        let cells = inner as f64 + 0.5;
+        let at = |i: usize| Coordinate { y: (i as f64 + 0.5) / cells, h: (inner - i) as f64 / cells };
+        Self::on(grading, POWER_OF_CUBICS, (0..=inner).map(at).collect(), Between::Cubics)
+    }
+
+    fn on(grading: f64, power: f64, nodes: Vec<Coordinate>, between: Between) -> Result<Self> {
+        let inner = nodes.len() - 1;
         let mut it = Self {
             nu: 0.5 * (1.0 + grading),
             power,
-            weights: weights.collect(),
+            between,
             fractions: vec![],
             profile: Mat::zeros(inner + 1, inner),
             inverse: Factors::new(Mat::identity(1, 1)),
@@ -105,14 +132,13 @@ impl WholeContact {
             nodes,
         };
         it.fractions = it.nodes.iter().map(|coordinate| it.fraction(*coordinate)).collect();
-        let slopes = it.slopes();
         it.fill_profile()?;
-        it.fill_pressure(&slopes)?;
+        it.fill_pressure()?;
         for i in 0..inner {
             let node = it.nodes[i];
             let over_slope = it.root(node) / (4.0 * it.power * node.h.powf(it.power - 1.0));
-            for j in 0..=inner {
-                it.derivative[(i, j)] = over_slope * slopes[(i, j)];
+            for (j, slope) in it.slopes(node) {
+                it.derivative[(i, j)] = over_slope * slope;
             }
         }
         it.load = it.integral(it.nu)?;
@@ -158,9 +184,21 @@ impl WholeContact {
         product(&self.pressure, inside)
     }
 
-    /// `ξ du/dξ` at the inner nodes, of values at all nodes.
-    pub fn dilation(&self, values: &[f64]) -> Vec<f64> {
-        product(&self.derivative, values)
+    /// `F⁻¹ (ξ d/dξ) F q` at the inner nodes, which is `ξ dq/dξ`, since `F` depends on the area by a power alone. On cubics it is found as the latter, by which nothing grows;
+    /// one polynomial does better by the former, for the place of the edge follows from `F q`.
+    ///
+    /// # Arguments
+    /// * `inside` -- `q`
+    /// * `profile` -- `F q` at all nodes
+    pub fn dilation(&self, inside: &[f64], profile: &[f64]) -> Vec<f64> {
+        match self.between {
+            Between::Polynomial(_) => {
+                let mut dilated = product(&self.derivative, profile);
+                self.solve_profile(&mut dilated);
+                dilated
+            }
+            Between::Cubics => product(&self.derivative, &[inside, &[0.0]].concat()),
+        }
     }
 
     /// `∫_0^1 ξ^(ν-1) q dξ` of values inside.
@@ -190,24 +228,14 @@ impl WholeContact {
         self.root(coordinate).powi(4)
     }
 
-    /// Value at a coordinate of a polynomial that is given at all nodes.
+    /// Value at a coordinate of what is given at all nodes.
     pub fn value(&self, values: &[f64], coordinate: Coordinate) -> f64 {
-        dot(&self.cardinals(coordinate), values)
+        self.cardinals(coordinate, values.len()).map(|(j, cardinal)| cardinal * values[j]).sum()
     }
 
-    /// Value at a coordinate of the polynomial through the inner nodes alone.
+    /// Value at a coordinate by the inner nodes alone.
     pub fn value_inside(&self, inside: &[f64], coordinate: Coordinate) -> f64 {
-        // Weights without the edge, of which the distance is what they lack.
-        let mut sums = [0.0; 2];
-        for ((node, weight), value) in self.nodes.iter().zip(&self.weights).zip(inside) {
-            let away = difference(coordinate, *node);
-            if away == 0.0 {
-                return *value;
-            }
-            let share = weight * node.h / away;
-            sums = [sums[0] + share * value, sums[1] + share];
-        }
-        sums[0] / sums[1]
+        self.value(&inside[..self.inner()], coordinate)
     }
 
     /// Outermost coordinate at which values inside exceed `level`, if they do on the axis or at a node.
@@ -234,8 +262,8 @@ impl WholeContact {
     pub fn up_to(&self, end: Coordinate, inside: &[f64]) -> Result<Vec<[f64; 3]>> {
         let mut values = inside.to_vec();
         values.push(0.0);
-        let panel = self.panel_at_axis(end, self.nu)?;
-        Ok(panel
+        let places = self.from_axis(end, self.nu)?;
+        Ok(places
             .into_iter()
             .map(|(coordinate, weight)| [self.fraction(coordinate), weight, self.value(&values, coordinate)])
             .collect())
@@ -259,55 +287,150 @@ impl WholeContact {
         of_roots * (low + high) * (low * low + high * high)
     }
 
-    /// Values of the cardinal polynomials.
-    fn cardinals(&self, coordinate: Coordinate) -> Vec<f64> {
-        if let Some(at) = self.nodes.iter().position(|node| difference(coordinate, *node) == 0.0) {
-            return (0..self.nodes.len()).map(|j| if j == at { 1.0 } else { 0.0 }).collect();
+    /// Nodes, among the first so many, whose values tell that at a coordinate, with their weights.
+    fn cardinals(&self, coordinate: Coordinate, nodes: usize) -> impl Iterator<Item = (usize, f64)> {
+        let first = match &self.between {
+            Between::Polynomial(_) => 0,
+            Between::Cubics => self.first_of_cubic(coordinate, nodes),
+        };
+        let near = match &self.between {
+            Between::Polynomial(weights) => self.barycentric(coordinate, &weights[..nodes]),
+            Between::Cubics => self.cubics(coordinate, first).to_vec(),
+        };
+        near.into_iter().enumerate().map(move |(j, cardinal)| (first + j, cardinal))
+    }
+
+    /// Of one polynomial through the first of the nodes.
+    fn barycentric(&self, coordinate: Coordinate, weights: &[f64]) -> Vec<f64> {
+        let count = weights.len();
+        if let Some(at) = self.nodes[..count].iter().position(|node| difference(coordinate, *node) == 0.0) {
+            return (0..count).map(|j| if j == at { 1.0 } else { 0.0 }).collect();
         }
-        let mut cardinals: Vec<f64> =
-            self.nodes.iter().zip(&self.weights).map(|(node, w)| w / difference(coordinate, *node)).collect();
+        // The weights without the edge lack the distance from it.
+        let lacks = count < self.nodes.len();
+        let mut cardinals: Vec<f64> = self
+            .nodes
+            .iter()
+            .zip(weights)
+            .map(|(node, w)| if lacks { w * node.h } else { *w } / difference(coordinate, *node))
+            .collect();
         let sum: f64 = cardinals.iter().sum();
         cardinals.iter_mut().for_each(|value| *value /= sum);
         cardinals
     }
 
-    /// Derivatives by `y` at the nodes.
-    fn slopes(&self) -> Mat<f64> {
-        let n = self.nodes.len();
-        let mut slopes = Mat::from_fn(n, n, |i, j| {
-            if i == j {
-                0.0
-            } else {
-                self.weights[j] / self.weights[i] / difference(self.nodes[i], self.nodes[j])
+    /// First of the four nodes next to a coordinate, among so many.
+    fn first_of_cubic(&self, coordinate: Coordinate, nodes: usize) -> usize {
+        let after = self.nodes[..nodes].partition_point(|node| difference(*node, coordinate) <= 0.0);
+        (after + LOCAL / 2).clamp(LOCAL, nodes) - LOCAL
+    }
+
+    /// Lagrange's polynomials on four nodes.
+    fn cubics(&self, coordinate: Coordinate, first: usize) -> [f64; LOCAL] {
+        let nodes = &self.nodes[first..first + LOCAL];
+        let factor = |i: usize, j: usize| difference(coordinate, nodes[j]) / difference(nodes[i], nodes[j]);
+        std::array::from_fn(|i| (0..LOCAL).filter(|j| *j != i).map(|j| factor(i, j)).product())
+    }
+
+    /// Derivatives of these by `y`.
+    fn cubic_slopes(&self, coordinate: Coordinate, first: usize) -> [f64; LOCAL] {
+        let nodes = &self.nodes[first..first + LOCAL];
+        let factor = |i: usize, j: usize| difference(coordinate, nodes[j]) / difference(nodes[i], nodes[j]);
+        std::array::from_fn(|i| {
+            let others = || (0..LOCAL).filter(|j| *j != i);
+            let one = |l: usize| {
+                let product: f64 = others().filter(|j| *j != l).map(|j| factor(i, j)).product();
+                product / difference(nodes[i], nodes[l])
+            };
+            others().map(one).sum()
+        })
+    }
+
+    /// Nodes whose values tell the derivative by `y` at an inner node, with their weights: of cubics one more of those farther out, from where ground comes in.
+    fn slopes(&self, node: Coordinate) -> Vec<(usize, f64)> {
+        match &self.between {
+            Between::Polynomial(weights) => {
+                let count = self.nodes.len();
+                let at = (0..count).find(|j| difference(node, self.nodes[*j]) == 0.0).unwrap_or_default();
+                let away = |j: usize| weights[j] / weights[at] / difference(node, self.nodes[j]);
+                let mut slopes: Vec<(usize, f64)> =
+                    (0..count).map(|j| (j, if j == at { 0.0 } else { away(j) })).collect();
+                slopes[at].1 = -slopes.iter().map(|(_, slope)| slope).sum::<f64>();
+                slopes
             }
-        });
-        for i in 0..n {
-            let sum: f64 = (0..n).map(|j| slopes[(i, j)]).sum();
-            slopes[(i, i)] = -sum;
+            Between::Cubics => {
+                let first = self.first_of_cubic(node, self.nodes.len());
+                self.cubic_slopes(node, first)
+                    .into_iter()
+                    .enumerate()
+                    .map(|(j, it)| (first + j, it))
+                    .collect()
+            }
         }
-        slopes
+    }
+
+    /// Nodes whose values tell the derivative by `y` at any coordinate, with their weights.
+    fn slopes_between(&self, coordinate: Coordinate) -> Vec<(usize, f64)> {
+        let first = self.first_of_cubic(coordinate, self.nodes.len());
+        self.cubic_slopes(coordinate, first).into_iter().enumerate().map(|(j, it)| (first + j, it)).collect()
+    }
+
+    /// Ends of panels, distances from a coordinate outwards or, negative, inwards, parted where one cubic follows another.
+    fn parted(&self, from: Coordinate, panels: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        if let Between::Polynomial(_) = self.between {
+            return panels;
+        }
+        let at: Vec<f64> = self.nodes.iter().map(|node| difference(*node, from)).collect();
+        let part = |[low, high]: [f64; 2]| {
+            let within = at.iter().copied().filter(|it| *it > low && *it < high);
+            let ends: Vec<f64> = std::iter::once(low).chain(within).chain([high]).collect();
+            ends.windows(2).map(|ends| [ends[0], ends[1]]).collect::<Vec<_>>()
+        };
+        panels.into_iter().flat_map(part).collect()
     }
 
     fn rule_size(&self) -> usize {
-        self.nodes.len() / 2 + BEYOND_DEGREE
+        match self.between {
+            Between::Polynomial(_) => self.nodes.len() / 2 + BEYOND_DEGREE,
+            Between::Cubics => BEYOND_DEGREE,
+        }
     }
 
     /// Places and weights of `∫_0^ξ(end) ξ^(exponent-1) ... dξ`.
-    fn panel_at_axis(&self, end: Coordinate, exponent: f64) -> Result<Vec<(Coordinate, f64)>> {
+    fn from_axis(&self, end: Coordinate, exponent: f64) -> Result<Vec<(Coordinate, f64)>> {
         let lower = 4.0 * exponent - 1.0;
         let rule = Rule::jacobi(self.rule_size(), 0.0, lower)?;
-        let scale = end.y.powf(4.0 * exponent) / exponent * self.power;
-        Ok(rule
+        let axis = Coordinate { y: 0.0, h: 1.0 };
+        let panels = self.parted(axis, vec![[0.0, end.y]]);
+        let first = panels[0][1];
+        let scale = first.powf(4.0 * exponent) / exponent * self.power;
+        let mut places: Vec<(Coordinate, f64)> = rule
             .nodes
             .iter()
             .zip(&rule.weights)
             .map(|(v, w)| {
-                let coordinate = Coordinate { y: end.y * v, h: 1.0 - end.y * v };
+                let coordinate = Coordinate { y: first * v, h: 1.0 - first * v };
                 let smooth =
                     (self.root(coordinate) / coordinate.y).powf(lower) * coordinate.h.powf(self.power - 1.0);
                 (coordinate, scale * w * smooth)
             })
-            .collect())
+            .collect();
+        let plain = Rule::legendre(self.rule_size())?;
+        for [from, to] in &panels[1..] {
+            for (v, w) in plain.nodes.iter().zip(&plain.weights) {
+                let y = from + (to - from) * v;
+                let coordinate = Coordinate { y, h: (end.h + (end.y - y)).max(0.0) };
+                places.push((coordinate, (to - from) * w * self.measure(coordinate, exponent)));
+            }
+        }
+        Ok(places)
+    }
+
+    /// `ξ^(exponent-1) dξ/dy`.
+    fn measure(&self, coordinate: Coordinate, exponent: f64) -> f64 {
+        4.0 * self.power
+            * self.root(coordinate).powf(4.0 * exponent - 1.0)
+            * coordinate.h.powf(self.power - 1.0)
     }
 
     /// Rows of `F`: `(sin πν/π) ∫ ξ^(ν-1) (ξ_t - ξ)^(-ν) ξ_y ℓ_j dy` up to each node.
@@ -320,11 +443,11 @@ impl WholeContact {
             let half = 0.5 * end.y;
             let mut sum = vec![0.0; self.nodes.len()];
             let mut add = |coordinate: Coordinate, weight: f64| {
-                for (sum, value) in sum.iter_mut().zip(self.cardinals(coordinate)) {
-                    *sum += prefactor * weight * value;
+                for (j, value) in self.cardinals(coordinate, self.nodes.len()) {
+                    sum[j] += prefactor * weight * value;
                 }
             };
-            for (coordinate, weight) in self.panel_at_axis(Coordinate::inwards(end, half), nu)? {
+            for (coordinate, weight) in self.from_axis(Coordinate::inwards(end, half), nu)? {
                 add(coordinate, weight * self.rise(end, coordinate, end.y - coordinate.y).powf(-nu));
             }
             // Near the node, at a distance below that of the edge first: 1 - √√ξ is a power of the distance from there.
@@ -335,6 +458,14 @@ impl WholeContact {
             } else {
                 (end.h.min(half), -nu)
             };
+            let mut panels = vec![[0.0, first]];
+            while panels[panels.len() - 1][1] < half {
+                let from = panels[panels.len() - 1][1];
+                panels.push([from, (2.0 * from).min(half)]);
+            }
+            let outwards = |[from, to]: [f64; 2]| [-to, -from];
+            let mut panels = self.parted(end, panels.into_iter().rev().map(outwards).collect());
+            let first = -panels.pop().unwrap_or_default()[0];
             let rule = Rule::jacobi(size, 0.0, at_node)?;
             for (v, w) in rule.nodes.iter().zip(&rule.weights) {
                 let distance = first * v;
@@ -344,9 +475,7 @@ impl WholeContact {
                 let scale = first.powf(at_node + 1.0) / (at_node + 1.0);
                 add(coordinate, scale * w * slope(coordinate) * kernel * distance.powf(-at_node));
             }
-            let mut from = first;
-            while from < half {
-                let to = (2.0 * from).min(half);
+            for [from, to] in panels.into_iter().map(outwards) {
                 for (v, w) in plain.nodes.iter().zip(&plain.weights) {
                     let distance = from + (to - from) * v;
                     let coordinate = Coordinate::inwards(end, distance);
@@ -354,7 +483,6 @@ impl WholeContact {
                         self.rise(end, coordinate, distance).powf(-nu) * coordinate.h.powf(self.power - 1.0);
                     add(coordinate, (to - from) * w * slope(coordinate) * kernel);
                 }
-                from = to;
             }
             for (j, value) in sum.into_iter().take(self.inner()).enumerate() {
                 self.profile[(row, j)] = value;
@@ -364,7 +492,7 @@ impl WholeContact {
     }
 
     /// Rows of the pressure: `-(1/π) ∫ (ξ - ξ_t)^(ν-1) ℓ_j' dy` from each inner node to the edge.
-    fn fill_pressure(&mut self, slopes: &Mat<f64>) -> Result<()> {
+    fn fill_pressure(&mut self) -> Result<()> {
         let (nu, size) = (self.nu, self.rule_size());
         let plain = Rule::legendre(size)?;
         let at_node = Rule::jacobi(size, 0.0, nu - 1.0)?;
@@ -372,24 +500,19 @@ impl WholeContact {
             let start = self.nodes[row];
             let half = 0.5 * start.h;
             let mut sum = vec![0.0; self.nodes.len()];
+            let is_local = matches!(self.between, Between::Cubics);
             let mut add = |coordinate: Coordinate, weight: f64| {
-                for (sum, value) in sum.iter_mut().zip(self.cardinals(coordinate)) {
-                    *sum -= weight * value / PI;
-                }
+                // The slope of one polynomial is the one through its slopes at the nodes.
+                let near: &mut dyn Iterator<Item = (usize, f64)> = match is_local {
+                    true => &mut self.slopes_between(coordinate).into_iter(),
+                    false => &mut self.cardinals(coordinate, self.nodes.len()),
+                };
+                near.for_each(|(j, value)| sum[j] -= weight * value / PI);
             };
-            let first = start.y.min(half);
-            for (v, w) in at_node.nodes.iter().zip(&at_node.weights) {
-                let distance = first * v;
-                let coordinate = Coordinate::inwards(start, -distance);
-                let kernel = (self.rise(coordinate, start, distance) / distance).powf(nu - 1.0);
-                add(coordinate, first.powf(nu) / nu * w * kernel);
-            }
-            let mut panels = vec![];
-            let mut from = first;
-            while from < half {
-                let to = (2.0 * from).min(half);
-                panels.push([from, to]);
-                from = to;
+            let mut panels = vec![[0.0, start.y.min(half)]];
+            while panels[panels.len() - 1][1] < half {
+                let from = panels[panels.len() - 1][1];
+                panels.push([from, (2.0 * from).min(half)]);
             }
             // Towards the edge, where ξ is a power of the distance.
             let mut left = half;
@@ -398,15 +521,29 @@ impl WholeContact {
                 left *= 0.5;
             }
             panels.push([start.h - left, start.h]);
-            for [from, to] in panels {
+            let panels = self.parted(start, panels);
+            let first = panels[0][1];
+            for (v, w) in at_node.nodes.iter().zip(&at_node.weights) {
+                let distance = first * v;
+                let coordinate = Coordinate::inwards(start, -distance);
+                let kernel = (self.rise(coordinate, start, distance) / distance).powf(nu - 1.0);
+                add(coordinate, first.powf(nu) / nu * w * kernel);
+            }
+            for [from, to] in &panels[1..] {
                 for (v, w) in plain.nodes.iter().zip(&plain.weights) {
                     let distance = from + (to - from) * v;
                     let coordinate = Coordinate::inwards(start, -distance);
                     add(coordinate, (to - from) * w * self.rise(coordinate, start, distance).powf(nu - 1.0));
                 }
             }
-            for j in 0..self.inner() {
-                self.pressure[(row, j)] = (0..sum.len()).map(|i| sum[i] * slopes[(i, j)]).sum();
+            if is_local {
+                (0..self.inner()).for_each(|j| self.pressure[(row, j)] = sum[j]);
+                continue;
+            }
+            for (i, sum) in sum.into_iter().enumerate() {
+                for (j, slope) in self.slopes(self.nodes[i]).into_iter().take(self.inner()) {
+                    self.pressure[(row, j)] += sum * slope;
+                }
             }
         }
         Ok(())
@@ -414,22 +551,36 @@ impl WholeContact {
 
     /// Weights of `∫_0^1 ξ^(exponent-1) ... dξ`.
     fn integral(&self, exponent: f64) -> Result<Vec<f64>> {
-        let lower = 4.0 * exponent - 1.0;
-        let rule = Rule::jacobi(self.nodes.len() + BEYOND_DEGREE, self.power - 1.0, lower)?;
         let mut sum = vec![0.0; self.nodes.len()];
         let mut whole = 0.0;
-        for ((v, complement), w) in rule.nodes.iter().zip(&rule.complements).zip(&rule.weights) {
-            let coordinate = Coordinate { y: *v, h: *complement };
-            let weight = w * (self.root(coordinate) / v).powf(lower);
+        let mut add = |coordinate: Coordinate, weight: f64| {
             whole += weight;
-            for (sum, value) in sum.iter_mut().zip(self.cardinals(coordinate)) {
-                *sum += weight * value;
+            self.cardinals(coordinate, self.nodes.len()).for_each(|(j, value)| sum[j] += weight * value);
+        };
+        let lower = 4.0 * exponent - 1.0;
+        match self.between {
+            Between::Polynomial(_) => {
+                let rule = Rule::jacobi(self.nodes.len() + BEYOND_DEGREE, self.power - 1.0, lower)?;
+                for ((v, complement), w) in rule.nodes.iter().zip(&rule.complements).zip(&rule.weights) {
+                    let coordinate = Coordinate { y: *v, h: *complement };
+                    add(coordinate, w * (self.root(coordinate) / v).powf(lower));
+                }
+            }
+            Between::Cubics => {
+                for (coordinate, weight) in self.from_axis(self.nodes[self.inner()], exponent)? {
+                    add(coordinate, weight);
+                }
             }
         }
         // Of one it is 1/exponent.
         sum.iter_mut().for_each(|value| *value /= whole * exponent);
         Ok(sum)
     }
+}
+
+/// `m`.
+fn power_at_edge(grading: f64) -> f64 {
+    if grading < SOFT { POWER + FALL * grading } else { POWER / (1.0 - grading.min(0.0)) }
 }
 
 /// `y - y_other`, by the distances from the nearer end.

@@ -87,7 +87,7 @@ pub(in crate::run) fn springs_for(
     accuracy: f64,
 ) -> usize {
     if Gross::follows(contact, schedule).unwrap_or_default() {
-        return springs_in_gross_slip(contact, accuracy);
+        return springs_in_gross_slip(contact, schedule, accuracy);
     }
     let smooth = clustering == Clustering::Smooth;
     if schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip && !smooth {
@@ -108,7 +108,16 @@ pub(in crate::run) fn springs_for(
 }
 
 /// The same over the whole contact in gross slip.
-pub(in crate::run) fn springs_in_gross_slip(contact: &InitialContact, accuracy: f64) -> usize {
+pub(in crate::run) fn springs_in_gross_slip(
+    contact: &InitialContact,
+    schedule: &Schedule,
+    accuracy: f64,
+) -> usize {
+    if !Gross::is_smooth(contact, schedule) {
+        let [springs, at, power] = CUBICS_IN_GROSS_SLIP;
+        return (springs * (at / accuracy).powf(power)).clamp(springs, MOST_CUBICS_IN_GROSS_SLIP).ceil()
+            as usize;
+    }
     let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
     let most =
         if contact.half_space().grading() < SOFT { MOST_AT_SOFT_TOP } else { MOST_ASKED_IN_GROSS_SLIP };
@@ -189,6 +198,10 @@ const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [17.0, 1e-4, 0.12];
 
 /// Most springs that are asked for there.
 const MOST_ASKED_IN_GROSS_SLIP: f64 = 60.0;
+
+/// The same of cubics over the whole contact, which are at least the first number.
+const CUBICS_IN_GROSS_SLIP: [f64; 3] = [24.0, 1e-3, 1.0 / 3.0];
+const MOST_CUBICS_IN_GROSS_SLIP: f64 = 120.0;
 
 /// The same below a grading at which more make the pressure at the edge grow.
 const SOFT: f64 = -0.6;

@@ -160,7 +160,7 @@ fn nearly_sliding(
         return None;
     }
     let by_hand = |springs| springs_before(springs).max(FEWEST_BY_HAND);
-    let chosen = || springs_in_gross_slip(contact, numerics.accuracy);
+    let chosen = || springs_in_gross_slip(contact, schedule, numerics.accuracy);
     let springs = numerics.springs.map(by_hand).or(wanted).unwrap_or_else(chosen);
     let model = Model::in_gross_slip(contact, schedule.clone(), springs).ok()?;
     // Profiles that end may not reach as far as the mesh of an edge of stick asks for.

@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 
 use super::moving::{height_of_last_core, slides_on_rig};
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::whole::{begins, carries};
+use super::whole::{begins, carries, is_smooth};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
@@ -76,7 +76,7 @@ impl Gross {
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
         let by_first = begins(contact, schedule);
-        if !(by_first || contact.regime() == Regime::FullSliding && carries(contact, schedule)) {
+        if !(by_first || contact.regime() == Regime::FullSliding && carries(schedule)) {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
@@ -109,9 +109,17 @@ impl Gross {
         Ok(true)
     }
 
+    /// Whether polynomials over the whole contact carry what happens in it; else cubics do.
+    pub fn is_smooth(contact: &InitialContact, schedule: &Schedule) -> bool {
+        is_smooth(contact, schedule)
+    }
+
     pub(super) fn new(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Result<Self> {
         let grading = contact.half_space().grading();
-        let mesh = WholeContact::new(grading, springs - 1)?;
+        let mesh = match is_smooth(contact, schedule) {
+            true => WholeContact::new(grading, springs - 1)?,
+            false => WholeContact::on_cubics(grading, springs - 1)?,
+        };
         let first = unworn_compression(contact, &mesh);
         let first_load = contact.contact_radius().powf(1.0 + grading) * mesh.load(&first);
         let mut lifted = vec![1.0; mesh.inner()];
@@ -208,8 +216,7 @@ impl Model {
         let whole = self.whole(gross, compression)?;
         let (depth, cycle, _) = self.gross_wear(gross, loading, compression, &whole);
         // q' = d' F⁻¹ 1 + (A'/A) F⁻¹ ξ ∂u/∂ξ - F⁻¹ W, with A'/A and d' from the edge and the force.
-        let mut carried = mesh.dilation(&whole.elastic);
-        mesh.solve_profile(&mut carried);
+        let carried = mesh.dilation(compression, &whole.elastic);
         let mut worn = depth;
         mesh.solve_profile(&mut worn);
         let radius = whole.area.sqrt();

@@ -64,17 +64,12 @@ impl Model {
         compression: &[f64],
         fields: &Fields,
     ) -> Debris {
-        let radii = self.spring_radii(fields);
-        let (last, inside) = (radii.len() - 1, fields.stick_zone.stick_area.sqrt());
-        let [slips, edge] = self.slipping_between(loading, at_rest, compression, fields);
-        let width = |j: usize| {
-            let before = if j == 0 { inside } else { radii[j - 1] };
-            let [from, to] =
-                [before, radii[(j + 1).min(last)]].map(|next| (0.5 * (radii[j] + next)).max(slips).min(edge));
-            to - from
-        };
-        let widths = (0..=last).map(width).collect();
-        Debris { radii, widths, edge }
+        let inside = fields.stick_zone.stick_area.sqrt();
+        Debris::new(
+            self.spring_radii(fields),
+            inside,
+            self.slipping_between(loading, at_rest, compression, fields),
+        )
     }
 }
 
@@ -86,22 +81,49 @@ pub(super) struct Debris {
     widths: Vec<f64>,
     /// Radius where the contact ends, m.
     edge: f64,
+    /// Whether debris comes from beyond the axis as well: all of the contact slips.
+    crosses: bool,
 }
 
 impl Debris {
+    /// Debris between two radii of slip, m.
+    ///
+    /// # Arguments
+    /// * `radii` -- of the springs, m
+    /// * `inside` -- where their mesh begins, m; on the axis debris comes from beyond it as well
+    pub(super) fn new(radii: Vec<f64>, inside: f64, [slips, edge]: [f64; 2]) -> Self {
+        let last = radii.len() - 1;
+        let width = |j: usize| {
+            let before = if j == 0 { inside } else { radii[j - 1] };
+            let next = radii[(j + 1).min(last)];
+            let from = if j == 0 && inside == 0.0 { 0.0 } else { 0.5 * (before + radii[j]) };
+            let [from, to] = [from, 0.5 * (radii[j] + next)].map(|end| end.max(slips).min(edge));
+            to - from
+        };
+        let widths = (0..=last).map(width).collect();
+        Self { radii, widths, edge, crosses: inside == 0.0 }
+    }
+
+    /// Weight of one spring in the average at another.
+    fn weight(&self, spreading: Spreading, i: usize, j: usize) -> f64 {
+        let [one, other] = [self.radii[i], self.radii[j]];
+        let beyond = if self.crosses { spreading.weight(one + other) } else { 0.0 };
+        spreading.weight(one - other) + beyond
+    }
+
     /// Spreads pressures at the springs, shape `(springs, steps)`, by [`Debris::averages`], without that matrix.
     pub(super) fn spread(&self, spreading: Spreading, pressure: &mut Mat<f64>) {
-        let Self { radii, widths, edge } = self;
+        let Self { radii, widths, edge, .. } = self;
         let n = radii.len();
         // Of each pair of springs the weight is found once: columns of the pressures beside one for the sums of the weights.
         let steps = pressure.ncols();
         let part = |i: usize, m: usize| if m < steps { widths[i] * pressure[(i, m)] } else { widths[i] };
         let parts = Mat::from_fn(n, steps + 1, part);
-        let mut spread = parts.clone();
+        let mut spread = Mat::from_fn(n, steps + 1, |i, m| self.weight(spreading, i, i) * parts[(i, m)]);
         let mut weights = vec![0.0; n];
         for j in 0..n {
             let mut near = 0;
-            for (i, weight) in (j + 1..n).map(|i| (i, spreading.weight(radii[i] - radii[j]))) {
+            for (i, weight) in (j + 1..n).map(|i| (i, self.weight(spreading, i, j))) {
                 if weight == 0.0 {
                     break;
                 }
@@ -125,13 +147,12 @@ impl Debris {
     /// Averages along the radius, within the annulus. Debris leaves at the edge of contact, so rows sum to one well inside and to nothing
     /// there: else ground would wear where no pressure is at all.
     fn averages(&self, spreading: Spreading) -> Mat<f64> {
-        let Self { radii, widths, edge } = self;
+        let Self { radii, widths, edge, .. } = self;
         let n = radii.len();
         let mut weights = Mat::zeros(n, n);
         for j in 0..n {
             // The nearest first; what is too far weighs nothing.
-            let near =
-                (j..n).map(|i| spreading.weight(radii[i] - radii[j])).take_while(|weight| *weight > 0.0);
+            let near = (j..n).map(|i| self.weight(spreading, i, j)).take_while(|weight| *weight > 0.0);
             for (i, weight) in (j..n).zip(near) {
                 weights[(i, j)] = widths[j] * weight;
                 weights[(j, i)] = widths[i] * weight;

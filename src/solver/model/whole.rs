@@ -15,20 +15,25 @@ pub(super) const SOFT: f64 = -0.5;
 /// Grading below which a core that is left out costs more than what a few springs that stick do on the mesh of gross slip under other laws than Coulomb's: 1e-4 of the volume.
 const CORE_COUNTS: f64 = 0.4;
 
-/// Whether polynomials over the whole contact carry what happens in it, once all of it slides.
-pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
-    let conditions = schedule.conditions();
+/// Whether the mesh of gross slip carries what happens in a contact, once all of it slides.
+pub(super) fn carries(schedule: &Schedule) -> bool {
     let along_energy = *schedule.friction_along_energy() != History::Constant;
-    let both = along_energy && conditions.friction_history != History::Constant;
-    // Where springs within the mesh lose contact pressure has kinks, which polynomials over the whole contact do not follow.
+    !(along_energy && schedule.conditions().friction_history != History::Constant)
+}
+
+/// Whether polynomials over the whole contact carry what happens in it; else cubics do.
+pub(super) fn is_smooth(contact: &InitialContact, schedule: &Schedule) -> bool {
+    let conditions = schedule.conditions();
+    // Where springs within the mesh lose contact pressure has kinks.
     let lifted = schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0);
+    // What is finer than debris spreads is not worn off.
     let spreads = conditions.wear.spreading().is_some();
     // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
     let friction = &conditions.friction;
     let depth = contact.indentation();
     let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
     let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
-    !(both || lifted || spreads || uneven)
+    !(lifted || spreads || uneven)
 }
 
 /// Whether a rig goes on to move a contact whose stick it has broken.
@@ -45,7 +50,7 @@ pub(super) fn sticks_again(contact: &InitialContact, schedule: &Schedule) -> boo
     // The edge would creep over worn ground, of which the polynomials do not resolve the kink: 3 % of the volume at k = 0.
     let [_, creeps] = schedule.friction_change().directions();
     let turns = schedule.resolves() && !conditions.mode.is_tangential();
-    let fits = contact.half_space().grading() >= SOFT && carries(contact, schedule);
+    let fits = contact.half_space().grading() >= SOFT && carries(schedule);
     !conditions.holds_normal_force && !remembers && !creeps && !turns && fits
 }
 

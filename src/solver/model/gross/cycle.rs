@@ -11,12 +11,14 @@ use std::f64::consts::PI;
 use faer::Mat;
 
 use super::{Gross, Whole};
+use crate::laws::wear::Spreading;
 use crate::numerics::roots::bracketed;
 use crate::numerics::whole_contact::{Coordinate, WholeContact};
 use crate::solver::model::cycle::Surface;
 use crate::solver::model::motion::{Bearing, Energies, Motion};
 use crate::solver::model::moving::LAST_STICK;
 use crate::solver::model::schedule::{AmplitudeControl, CycleLoading};
+use crate::solver::model::spreading::Debris;
 use crate::solver::model::{CycleFields, Model};
 
 /// What the springs do in a period, as it is seen on the surface.
@@ -100,7 +102,7 @@ impl Model {
         whole: &Whole,
     ) -> (Vec<f64>, CycleFields, Sliding) {
         let mesh = &gross.mesh;
-        let sliding = match &loading.path {
+        let mut sliding = match &loading.path {
             Some(path) => {
                 let motion = self.resolved_motion(loading, path, compression, false);
                 self.count_columns(loading, &motion, 1);
@@ -108,6 +110,9 @@ impl Model {
             }
             None => self.sliding_to_and_fro(gross, loading, compression, whole),
         };
+        if let Some(spreading) = loading.wear.spreading() {
+            self.spread_in_gross_slip(gross, loading, spreading, compression, whole, &mut sliding);
+        }
         let per_cycle = loading.cycles_per_period.recip();
         let law = &*loading.wear;
         let energies = sliding.energies;
@@ -138,6 +143,34 @@ impl Model {
         };
         depth.iter_mut().for_each(|depth| *depth *= loading.share);
         (depth, cycle.lasting(loading.share), sliding)
+    }
+
+    /// Pressure as debris passes it on, where wear is not local.
+    fn spread_in_gross_slip(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        spreading: Spreading,
+        compression: &[f64],
+        whole: &Whole,
+        sliding: &mut Sliding,
+    ) {
+        let (mesh, lift) = (&gross.mesh, loading.least_lift());
+        let ends = if lift > 0.0 { mesh.last_above(compression, lift) } else { None };
+        let end = ends.map_or(1.0, |end| mesh.fraction(end));
+        let radius = |fraction: &f64| (fraction * whole.area).sqrt();
+        let radii = mesh.fractions()[..mesh.inner()].iter().map(radius).collect();
+        let debris = Debris::new(radii, 0.0, [sliding.stuck, end].map(|it| radius(&it)));
+        let mean = self.contact.mean_pressure();
+        let pressure = &mut sliding.surface.pressure;
+        for m in 0..pressure.ncols() {
+            pressure.col_as_slice_mut(m).iter_mut().for_each(|p| *p = spreading.passed_on(*p, mean).0);
+        }
+        debris.spread(spreading, pressure);
+        for (i, q) in compression.iter().enumerate() {
+            let (filled, _) = self.filled(loading, spreading, Some(*q));
+            (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
+        }
     }
 
     /// To and fro at constant indentation.
