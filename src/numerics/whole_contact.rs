@@ -169,6 +169,11 @@ impl WholeContact {
         product(&self.profile, inside)
     }
 
+    /// Weights of [`WholeContact::profile`], shape `(nodes, inner nodes)`.
+    pub fn profile_weights(&self) -> &Mat<f64> {
+        &self.profile
+    }
+
     /// `q` inside whose `F q` has these values at the inner nodes, in their place.
     pub fn solve_profile(&self, values: &mut [f64]) {
         self.inverse.solve(values);

@@ -248,7 +248,9 @@ impl Model {
                 (0..stuck).for_each(|i| slip[(i, m)] = 0.0);
             }
             if loading.path.is_some() {
-                direction = self.directions(motion, fields);
+                let slipped =
+                    Mat::from_fn(inner, columns, |j, m| motion.slip[(j, m)] * fields.density_factor[j]);
+                direction = directions(motion, self.annulus().operators.abel.profile(), &slipped);
             }
         }
         let mut path = Mat::<f64>::zeros(n, steps);
@@ -269,30 +271,6 @@ impl Model {
             }
         }
         Surface { pressure, direction, path }
-    }
-
-    /// Direction of the slip in each step, `(springs, steps · components)`: where not all springs slip one way, that of their slips by the sizes of their weights.
-    fn directions(&self, motion: &Motion, fields: &Fields) -> Mat<f64> {
-        let (n, inner, columns) = (self.springs(), self.springs() - 1, motion.free.len());
-        let way = |m: usize| motion.ways.get(m).copied().unwrap_or_default();
-        let unknown: Vec<usize> = (0..columns).filter(|m| way(*m) == 0.0).collect();
-        let slipped = Mat::from_fn(inner, unknown.len(), |j, m| {
-            motion.slip[(j, unknown[m])] * fields.density_factor[j]
-        });
-        let mut found = Mat::zeros(n, unknown.len());
-        product_without_signs(&mut found, self.annulus().operators.abel.profile(), slipped.as_ref());
-        if motion.paired {
-            turn_to_pairs(&mut found, motion.components);
-        }
-        normalise(&mut found, motion.components);
-        if unknown.len() == columns {
-            return found;
-        }
-        let mut direction = Mat::from_fn(n, columns, |_, m| way(m));
-        for (m, column) in unknown.into_iter().enumerate() {
-            direction.col_as_slice_mut(column).copy_from_slice(found.col_as_slice(m));
-        }
-        direction
     }
 
     /// Depth worn in a period.
@@ -564,6 +542,33 @@ fn turn_to_pairs(vectors: &mut Mat<f64>, components: usize) {
             }
         }
     }
+}
+
+/// Direction of the slip on the surface in each step, shape `(rows of the profile, steps · components)`: where not all springs slip one way, that of their slips by the sizes of
+/// their weights.
+///
+/// # Arguments
+/// * `profile` -- how the slip of springs is carried to the surface
+/// * `slipped` -- that of each spring, shape `(springs, steps · components)`
+pub(super) fn directions(motion: &Motion, profile: &Mat<f64>, slipped: &Mat<f64>) -> Mat<f64> {
+    let (n, columns) = (profile.nrows(), motion.free.len());
+    let way = |m: usize| motion.ways.get(m).copied().unwrap_or_default();
+    let unknown: Vec<usize> = (0..columns).filter(|m| way(*m) == 0.0).collect();
+    let slipped = Mat::from_fn(slipped.nrows(), unknown.len(), |j, m| slipped[(j, unknown[m])]);
+    let mut found = Mat::zeros(n, unknown.len());
+    product_without_signs(&mut found, profile, slipped.as_ref());
+    if motion.paired {
+        turn_to_pairs(&mut found, motion.components);
+    }
+    normalise(&mut found, motion.components);
+    if unknown.len() == columns {
+        return found;
+    }
+    let mut direction = Mat::from_fn(n, columns, |_, m| way(m));
+    for (m, column) in unknown.into_iter().enumerate() {
+        direction.col_as_slice_mut(column).copy_from_slice(found.col_as_slice(m));
+    }
+    direction
 }
 
 /// Columns of a matrix, some at a time.

@@ -14,7 +14,7 @@ use super::{Gross, Whole};
 use crate::laws::wear::Spreading;
 use crate::numerics::roots::bracketed;
 use crate::numerics::whole_contact::{Coordinate, WholeContact};
-use crate::solver::model::cycle::Surface;
+use crate::solver::model::cycle::{Surface, directions};
 use crate::solver::model::motion::{Bearing, Energies, Motion};
 use crate::solver::model::moving::LAST_STICK;
 use crate::solver::model::schedule::{AmplitudeControl, CycleLoading};
@@ -314,16 +314,17 @@ impl Model {
         let sticks = |spring: &usize| (0..motion.free.len()).all(|m| motion.slip[(*spring, m)] == 0.0);
         let last = (0..mesh.inner()).rev().find(sticks);
         let slip: Vec<Vec<f64>> = (0..motion.free.len()).map(column).collect();
-        let along = |i: usize, one: usize, other: usize| -> f64 {
-            (0..components)
-                .map(|axis| slip[components * one + axis][i] * slip[components * other + axis][i])
-                .sum()
-        };
-        let path = Mat::from_fn(mesh.inner(), motion.steps(), |i, step| {
-            let path = along(i, step, step).sqrt();
-            let against = motion.paired && along(i, step, step) + along(i, step, step ^ 1) < 0.0;
-            if against { -path } else { path }
+        // What a kink in the slip of one step makes of that elsewhere cancels over the steps, by its sign.
+        let direction = directions(motion, mesh.profile_weights(), &motion.slip);
+        let mut path = Mat::from_fn(mesh.inner(), motion.steps(), |i, step| {
+            let parts = components * step..components * (step + 1);
+            parts.map(|m| slip[m][i] * direction[(i, m)]).sum()
         });
+        for i in 0..mesh.inner() {
+            if path.row(i).iter().sum::<f64>() < 0.0 {
+                path.row_mut(i).fill(0.0);
+            }
+        }
         let pressure = self.pressed(gross, whole, &motion.load);
         let stiffness = self.contact.half_space().normal_stiffness() * whole.area.powf(1.0 - self.mu());
         let energy = |part: fn(&Energies) -> f64| -> f64 {
