@@ -256,7 +256,7 @@ impl MovingStick {
     /// The edge of stick of the unworn contact.
     pub(super) fn start(&self, model: &Model) -> Result<StickEdge> {
         let profile = model.contact.equivalent_profile();
-        let loading = model.schedule.loading(0.0, 0.0);
+        let loading = model.schedule.first_slip();
         let compression = match self.cause {
             Cause::Sliding(_) | Cause::BothForces(_) => {
                 let radius = model.stick_zone.stick_area.sqrt();
@@ -305,15 +305,13 @@ impl MovingStick {
     }
 }
 
-/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and it does not jump.
+/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and blocks differ by their amplitudes alone.
 ///
 /// # Errors
 /// As [`slides_at_once`].
 pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
-    let coulomb = conditions.friction.coefficient().is_some();
     Ok(conditions.tangential_control != TangentialControl::Displacement
-        && conditions.blocks.iter().all(|block| block.amplitude_factor > 0.0 && coulomb)
         && conditions.blocks.iter().all(|block| block.indentation_factor == 1.0)
         && !slides_at_once(schedule, contact)?)
 }
@@ -482,6 +480,9 @@ impl Model {
     /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
         let loading = self.after_energy(self.held_at_rest(state, loading), state.dissipated_energy);
+        if loading.is_pause() {
+            return loading;
+        }
         match (self.moving().map(|moving| moving.cause), &state.stick) {
             (Some(Cause::Tangential), Some(stick)) => {
                 self.displaced(loading, self.contact.indentation() - stick.depth)

@@ -94,7 +94,8 @@ impl StickEdge {
 }
 
 impl Model {
-    /// The state in which a new block begins, if one does since `before`, cycles: where the edge of stick jumps, the mesh begins anew there.
+    /// The state in which a new block begins, if one does since `before`, cycles: where the edge of stick jumps, the mesh begins anew there. In a pause it
+    /// stays where it was.
     ///
     /// Outwards the ground that comes to rest is kept. Inwards it is given back to the springs; within all that ever came to rest it is unworn.
     ///
@@ -109,8 +110,13 @@ impl Model {
         if !moving.jumps && !moving.in_blocks {
             return Ok(state);
         }
-        let loading = self.schedule.loading(state.cycles, state.cycles);
-        let loading = self.after_energy(loading, state.dissipated_energy);
+        let Some(last) = self.schedule.slip_before(state.cycles) else { return Ok(state) };
+        let now = self.schedule.loading(state.cycles, state.cycles);
+        if now.is_pause() {
+            return Ok(state);
+        }
+        let [last, loading] =
+            [last, now].map(|loading| self.after_energy(loading, state.dissipated_energy));
         let indentation = self.indentation(&state);
         let before = indentation - stick.depth;
         let ratio = self.contact.half_space().stiffness_ratio();
@@ -136,7 +142,13 @@ impl Model {
         let [least, most] = [self.stick_zone.stick_area, old + slip_area];
         let compression = match driven {
             Some(compression) => compression,
-            None => ground.compression(self.edge_in_balance(&ground, &loading, [least, most], &state)?),
+            None => {
+                let edge = self.edge_in_balance(&ground, [&last, &loading], [least, most])?;
+                if (edge / old - 1.0).abs() < SAME_PLACE {
+                    return Ok(state);
+                }
+                ground.compression(edge)
+            }
         };
         let excess = |squared: f64| ground.compression(squared) - compression;
         let new = match compression {
@@ -262,34 +274,46 @@ impl Model {
         (slip_area, self.compression_at(next, slip_area, slip(slip_area)))
     }
 
-    /// Squared radius, m², at which stick ends where a balance of tangential forces begins anew on the profile as it is: the load within, beyond that of
-    /// the compression at the edge, is what the balance leaves of the normal force. As [`Model::bearing`] it follows the height of the edge.
+    /// Squared radius, m², at which stick ends where a balance of tangential forces begins anew on the profile as it is.
+    ///
+    /// ```text
+    /// F_x = 2 c_N [τ(q_c) c^(1+k)/(1+k) + ∫_c^a x^k τ(q) dx],    dF_x = 2 c_N c^(1+k)/(1+k) dτ(q_c),    U = τ(q_c)/M
+    /// ```
+    ///
+    /// It is counted from the force of the balance before, so that the quadrature over the springs does not enter and an edge stays where nothing else is asked.
+    ///
+    /// # Arguments
+    /// * `last`, `now` -- what acted before, as it ended, and what acts from now on
     ///
     /// # Errors
     /// [`Error::NotConverged`](crate::Error::NotConverged) if there is no such place within the contact.
     fn edge_in_balance(
         &self,
         ground: &Ground,
-        loading: &CycleLoading,
+        [last, now]: [&CycleLoading; 2],
         [least, most]: [f64; 2],
-        state: &State,
     ) -> Result<f64> {
-        let exponent = 1.0 + self.contact.half_space().grading();
+        let half_space = self.contact.half_space();
+        let exponent = 1.0 + half_space.grading();
         let old = ground.stick_area;
-        let of_edge = |squared: f64, compression: f64| compression * squared.powf(0.5 * exponent) / exponent;
-        let normal = self.normal_force(&self.fields(state));
+        let strength = |compression: f64| now.friction.static_strength(compression);
+        let displacement = |strength: f64| strength / half_space.stiffness_ratio();
+        // Friction that has changed in a pause bears as much more on the same springs.
+        let changed = now.friction.reference_coefficient() / last.friction.reference_coefficient();
+        let before = displacement(last.friction.static_strength(ground.before));
+        let held = changed * last.force_at(before);
         let excess = |squared: f64| {
             let cells = |i: usize| old + (squared - old) * (i as f64 / JUMP_STEPS as f64).powi(4);
-            let mut borne = ground.stick.load - of_edge(old, ground.before);
-            let (mut place, mut compression) = (old, ground.before);
+            let (mut place, mut at_place) = (old, strength(ground.before));
+            let mut gained = 0.0;
             for i in 1..=JUMP_STEPS {
-                let (next, at_next) = (cells(i), ground.compression(cells(i)));
-                borne += (compression - at_next) * of_edge(0.5 * (place + next), 1.0);
-                (place, compression) = (next, at_next);
+                let (next, at_next) = (cells(i), strength(ground.compression(cells(i))));
+                gained += (at_next - at_place) * (0.5 * (place + next)).powf(0.5 * exponent) / exponent;
+                (place, at_place) = (next, at_next);
             }
-            borne - self.bearing_of(loading, normal, compression)
+            now.excess(held + 2.0 * half_space.normal_stiffness() * gained, displacement(at_place))
         };
-        if excess(least) >= 0.0 {
+        if excess(least) <= 0.0 {
             return Ok(least);
         }
         bracketed(excess, least, most, 0.0)
