@@ -104,12 +104,6 @@ impl CycleLoading {
         Self { amplitude, control: AmplitudeControl::Displacement, path, ..self }
     }
 
-    /// Force, N, that a balance leaves to the contact at an amplitude of its displacement, m.
-    pub fn force_at(&self, displacement: f64) -> f64 {
-        let [by_force, by_displacement] = self.control.factors();
-        (self.asked() - by_displacement * displacement) / by_force
-    }
-
     /// By how much the contact, at an amplitude of force, N, and displacement, m, exceeds what is asked.
     pub fn excess(&self, force: f64, displacement: f64) -> f64 {
         let [by_force, by_displacement] = self.control.factors();

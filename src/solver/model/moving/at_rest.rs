@@ -94,8 +94,9 @@ impl Model {
             Some(MovingStick { cause: Cause::TwoBalances(force), .. }) => {
                 let Some(coefficient) = loading.friction.coefficient() else { return 0.0 };
                 let half_space = self.contact.half_space();
-                let tangential =
-                    loading.force_at(coefficient * slip_compression / half_space.stiffness_ratio());
+                let amplitude = coefficient * slip_compression / half_space.stiffness_ratio();
+                let [by_force, by_displacement] = loading.control.factors();
+                let tangential = (loading.asked() - by_displacement * amplitude) / by_force;
                 0.5 * (force - tangential / coefficient) / half_space.normal_stiffness()
             }
             _ => 0.0,

@@ -29,7 +29,7 @@ impl MovingStick {
         if by_energy {
             check_along_energy(schedule, slides && !follows)?;
         }
-        let in_blocks = schedule.slips_otherwise();
+        let in_blocks = schedule.slips_otherwise_between_blocks();
         check_memory(schedule, contact, follows)?;
         if slides && !follows {
             if conditions.holds_normal_force {
@@ -91,7 +91,7 @@ impl MovingStick {
         let changes = *schedule.friction_change() != History::Constant;
         let [falls, rises] = schedule.friction_change().directions();
         let by = Self::by(Cause::Friction);
-        let in_blocks = schedule.slips_otherwise();
+        let in_blocks = schedule.slips_otherwise_between_blocks();
         if !in_blocks && changes && schedule.lifts() {
             if falls && rises {
                 check_rest(schedule, contact)?;
@@ -162,7 +162,7 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     } else {
         (
             "loading.blocks",
-            "repeat them, end with the one that slips farthest, or begin with it and let only positive amplitude factors differ",
+            "repeat them, end with the one that slips farthest, or begin with it and let only amplitude factors differ",
         )
     };
     Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })

@@ -110,13 +110,11 @@ impl Model {
         if !moving.jumps && !moving.in_blocks {
             return Ok(state);
         }
-        let Some(last) = self.schedule.slip_before(state.cycles) else { return Ok(state) };
-        let now = self.schedule.loading(state.cycles, state.cycles);
-        if now.is_pause() {
+        if self.schedule.rests_or_goes_on(state.cycles) {
             return Ok(state);
         }
-        let [last, loading] =
-            [last, now].map(|loading| self.after_energy(loading, state.dissipated_energy));
+        let loading = self.schedule.loading(state.cycles, state.cycles);
+        let loading = self.after_energy(loading, state.dissipated_energy);
         let indentation = self.indentation(&state);
         let before = indentation - stick.depth;
         let ratio = self.contact.half_space().stiffness_ratio();
@@ -142,13 +140,7 @@ impl Model {
         let [least, most] = [self.stick_zone.stick_area, old + slip_area];
         let compression = match driven {
             Some(compression) => compression,
-            None => {
-                let edge = self.edge_in_balance(&ground, [&last, &loading], [least, most])?;
-                if (edge / old - 1.0).abs() < SAME_PLACE {
-                    return Ok(state);
-                }
-                ground.compression(edge)
-            }
+            None => ground.compression(self.edge_in_balance(&ground, &loading, [least, most], &state)?),
         };
         let excess = |squared: f64| ground.compression(squared) - compression;
         let new = match compression {
@@ -280,28 +272,24 @@ impl Model {
     /// F_x = 2 c_N [τ(q_c) c^(1+k)/(1+k) + ∫_c^a x^k τ(q) dx],    dF_x = 2 c_N c^(1+k)/(1+k) dτ(q_c),    U = τ(q_c)/M
     /// ```
     ///
-    /// It is counted from the force of the balance before, so that the quadrature over the springs does not enter and an edge stays where nothing else is asked.
-    ///
-    /// # Arguments
-    /// * `last`, `now` -- what acted before, as it ended, and what acts from now on
+    /// The springs between the edge before and the new one bear by the profile rather than by the quadrature over the mesh.
     ///
     /// # Errors
     /// [`Error::NotConverged`](crate::Error::NotConverged) if there is no such place within the contact.
     fn edge_in_balance(
         &self,
         ground: &Ground,
-        [last, now]: [&CycleLoading; 2],
+        loading: &CycleLoading,
         [least, most]: [f64; 2],
+        state: &State,
     ) -> Result<f64> {
         let half_space = self.contact.half_space();
         let exponent = 1.0 + half_space.grading();
         let old = ground.stick_area;
-        let strength = |compression: f64| now.friction.static_strength(compression);
+        let strength = |compression: f64| loading.friction.static_strength(compression);
         let displacement = |strength: f64| strength / half_space.stiffness_ratio();
-        // Friction that has changed in a pause bears as much more on the same springs.
-        let changed = now.friction.reference_coefficient() / last.friction.reference_coefficient();
-        let before = displacement(last.friction.static_strength(ground.before));
-        let held = changed * last.force_at(before);
+        let before = self.displaced(loading.clone(), ground.before);
+        let held = self.force(&before, &state.compression, &self.fields(state), before.amplitude);
         let excess = |squared: f64| {
             let cells = |i: usize| old + (squared - old) * (i as f64 / JUMP_STEPS as f64).powi(4);
             let (mut place, mut at_place) = (old, strength(ground.before));
@@ -311,7 +299,7 @@ impl Model {
                 gained += (at_next - at_place) * (0.5 * (place + next)).powf(0.5 * exponent) / exponent;
                 (place, at_place) = (next, at_next);
             }
-            now.excess(held + 2.0 * half_space.normal_stiffness() * gained, displacement(at_place))
+            loading.excess(held + 2.0 * half_space.normal_stiffness() * gained, displacement(at_place))
         };
         if excess(least) <= 0.0 {
             return Ok(least);

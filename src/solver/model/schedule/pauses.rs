@@ -2,6 +2,7 @@
 
 use super::{CycleLoading, Schedule};
 use crate::laws::history::History;
+use crate::laws::loading::Block;
 
 impl Schedule {
     /// Amplitude factors of the blocks, without pauses.
@@ -9,14 +10,18 @@ impl Schedule {
         self.conditions.blocks.iter().map(|block| block.amplitude_factor).filter(|factor| *factor > 0.0)
     }
 
-    /// Whether blocks make springs slip otherwise than one without end would: they differ by more than pauses, or friction changes along the cycles while
-    /// one lasts.
+    /// Whether blocks make springs slip otherwise than they would without blocks: they are more than pauses, or friction changes along the cycles while one lasts.
     pub fn slips_otherwise(&self) -> bool {
-        let first = self.amplitude_factors().next();
-        let differ = self.amplitude_factors().any(|factor| Some(factor) != first)
-            || self.conditions.blocks.iter().any(|block| block.indentation_factor != 1.0);
-        self.changes_between_blocks()
-            && (differ || self.conditions.friction_history != History::Constant)
+        let blocks = &self.conditions.blocks;
+        let pauses = blocks.iter().any(|block| block.amplitude_factor == 0.0);
+        let differs =
+            |block: &Block| ![0.0, 1.0].contains(&block.amplitude_factor) || block.indentation_factor != 1.0;
+        blocks.iter().any(differs) || pauses && self.conditions.friction_history != History::Constant
+    }
+
+    /// Whether springs slip otherwise in one block than in another.
+    pub fn slips_otherwise_between_blocks(&self) -> bool {
+        self.changes_between_blocks() && self.slips_otherwise()
     }
 
     /// What makes springs slip first, as it begins.
@@ -26,8 +31,18 @@ impl Schedule {
         self.in_block(block, start)
     }
 
+    /// Whether nothing moves in the block that begins at `cycles`, or springs slip as they did when they slipped last, or for the first time.
+    pub fn rests_or_goes_on(&self, cycles: f64) -> bool {
+        let now = self.loading(cycles, cycles);
+        let same = |last: CycleLoading| {
+            let [last, now] = [&last, &now].map(|it| [it.asked(), it.friction.reference_coefficient()]);
+            last == now
+        };
+        now.is_pause() || self.slip_before(cycles).is_none_or(same)
+    }
+
     /// What made springs slip last before the block that is under way at `cycles`, as it ended; none where nothing did.
-    pub fn slip_before(&self, cycles: f64) -> Option<CycleLoading> {
+    fn slip_before(&self, cycles: f64) -> Option<CycleLoading> {
         let (mut pass, mut block) = self.block(cycles);
         loop {
             (pass, block) = match block {
