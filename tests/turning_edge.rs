@@ -296,8 +296,9 @@ fn nothing_slips_in_a_pause_and_all_else_stays() {
     let paused = blocks_of(&[(0.5, 1.0), (0.5, 0.0), (1.0, 0.7)]);
     for (load, control) in CONTROLS {
         for friction in [COULOMB, &load_dependent(-0.2)] {
-            let results = run(&scene(load, control, friction, &paused, "tau = 0.8", &on(40)));
-            let before = run(&scene(load, control, friction, "", "tau = 0.5", &on(40)));
+            let results = run(&scene(load, control, friction, &paused, "tau = 0.8", &on(60)));
+            let longer = blocks_of(&[(0.9, 1.0), (1.0, 0.7)]);
+            let before = run(&scene(load, control, friction, &longer, "tau = 0.5", &on(60)));
             let (pause, before) = (results.last(), before.last());
             assert_eq!(pause.regime, Regime::Stick, "{load} {control}");
             assert_eq!(pause.stick_radius, pause.contact_radius, "{load} {control}");

@@ -150,6 +150,11 @@ impl MovingStick {
         matches!(self.cause, Cause::TwoBalances(_))
     }
 
+    /// A compression at the edge, m, where it is kept; else zero.
+    pub(super) fn kept(&self, compression: f64) -> f64 {
+        if self.keeps { compression } else { 0.0 }
+    }
+
     /// Whether it may leave worn ground behind.
     fn leaves_ground(&self) -> bool {
         self.outwards || self.turns
@@ -299,7 +304,7 @@ impl MovingStick {
             wear_depth: vec![0.0; nodes],
             places_at_rest: vec![],
             raised_at_rest: vec![],
-            slip_compression: if self.keeps { compression } else { 0.0 },
+            slip_compression: self.kept(compression),
             rates: [0.0; 3],
         })
     }

@@ -230,7 +230,7 @@ impl Model {
                 wear_depth: stick.wear_depth.clone(),
                 places_at_rest,
                 raised_at_rest,
-                slip_compression: if moving.keeps { compression } else { 0.0 },
+                slip_compression: moving.kept(compression),
                 rates: [0.0; 3],
             }),
             ..state
