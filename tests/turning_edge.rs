@@ -261,18 +261,33 @@ fn jumps_under_friction_by_a_vanishing_power_of_the_load_are_those_under_coulomb
     }
 }
 
+/// A block that shrinks far and one that grows again: the edge comes back to worn ground, from where it recedes. It used to stay there, with 6e-3 of the volume unworn.
+#[test]
+fn an_edge_that_jumps_back_to_worn_ground_goes_on_to_recede() {
+    let blocks = blocks_of(&[(1.0, 1.0), (2.0, 0.3), (1.0, 0.9)]);
+    for friction in [COULOMB, &load_dependent(-0.2), &load_dependent(0.3)] {
+        let at = |numerics: &str| run(&scene(PRESSED, FORCE, friction, &blocks, "tau = 6", numerics));
+        let many = at(&on(160)).last().wear_volume;
+        for accuracy in [1e-2, 1e-3] {
+            let off = at(&format!("accuracy = {accuracy:e}")).last().wear_volume / many - 1.0;
+            println!("{friction}, {accuracy:e}: {off:.1e}");
+            assert!(off.abs() < 0.5 * accuracy && off.abs() < 2e-3, "{friction}, {accuracy:e}: {off:e}");
+        }
+    }
+}
+
 /// In a pause the contact rests as it is, and the next block begins from the edge of stick before or jumps from there.
 #[test]
 fn a_pause_only_delays_wear() {
-    let cases: [(&[(f64, f64)], &[(f64, f64)]); 4] = [
-        (&[], &[(0.5, 1.0), (0.3, 0.0), (1.0, 1.0)]),
-        (&[], &[(0.3, 0.0), (1.0, 1.0)]),
-        (&[(0.3, 0.7), (1.0, 1.0)], &[(0.3, 0.7), (0.1, 0.0), (0.2, 0.0), (1.0, 1.0)]),
-        (&[(0.3, 1.0), (1.0, 0.7)], &[(0.3, 1.0), (0.3, 0.0), (1.0, 0.7)]),
+    let cases: [[&[(f64, f64)]; 2]; 4] = [
+        [&[], &[(0.5, 1.0), (0.3, 0.0), (1.0, 1.0)]],
+        [&[], &[(0.3, 0.0), (1.0, 1.0)]],
+        [&[(0.3, 0.7), (1.0, 1.0)], &[(0.3, 0.7), (0.1, 0.0), (0.2, 0.0), (1.0, 1.0)]],
+        [&[(0.3, 1.0), (1.0, 0.7)], &[(0.3, 1.0), (0.3, 0.0), (1.0, 0.7)]],
     ];
     for (load, control) in CONTROLS {
         for friction in [COULOMB, &load_dependent(-0.2), &by_energy(0.6)] {
-            for (alone, paused) in cases {
+            for [alone, paused] in cases {
                 let at = |blocks: &[(f64, f64)], end: &str| {
                     run(&scene(load, control, friction, &blocks_of(blocks), end, &on(60)))
                 };

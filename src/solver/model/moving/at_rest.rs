@@ -43,6 +43,12 @@ impl Model {
         self.moving().is_some_and(|moving| moving.turns)
     }
 
+    /// By how much the squared radius of an edge of stick grows on unworn ground for the height that it gains, m.
+    pub fn area_per_height(&self, stick: &StickEdge) -> f64 {
+        let radius = stick.area.sqrt();
+        2.0 * radius / self.contact.equivalent_profile().derivative(radius)
+    }
+
     /// Whether the edge of stick is to be taken as moving outwards: where it may turn, as it did last.
     pub fn goes_outwards(&self, stick: &StickEdge) -> bool {
         let Some(MovingStick { turns, outwards, .. }) = self.moving() else { return false };
