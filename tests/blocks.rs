@@ -105,23 +105,21 @@ fn an_edge_of_stick_that_comes_to_rest_on_worn_ground_amidst_the_mesh_is_refused
         let schedule = Schedule::new(&contact, conditions, Resolution::default()).unwrap();
         Model::under(&contact, schedule, 40, case.clustering, &OperatorStore::default())
     };
-    for (conditions, key, cure) in [
-        (blocks(pause(), false), "loading.blocks", "repeat them"),
-        (blocks(lifted(), false), "loading.blocks", "slips farthest"),
-    ] {
-        let error = model(&conditions).map(|_| ()).unwrap_err().to_string();
-        println!("{error}");
-        assert!(
-            error.starts_with(&format!("{key}: in the end springs slip below 0.")) && error.contains(cure),
-            "{error}"
-        );
-    }
+    let error = model(&blocks(lifted(), false)).map(|_| ()).unwrap_err().to_string();
+    println!("{error}");
+    assert!(
+        error.starts_with("loading.blocks: in the end springs slip below 0.")
+            && error.contains("repeat them")
+            && error.contains("slips farthest"),
+        "{error}"
+    );
     for conditions in [
         history(&[1.0, 0.909, 1.118]),
         history(&[1.0, 1.4, 1.2]),
         history(&[1.0, 0.909, 0.8]),
         history(&[1.0, 1.1, 1.2]),
         history(&[1.0, 1.4, 1.0]),
+        blocks(pause(), false),
         blocks(pause(), true),
         blocks(lifted(), true),
     ] {

@@ -77,6 +77,12 @@ pub(super) struct Surface {
 }
 
 impl CycleFields {
+    /// Nothing slips up to the contact radius, m.
+    fn at_rest(springs: usize, contact_radius: f64) -> Self {
+        let none = vec![0.0; springs];
+        Self { growth: none.clone(), slip: none, stick_radius: contact_radius, ..Self::default() }
+    }
+
     /// What so many of these cycles do together.
     pub(super) fn lasting(mut self, cycles: f64) -> Self {
         if cycles != 1.0 {
@@ -94,6 +100,10 @@ impl Model {
     pub fn cycle(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> CycleFields {
         if let Some(gross) = self.gross() {
             return self.gross_cycle(gross, loading, compression);
+        }
+        if loading.is_pause() {
+            let edge = fields.stick_zone.stick_area + fields.slip_area;
+            return CycleFields::at_rest(self.springs(), edge.sqrt());
         }
         let mut cycle = self.local_cycle(loading, compression, fields);
         if let Some(factor) = self.factor_at_contact(loading, fields, cycle.dissipation) {

@@ -52,10 +52,11 @@ impl Model {
 
     /// A state with the ground that rests in the block that begins with it.
     pub fn with_resting_area(&self, state: State) -> State {
-        if !self.follows_ground_at_rest() {
+        let loading = self.schedule.loading(state.cycles, state.cycles);
+        if !self.follows_ground_at_rest() || loading.is_pause() {
             return state;
         }
-        let limit = self.limit_of(&self.schedule.loading(state.cycles, state.cycles));
+        let limit = self.limit_of(&loading);
         // On ground that is not worn the place is known better than by springs.
         let unworn = self.unworn_area_above(limit);
         let edge = match unworn <= state.least_stick_radius.powi(2) {

@@ -82,7 +82,7 @@ impl Gross {
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
         // What moves all of the contact in the first cycle does so on this mesh, whatever sticks later.
         let loadings: Vec<CycleLoading> = match by_first {
-            true => vec![schedule.loading(0.0, 0.0)],
+            true => vec![schedule.first_slip()],
             false => schedule.extremes().collect(),
         };
         let innermost = if by_first { depth - height_of_last_core(contact) } else { depth };

@@ -150,6 +150,11 @@ impl MovingStick {
         matches!(self.cause, Cause::TwoBalances(_))
     }
 
+    /// A compression at the edge, m, where it is kept; else zero.
+    pub(super) fn kept(&self, compression: f64) -> f64 {
+        if self.keeps { compression } else { 0.0 }
+    }
+
     /// Whether it may leave worn ground behind.
     fn leaves_ground(&self) -> bool {
         self.outwards || self.turns
@@ -256,7 +261,7 @@ impl MovingStick {
     /// The edge of stick of the unworn contact.
     pub(super) fn start(&self, model: &Model) -> Result<StickEdge> {
         let profile = model.contact.equivalent_profile();
-        let loading = model.schedule.loading(0.0, 0.0);
+        let loading = model.schedule.first_slip();
         let compression = match self.cause {
             Cause::Sliding(_) | Cause::BothForces(_) => {
                 let radius = model.stick_zone.stick_area.sqrt();
@@ -299,21 +304,19 @@ impl MovingStick {
             wear_depth: vec![0.0; nodes],
             places_at_rest: vec![],
             raised_at_rest: vec![],
-            slip_compression: if self.keeps { compression } else { 0.0 },
+            slip_compression: self.kept(compression),
             rates: [0.0; 3],
         })
     }
 }
 
-/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and it does not jump.
+/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, and blocks differ by their amplitudes alone.
 ///
 /// # Errors
 /// As [`slides_at_once`].
 pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
-    let coulomb = conditions.friction.coefficient().is_some();
     Ok(conditions.tangential_control != TangentialControl::Displacement
-        && conditions.blocks.iter().all(|block| block.amplitude_factor > 0.0 && coulomb)
         && conditions.blocks.iter().all(|block| block.indentation_factor == 1.0)
         && !slides_at_once(schedule, contact)?)
 }
@@ -482,6 +485,9 @@ impl Model {
     /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
         let loading = self.after_energy(self.held_at_rest(state, loading), state.dissipated_energy);
+        if loading.is_pause() {
+            return loading;
+        }
         match (self.moving().map(|moving| moving.cause), &state.stick) {
             (Some(Cause::Tangential), Some(stick)) => {
                 self.displaced(loading, self.contact.indentation() - stick.depth)

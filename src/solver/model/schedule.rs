@@ -1,5 +1,7 @@
 //! What acts on the contact in each cycle: laws, amplitude and path, by block and by history.
 
+mod pauses;
+
 use std::sync::{Arc, OnceLock};
 
 use super::first_force::first_force;
@@ -74,6 +76,11 @@ impl CycleLoading {
     /// What is asked: an amplitude of the displacement, m, or of the force, N.
     pub fn asked(&self) -> f64 {
         if let AmplitudeControl::Force(asked) = self.control { asked } else { self.amplitude }
+    }
+
+    /// Whether nothing moves.
+    pub fn is_pause(&self) -> bool {
+        self.asked() == 0.0
     }
 
     /// Compression at the largest indentation below which springs slip in this cycle, m, at the amplitude given.
@@ -279,10 +286,13 @@ impl Schedule {
 
     /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning.
     pub fn loading(&self, start: f64, cycles: f64) -> CycleLoading {
-        let mut loading = self.loadings[self.block(start).1].clone();
-        if self.is_first(start) {
-            loading.share = FROM_REST;
-        }
+        let loading = self.in_block(self.block(start).1, cycles);
+        if self.is_first(start) { CycleLoading { share: FROM_REST, ..loading } } else { loading }
+    }
+
+    /// What acts at `cycles` in a block.
+    fn in_block(&self, block: usize, cycles: f64) -> CycleLoading {
+        let mut loading = self.loadings[block].clone();
         let factor = |history: &History| history.at(cycles * self.clock_rate);
         if self.conditions.friction_history != History::Constant {
             loading.friction = loading.friction.scaled(factor(&self.conditions.friction_history));
@@ -340,20 +350,23 @@ impl Schedule {
         }
     }
 
-    /// Everything that acts at some time, with friction at its smallest and at its largest.
+    /// Everything that acts at some time but for pauses, with friction at its smallest and at its largest.
     pub fn extremes(&self) -> impl Iterator<Item = CycleLoading> {
         let range = self.friction_change().range();
-        self.loadings.iter().flat_map(move |loading| {
+        self.loadings.iter().filter(|loading| !loading.is_pause()).flat_map(move |loading| {
             range.map(|factor| CycleLoading { friction: loading.friction.scaled(factor), ..loading.clone() })
         })
     }
 
-    /// Everything that acts in the end: the last block, or all of them where they are repeated, with friction as it is then.
+    /// Everything that acts in the end: the last block that is no pause, or all of them where they are repeated, with friction as it is then.
     pub fn lasting(&self) -> impl Iterator<Item = CycleLoading> {
         let factor = self.friction_change().last();
-        let passed = if self.conditions.repeat { 0 } else { self.loadings.len() - 1 };
-        self.loadings[passed..]
+        let last = if self.conditions.repeat { usize::MAX } else { 1 };
+        self.loadings
             .iter()
+            .rev()
+            .filter(|loading| !loading.is_pause())
+            .take(last)
             .map(move |loading| CycleLoading { friction: loading.friction.scaled(factor), ..loading.clone() })
     }
 
@@ -465,7 +478,7 @@ impl Schedule {
     /// Whether every cycle is the same: one amplitude at one indentation, under friction that does not change.
     fn is_steady(&self) -> bool {
         let conditions = &self.conditions;
-        conditions.blocks.is_empty()
+        !self.slips_otherwise()
             && self.keeps_friction()
             && conditions.tangential_control == TangentialControl::Displacement
     }
@@ -522,15 +535,15 @@ impl Schedule {
     /// Whether both forces are held in cycles that are the same, and wear is local: the edge of stick stays, and amplitude and indentation follow from the
     /// springs.
     fn rests_under_both_forces(&self) -> bool {
-        let Conditions { mode, friction, wear, blocks, .. } = &self.conditions;
-        let same = blocks.is_empty() && self.keeps_friction();
+        let Conditions { mode, friction, wear, .. } = &self.conditions;
+        let same = !self.slips_otherwise() && self.keeps_friction();
         let closed = mode.is_tangential() && friction.coefficient().is_some() && !self.resolves();
         self.conditions.holds_both_forces() && same && closed && wear.spreading().is_none()
     }
 
     /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.
     pub fn is_smooth_in_gross_slip(&self) -> bool {
-        self.conditions.blocks.is_empty() && self.keeps_friction() && !self.conditions.wear.has_kink()
+        !self.slips_otherwise() && self.keeps_friction() && !self.conditions.wear.has_kink()
     }
 
     /// Whether cycles are the same, at a constant indentation, and wear is local: at most resolved cycles or a threshold make kinks along the annulus.

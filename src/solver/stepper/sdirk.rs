@@ -54,11 +54,12 @@ impl Sdirk {
         };
         let outwards = model.goes_outwards(stick);
         let first = towards(outwards);
-        if !model.turns() || went(&first, stick.area, outwards).is_ok() {
+        let least = TURNING.max(TURNING_OF_TOLERANCE * *tolerance) * stick.area;
+        let from = EdgeBefore { stick, per_height: model.area_per_height(stick), least };
+        if !model.turns() || from.went(&first, outwards).is_ok() {
             return first;
         }
-        let least = TURNING.max(TURNING_OF_TOLERANCE * *tolerance) * stick.area;
-        turned(first, towards(!outwards), [stick.area, least], outwards)
+        from.turned(first, towards(!outwards), outwards)
     }
 }
 
@@ -93,32 +94,44 @@ impl Stepper for Sdirk {
     }
 }
 
-/// Whether an edge of stick went to the side to which it was taken to move; else by how much it went to the other, m².
-fn went(trial: &Trial, area: f64, outwards: bool) -> std::result::Result<(), f64> {
-    let now = trial.state.as_ref().and_then(|state| state.stick.as_ref()).map(|stick| stick.area);
-    match now {
-        Some(now) if (now >= area) == outwards => Ok(()),
-        Some(now) => Err((now - area).abs()),
-        None => Err(f64::INFINITY),
-    }
+/// An edge of stick from which a step begins.
+struct EdgeBefore<'a> {
+    stick: &'a StickEdge,
+    /// See [`Model::area_per_height`].
+    per_height: f64,
+    /// The most that it may go to the other side than it was taken to, m².
+    least: f64,
 }
 
-/// Of two steps, the first with the edge of stick taken to move to the side it went before, the one in which it went as was taken; or the first, if it
-/// turns just before its end.
-///
-/// # Arguments
-/// * `from` -- squared radius of stick before the step, and the most that it may go to the other side, m²
-fn turned(first: Trial, second: Trial, from: [f64; 2], outwards: bool) -> Trial {
-    let rate_evaluations = first.rate_evaluations + second.rate_evaluations;
-    let [area, most] = from;
-    let back = |trial: &Trial, outwards: bool| went(trial, area, outwards).err().unwrap_or_default();
-    let [of_first, of_second] = [back(&first, outwards), back(&second, !outwards)];
-    if of_second == 0.0 || (of_second < of_first && of_second <= most) {
-        Trial { rate_evaluations, ..second }
-    } else if of_first <= most {
-        Trial { rate_evaluations, ..first }
-    } else {
-        Trial::failed(rate_evaluations)
+impl EdgeBefore<'_> {
+    /// Whether it went to the side to which it was taken to move; else by how much it went to the other, m².
+    ///
+    /// Outwards the ground that it meets rises. Where slip has grown much next to the edge, the equation there lets that stay where it is while the height falls.
+    fn went(&self, trial: &Trial, outwards: bool) -> std::result::Result<(), f64> {
+        let Some(now) = trial.state.as_ref().and_then(|state| state.stick.as_ref()) else {
+            return Err(f64::INFINITY);
+        };
+        let fallen = self.per_height * (self.stick.depth - now.depth);
+        match now.area - self.stick.area {
+            _ if outwards && fallen > self.least => Err(fallen),
+            moved if (moved >= 0.0) == outwards => Ok(()),
+            moved => Err(moved.abs()),
+        }
+    }
+
+    /// Of two steps, the first with the edge of stick taken to move to the side it went before, the one in which it went as was taken; or the first, if it
+    /// turns just before its end.
+    fn turned(&self, first: Trial, second: Trial, outwards: bool) -> Trial {
+        let rate_evaluations = first.rate_evaluations + second.rate_evaluations;
+        let back = |trial: &Trial, outwards: bool| self.went(trial, outwards).err().unwrap_or_default();
+        let [of_first, of_second] = [back(&first, outwards), back(&second, !outwards)];
+        if of_second == 0.0 || (of_second < of_first && of_second <= self.least) {
+            Trial { rate_evaluations, ..second }
+        } else if of_first <= self.least {
+            Trial { rate_evaluations, ..first }
+        } else {
+            Trial::failed(rate_evaluations)
+        }
     }
 }
 

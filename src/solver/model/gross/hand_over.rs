@@ -36,7 +36,7 @@ const CORE: f64 = 0.03;
 fn is_followed(schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
     let stays = schedule.keeps_friction()
-        && conditions.blocks.is_empty()
+        && !schedule.slips_otherwise()
         && conditions.tangential_control == TangentialControl::Displacement;
     let local = conditions.wear.spreading().is_none() && !schedule.resolves();
     stays && local && conditions.friction.coefficient().is_some()
@@ -97,6 +97,9 @@ impl Model {
     fn stick_zone_again(&self, gross: &Gross, state: &State) -> Option<StickZone> {
         let (mesh, whole) = (&gross.mesh, self.whole(gross, &state.compression)?);
         let loading = self.schedule.loading(state.cycles, state.cycles);
+        if loading.is_pause() {
+            return None;
+        }
         let slip_compression = loading.slip_compression(self.contact.half_space().stiffness_ratio());
         let end = mesh.last_above(&state.compression, slip_compression)?;
         let fraction = mesh.fraction(end);
@@ -191,6 +194,7 @@ impl Model {
             load: zone.stick_load,
             left_behind,
             wear_depth: self.gross_radial_fields(gross, state).wear_depth,
+            slip_compression: moving.kept(zone.slip_compression),
             ..StickEdge::default()
         };
         let handed = to.close_force(State {

@@ -43,6 +43,12 @@ impl Model {
         self.moving().is_some_and(|moving| moving.turns)
     }
 
+    /// By how much the squared radius of an edge of stick grows on unworn ground for the height that it gains, m.
+    pub fn area_per_height(&self, stick: &StickEdge) -> f64 {
+        let radius = stick.area.sqrt();
+        2.0 * radius / self.contact.equivalent_profile().derivative(radius)
+    }
+
     /// Whether the edge of stick is to be taken as moving outwards: where it may turn, as it did last.
     pub fn goes_outwards(&self, stick: &StickEdge) -> bool {
         let Some(MovingStick { turns, outwards, .. }) = self.moving() else { return false };
@@ -88,24 +94,19 @@ impl Model {
         stick
     }
 
-    /// See [`Model::bearing`]; zero where nothing asks for it.
+    /// See [`Model::bearing`]; zero where nothing asks for it, and under friction that is not Coulomb's.
     pub(super) fn bearing_under(&self, loading: &CycleLoading, slip_compression: f64) -> f64 {
         match self.moving() {
             Some(MovingStick { cause: Cause::TwoBalances(force), .. }) => {
-                self.bearing_of(loading, *force, slip_compression)
+                let Some(coefficient) = loading.friction.coefficient() else { return 0.0 };
+                let half_space = self.contact.half_space();
+                let amplitude = coefficient * slip_compression / half_space.stiffness_ratio();
+                let [by_force, by_displacement] = loading.control.factors();
+                let tangential = (loading.asked() - by_displacement * amplitude) / by_force;
+                0.5 * (force - tangential / coefficient) / half_space.normal_stiffness()
             }
             _ => 0.0,
         }
-    }
-
-    /// The same of a normal force, N; zero under friction that is not Coulomb's.
-    pub(super) fn bearing_of(&self, loading: &CycleLoading, force: f64, slip_compression: f64) -> f64 {
-        let Some(coefficient) = loading.friction.coefficient() else { return 0.0 };
-        let half_space = self.contact.half_space();
-        let amplitude = coefficient * slip_compression / half_space.stiffness_ratio();
-        let [by_force, by_displacement] = loading.control.factors();
-        let tangential = (loading.asked() - by_displacement * amplitude) / by_force;
-        0.5 * (force - tangential / coefficient) / half_space.normal_stiffness()
     }
 
     /// Slope of [`Model::bearing`] by the compression, m^(1+k): that of a rig.

@@ -20,7 +20,7 @@ impl MovingStick {
     ///
     /// # Errors
     /// [`Error::Inconsistent`] for friction that falls and rises under normal oscillation; for blocks of other indentations of which the last slips less far than
-    /// others before; for pauses under a held normal force.
+    /// others before.
     pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
         let conditions = schedule.conditions();
         let force = contact.normal_force();
@@ -29,7 +29,7 @@ impl MovingStick {
         if by_energy {
             check_along_energy(schedule, slides && !follows)?;
         }
-        let in_blocks = schedule.changes_between_blocks();
+        let in_blocks = schedule.slips_otherwise_between_blocks();
         check_memory(schedule, contact, follows)?;
         if slides && !follows {
             if conditions.holds_normal_force {
@@ -40,15 +40,12 @@ impl MovingStick {
         }
         let [falls, rises] = schedule.friction_change().directions();
         let coulomb = conditions.friction.coefficient().is_some();
-        if in_blocks && conditions.holds_normal_force {
-            check_blocks_under_force(conditions)?;
-        }
         let moving = match (conditions.holds_normal_force, conditions.tangential_control) {
             (true, TangentialControl::Displacement) => Self {
                 outwards: rises || !falls,
                 turns: falls || in_blocks,
                 in_blocks,
-                keeps: falls || in_blocks || by_energy,
+                keeps: falls || by_energy || schedule.changes_between_blocks(),
                 ..Self::by(Cause::NormalForce(force))
             },
             (true, TangentialControl::Force) if coulomb && !rises && !in_blocks => {
@@ -93,10 +90,8 @@ impl MovingStick {
         let conditions = schedule.conditions();
         let changes = *schedule.friction_change() != History::Constant;
         let [falls, rises] = schedule.friction_change().directions();
-        let blocks = &conditions.blocks;
-        let amplitudes = || blocks.iter().map(|block| block.amplitude_factor);
         let by = Self::by(Cause::Friction);
-        let in_blocks = schedule.changes_between_blocks();
+        let in_blocks = schedule.slips_otherwise_between_blocks();
         if !in_blocks && changes && schedule.lifts() {
             if falls && rises {
                 check_rest(schedule, contact)?;
@@ -106,17 +101,17 @@ impl MovingStick {
                 return Ok(None);
             }
         }
-        let level =
-            at_one_indentation(conditions) && amplitudes().all(|factor| factor > 0.0) && !schedule.lifts();
+        let level = at_one_indentation(conditions) && !schedule.lifts();
         let turning = Self { outwards: !falls, turns: true, in_blocks, ..by.clone() };
         if *schedule.friction_along_energy() != History::Constant && in_blocks && level {
             return Ok(Some(turning));
         }
         if in_blocks || falls && rises {
-            let shrink = amplitudes().zip(amplitudes().skip(1)).any(|(one, next)| next < one);
+            let amplitudes: Vec<f64> = schedule.amplitude_factors().collect();
+            let shrink = !amplitudes.is_sorted();
             // Where some shrink and the last slip farthest, the mesh from where the edge is innermost tells the profile better.
             let jumps = match shrink {
-                true => amplitudes().all(|factor| factor <= blocks[0].amplitude_factor),
+                true => amplitudes.iter().all(|factor| *factor <= amplitudes[0]),
                 false => schedule.follows_jumps(),
             };
             if level && jumps && !changes && !conditions.repeat {
@@ -134,13 +129,11 @@ impl MovingStick {
 
 /// Whether no block slips less far than one before, up to that in which a rig moves the contact as a whole, if there is one.
 fn only_grows(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
-    let conditions = schedule.conditions();
-    let blocks = &conditions.blocks;
-    let grow = |until: usize| blocks[..until].is_sorted_by_key(|block| block.amplitude_factor);
-    Ok(match first_to_slide(schedule, contact)? {
-        Some(block) => grow(block + 1),
-        None => !conditions.repeat && grow(blocks.len()),
-    })
+    let first = first_to_slide(schedule, contact)?;
+    let until = first.map_or(usize::MAX, |block| block + 1);
+    let blocks = schedule.conditions().blocks.iter().take(until).map(|block| block.amplitude_factor);
+    let recur = first.is_none() && schedule.conditions().repeat;
+    Ok(!recur && blocks.filter(|factor| *factor > 0.0).is_sorted())
 }
 
 /// Whether blocks differ by their amplitudes alone.
@@ -169,7 +162,7 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     } else {
         (
             "loading.blocks",
-            "repeat them, end with the one that slips farthest, or begin with it and let only positive amplitude factors differ",
+            "repeat them, end with the one that slips farthest, or begin with it and let only amplitude factors differ",
         )
     };
     Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
@@ -190,25 +183,6 @@ fn check_sliding_under_force(conditions: &Conditions, contact: &InitialContact) 
             contact.amplitude()
         ),
     })
-}
-
-/// Refuses blocks under a held normal force between which the edge of stick has no place on the profile as it is.
-fn check_blocks_under_force(conditions: &Conditions) -> Result<()> {
-    let balanced = conditions.tangential_control != TangentialControl::Displacement;
-    let (what, why) = if conditions.blocks.iter().any(|block| block.amplitude_factor <= 0.0) {
-        (
-            "loading.blocks",
-            "has a pause, in which a contact under a held normal force has no edge of stick; leave it out",
-        )
-    } else if balanced && conditions.friction.coefficient().is_none() {
-        (
-            "loading.blocks",
-            "is followed beside two balances of forces under Coulomb's friction only; take friction.coulomb, or hold the indentation",
-        )
-    } else {
-        return Ok(());
-    };
-    Err(Error::Inconsistent { what, why: why.into() })
 }
 
 /// Refuses what is not followed while friction changes with the energy that it dissipates.

@@ -94,7 +94,8 @@ impl StickEdge {
 }
 
 impl Model {
-    /// The state in which a new block begins, if one does since `before`, cycles: where the edge of stick jumps, the mesh begins anew there.
+    /// The state in which a new block begins, if one does since `before`, cycles: where the edge of stick jumps, the mesh begins anew there. In a pause it
+    /// stays where it was.
     ///
     /// Outwards the ground that comes to rest is kept. Inwards it is given back to the springs; within all that ever came to rest it is unworn.
     ///
@@ -107,6 +108,9 @@ impl Model {
         state = self.with_resting_area(state);
         let (Some(moving), Some(stick)) = (self.moving(), &state.stick) else { return Ok(state) };
         if !moving.jumps && !moving.in_blocks {
+            return Ok(state);
+        }
+        if self.schedule.rests_or_goes_on(state.cycles) {
             return Ok(state);
         }
         let loading = self.schedule.loading(state.cycles, state.cycles);
@@ -226,7 +230,7 @@ impl Model {
                 wear_depth: stick.wear_depth.clone(),
                 places_at_rest,
                 raised_at_rest,
-                slip_compression: if moving.keeps { compression } else { 0.0 },
+                slip_compression: moving.kept(compression),
                 rates: [0.0; 3],
             }),
             ..state
@@ -262,8 +266,13 @@ impl Model {
         (slip_area, self.compression_at(next, slip_area, slip(slip_area)))
     }
 
-    /// Squared radius, m², at which stick ends where a balance of tangential forces begins anew on the profile as it is: the load within, beyond that of
-    /// the compression at the edge, is what the balance leaves of the normal force. As [`Model::bearing`] it follows the height of the edge.
+    /// Squared radius, m², at which stick ends where a balance of tangential forces begins anew on the profile as it is.
+    ///
+    /// ```text
+    /// F_x = 2 c_N [τ(q_c) c^(1+k)/(1+k) + ∫_c^a x^k τ(q) dx],    dF_x = 2 c_N c^(1+k)/(1+k) dτ(q_c),    U = τ(q_c)/M
+    /// ```
+    ///
+    /// The springs between the edge before and the new one bear by the profile rather than by the quadrature over the mesh.
     ///
     /// # Errors
     /// [`Error::NotConverged`](crate::Error::NotConverged) if there is no such place within the contact.
@@ -274,22 +283,25 @@ impl Model {
         [least, most]: [f64; 2],
         state: &State,
     ) -> Result<f64> {
-        let exponent = 1.0 + self.contact.half_space().grading();
+        let half_space = self.contact.half_space();
+        let exponent = 1.0 + half_space.grading();
         let old = ground.stick_area;
-        let of_edge = |squared: f64, compression: f64| compression * squared.powf(0.5 * exponent) / exponent;
-        let normal = self.normal_force(&self.fields(state));
+        let strength = |compression: f64| loading.friction.static_strength(compression);
+        let displacement = |strength: f64| strength / half_space.stiffness_ratio();
+        let before = self.displaced(loading.clone(), ground.before);
+        let held = self.force(&before, &state.compression, &self.fields(state), before.amplitude);
         let excess = |squared: f64| {
             let cells = |i: usize| old + (squared - old) * (i as f64 / JUMP_STEPS as f64).powi(4);
-            let mut borne = ground.stick.load - of_edge(old, ground.before);
-            let (mut place, mut compression) = (old, ground.before);
+            let (mut place, mut at_place) = (old, strength(ground.before));
+            let mut gained = 0.0;
             for i in 1..=JUMP_STEPS {
-                let (next, at_next) = (cells(i), ground.compression(cells(i)));
-                borne += (compression - at_next) * of_edge(0.5 * (place + next), 1.0);
-                (place, compression) = (next, at_next);
+                let (next, at_next) = (cells(i), strength(ground.compression(cells(i))));
+                gained += (at_next - at_place) * (0.5 * (place + next)).powf(0.5 * exponent) / exponent;
+                (place, at_place) = (next, at_next);
             }
-            borne - self.bearing_of(loading, normal, compression)
+            loading.excess(held + 2.0 * half_space.normal_stiffness() * gained, displacement(at_place))
         };
-        if excess(least) >= 0.0 {
+        if excess(least) <= 0.0 {
             return Ok(least);
         }
         bracketed(excess, least, most, 0.0)
