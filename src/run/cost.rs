@@ -95,9 +95,10 @@ fn work_of_step(model: &Model, springs: f64) -> f64 {
     let table = if is_table && moves == 1 { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
     let once = if model.gross().is_some() { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
+    let cycles = schedule.cycles_at_once() as f64;
     overhead
-        + evaluations(model, springs) * springs * (table * once + spread)
-        + BY_TRIPLE[usize::from(multiplies)] * springs.powi(3)
+        + evaluations(model, springs) * springs * cycles * (table * once + spread)
+        + BY_TRIPLE[usize::from(multiplies)] * cycles * springs.powi(3)
 }
 
 /// Evaluations of a step on so many springs.

@@ -17,6 +17,8 @@ pub struct Method {
     pub springs: usize,
     /// Method of time stepping.
     pub time_stepping: &'static str,
+    /// How repeated blocks are passed through: `averaged` over passes, as in their mean cycle, or `stepped`, one after the other; none without.
+    pub repeated_blocks: Option<&'static str>,
     /// The edge of stick: `fixed`, `moving`, or `none` in gross slip.
     pub stick_edge: &'static str,
     /// Memory of the transforms and of Newton's matrix, bytes, about; some 15 MB of the program itself come on top.
@@ -34,6 +36,11 @@ impl Method {
             mesh: if in_gross_slip { "whole-contact" } else { "slip-annulus" },
             springs,
             time_stepping: simulation.stepper_name(),
+            repeated_blocks: match model.schedule() {
+                schedule if schedule.averages() => Some("averaged"),
+                schedule if schedule.recurs() => Some("stepped"),
+                _ => None,
+            },
             stick_edge: match model.moving() {
                 Some(moving) if !moving.slides() => "moving",
                 None if !(in_gross_slip || model.slides()) => "fixed",

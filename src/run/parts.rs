@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::budget::{self, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up, springs_to_stick_again};
 use super::cost::work_so_far;
 use super::mesh::{self, SPRINGS_TO_SLIDE};
+use super::passes::are_short;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
@@ -46,7 +47,7 @@ impl Parts {
         known: Option<&Schedule>,
         store: &OperatorStore,
     ) -> Result<Self> {
-        let mut parts = Self::on_any(scene, numerics, wanted, known, store)?;
+        let mut parts = Self::on_any(scene, numerics, wanted, known, None, store)?;
         check_sliding(&parts.model)?;
         parts.limit = limit(&parts.model)?;
         if parts.model.gross().is_some() {
@@ -134,11 +135,15 @@ impl Parts {
     }
 
     /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that is in gross slip, and without its limit.
+    ///
+    /// # Arguments
+    /// * `averages` -- whether steps see the mean cycle of a pass, where that is decided
     pub(super) fn on_any(
         scene: &Scene,
         numerics: &Numerics,
         wanted: Option<usize>,
         known: Option<&Schedule>,
+        averages: Option<bool>,
         store: &OperatorStore,
     ) -> Result<Self> {
         let contact = scene.contact()?;
@@ -153,6 +158,12 @@ impl Parts {
         };
         let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
         check_stepper(numerics.stepper, &model)?;
+        let whole = numerics.stepper == StepperChoice::EveryCycle;
+        let plan =
+            super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
+        let chosen = numerics.stepper == StepperChoice::Implicit;
+        let averages = averages.unwrap_or_else(|| chosen && are_short(&model, plan.end, numerics.accuracy));
+        let model = model.averaging(averages);
         let tolerance =
             numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy, &model));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
@@ -160,9 +171,6 @@ impl Parts {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
         };
-        let whole = numerics.stepper == StepperChoice::EveryCycle;
-        let plan =
-            super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
         // By hand it is one tolerance for both meshes, and no more springs than by choice; near gross slip springs are those over the slip annulus.
         let again = springs_taken_up(&model);
         let springs = match numerics.springs {

@@ -1,10 +1,11 @@
 //! The loop over time: which step to try, where to land, when to stop.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
 use crate::numerics::linear::largest;
-use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
+use crate::solver::model::{CycleFields, CycleLoading, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper, Trial};
 
 mod failure;
@@ -172,7 +173,7 @@ impl Simulation {
         let mut growth = 0.0_f64;
         let mut finite = true;
         for loading in model.schedule().first_cycles() {
-            let cycle = model.cycle(&model.loading_in(&state, loading), &state.compression, &fields);
+            let cycle = model.cycle_in_block(&model.loading_in(&state, loading), &state.compression, &fields);
             first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
             growth = growth.max(largest(&cycle.growth));
             finite &= cycle.volume.is_finite() && cycle.growth.iter().all(|it| it.is_finite());
@@ -195,9 +196,8 @@ impl Simulation {
         progress: Progress,
     ) -> Self {
         let fields = model.fields(&state);
-        let cycle = cycle_of(&model, &state, &fields, state.cycles);
+        let (cycle, rate) = cycle_of(&model, &state, &fields, state.cycles);
         let depth = model.depth_on_springs(&state, &fields);
-        let rate = rate_of_wear(&model, &fields, &cycle);
         Self {
             model,
             stepper,
@@ -242,14 +242,25 @@ impl Simulation {
         &self.fields
     }
 
-    /// What the next cycle does.
+    /// What the next cycle does, or the mean cycle of a pass through the blocks.
     pub fn cycle(&self) -> &CycleFields {
         &self.cycle
     }
 
-    /// The fields at the radii of the output.
+    /// What the next cycle does, in the block that is under way.
+    pub fn cycle_in_block(&self) -> Cow<'_, CycleFields> {
+        let (model, state) = (&self.model, &self.state);
+        if !model.schedule().averages() {
+            return Cow::Borrowed(&self.cycle);
+        }
+        let loading = model.schedule().loading_in_block(state.cycles, state.cycles);
+        let loading = model.loading_in(state, loading);
+        Cow::Owned(model.cycle_in_block(&loading, &state.compression, &self.fields))
+    }
+
+    /// The fields at the radii of the output, with the slip of the block that is under way.
     pub fn radial_fields(&self) -> RadialFields {
-        self.model.radial_fields(&self.state, &self.fields, &self.cycle)
+        self.model.radial_fields(&self.state, &self.fields, &self.cycle_in_block())
     }
 
     /// Wear depth at the radii of the output, m, shape `(node,)`.
@@ -362,7 +373,7 @@ impl Simulation {
         observers: &mut [&mut dyn Observer],
     ) -> Result<()> {
         for (state, fields) in passed {
-            let cycle = cycle_of(&self.model, &state, &fields, state.cycles);
+            let (cycle, _) = cycle_of(&self.model, &state, &fields, state.cycles);
             let mut shown = (state, fields, cycle);
             self.progress.next_output += 1;
             self.exchange(&mut shown);
@@ -469,8 +480,7 @@ impl Simulation {
     fn reached(&self, trial: Trial) -> Option<Reached> {
         let state = trial.state?;
         let fields = trial.fields.unwrap_or_else(|| self.model.fields(&state));
-        let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
-        let rate = rate_of_wear(&self.model, &fields, &cycle);
+        let (cycle, rate) = cycle_of(&self.model, &state, &fields, self.state.cycles);
         Some(Reached { state, fields, cycle, rate })
     }
 
@@ -528,8 +538,7 @@ impl Simulation {
             fields = self.model.fields(&state);
             // On a mesh that begins anew the depth between springs is another by as much as they leave open.
             depth = self.model.depth_on_springs(&state, &fields);
-            cycle = cycle_of(&self.model, &state, &fields, state.cycles);
-            rate = rate_of_wear(&self.model, &fields, &cycle);
+            (cycle, rate) = cycle_of(&self.model, &state, &fields, state.cycles);
         }
         (self.state, self.fields, self.cycle, self.depth, self.rate) = (state, fields, cycle, depth, rate);
         Ok(true)
@@ -551,8 +560,20 @@ fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
     cycle.volume.max(CERTAIN_WEAR * trapezoids)
 }
 
-/// The cycle that follows a state, in the block that is under way at `start`.
-fn cycle_of(model: &Model, state: &State, fields: &Fields, start: f64) -> CycleFields {
+/// The cycle that follows a state, in the block that is under way at `start` or as the mean of a pass, and its rate of wear: that of the block that wears most.
+fn cycle_of(model: &Model, state: &State, fields: &Fields, start: f64) -> (CycleFields, f64) {
     let loading = model.loading_in(state, model.schedule().loading(start, state.cycles));
-    model.cycle(&loading, &state.compression, fields)
+    let cycle_in = |loading: &CycleLoading| model.cycle_in_block(loading, &state.compression, fields);
+    if loading.others.is_empty() {
+        let cycle = cycle_in(&loading);
+        let rate = rate_of_wear(model, fields, &cycle);
+        return (cycle, rate);
+    }
+    let mut most = 0.0;
+    let cycle = CycleFields::mean(loading.parts().map(|part| {
+        let cycle = cycle_in(part);
+        most = rate_of_wear(model, fields, &cycle).max(most);
+        (part.part, cycle)
+    }));
+    (cycle, most)
 }

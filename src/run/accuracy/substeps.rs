@@ -46,6 +46,7 @@ impl Unsampled {
         let points = model.schedule().loop_steps(1);
         let finer = Numerics { substeps: Some(finer_than(model.schedule()) * points), ..*numerics };
         let finer = Schedule::new(&contact, scene.conditions(), resolution(scene, &finer)).ok()?;
+        let finer = finer.averaging(model.schedule().averages());
         let volume = |contact: &InitialContact| {
             let limit = LimitingShape::from_contact(contact).ok().flatten()?;
             Some(limit.wear_volume())

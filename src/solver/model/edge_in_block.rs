@@ -34,7 +34,7 @@ impl Model {
             (true, false) => state.resting_area,
             (true, true) => state.least_stick_radius.powi(2),
         };
-        CycleLoading { resting_area, ..loading }
+        loading.each(|loading| CycleLoading { resting_area, ..loading })
     }
 
     /// Whether the mesh begins where springs slip in some cycle, and those that slip in others are found by their compressions at an indentation that is held.
@@ -44,9 +44,10 @@ impl Model {
         changes && !conditions.holds_normal_force && self.moving().is_none() && self.gross().is_none()
     }
 
-    /// Whether the compression below which springs slip changes within a block.
+    /// Whether the compression below which springs slip changes within a step, or steps see all blocks of a pass.
     fn limit_changes(&self) -> bool {
-        !self.schedule.keeps_friction()
+        self.schedule.averages()
+            || !self.schedule.keeps_friction()
             || self.schedule.conditions().tangential_control != TangentialControl::Displacement
     }
 

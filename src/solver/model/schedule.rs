@@ -36,7 +36,7 @@ impl AmplitudeControl {
     }
 }
 
-/// What acts in one cycle.
+/// What acts in one cycle, or in the mean cycle of a pass through the blocks.
 #[derive(Debug, Clone)]
 pub struct CycleLoading {
     /// Law of friction.
@@ -61,6 +61,10 @@ pub struct CycleLoading {
     pub share: f64,
     /// Squared radius, m², within which no spring slips whatever its compression, see [`State::resting_area`](super::State).
     pub resting_area: f64,
+    /// Part of the pass that such cycles take; one where a cycle is of one block.
+    pub part: f64,
+    /// The cycles that take the rest of the pass; none where a cycle is of one block.
+    pub others: Vec<CycleLoading>,
 }
 
 /// Settled cycles that the first one from rest wears as much as. The first loading moves every spring as a quarter of a settled cycle does: it
@@ -71,6 +75,23 @@ const FROM_REST: f64 = 1.25;
 const FIRST_END: f64 = 1.0;
 
 impl CycleLoading {
+    /// The cycles of which this is the mean, each of one block and with its part.
+    pub fn parts(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.others)
+    }
+
+    /// The same change of each of them.
+    pub fn each(mut self, change: impl Fn(Self) -> Self) -> Self {
+        let others = std::mem::take(&mut self.others);
+        let others = others.into_iter().map(&change).collect();
+        Self { others, ..change(self) }
+    }
+
+    /// Whether nothing moves.
+    pub fn rests(&self) -> bool {
+        self.parts().all(|cycle| cycle.asked() == 0.0)
+    }
+
     /// What is asked: an amplitude of the displacement, m, or of the force, N.
     pub fn asked(&self) -> f64 {
         if let AmplitudeControl::Force(asked) = self.control { asked } else { self.amplitude }
@@ -146,6 +167,8 @@ pub struct Schedule {
     largest_indentation: f64,
     /// Whether steps follow an edge of stick that jumps between blocks.
     follows_jumps: bool,
+    /// Whether wear goes on as in the mean cycle of a pass, so that no step ends at the end of a block.
+    averages: bool,
     /// What [`Schedule::envelope`] found for a contact of this indentation and amplitude, m; copies of the schedule share it.
     envelope: Arc<OnceLock<([f64; 2], Envelope)>>,
 }
@@ -200,6 +223,8 @@ impl Schedule {
                 cycles_per_period: 1.0,
                 share: 1.0,
                 resting_area: 0.0,
+                part: 1.0,
+                others: vec![],
             };
             let mut depth = indentation;
             if resolved {
@@ -249,6 +274,7 @@ impl Schedule {
             friction_along_energy,
             largest_indentation,
             follows_jumps: true,
+            averages: false,
             envelope: Arc::default(),
         })
     }
@@ -256,6 +282,38 @@ impl Schedule {
     /// The same for explicit steps, which do not follow an edge of stick that jumps between blocks: the mesh begins where that is innermost.
     pub(crate) fn for_explicit_steps(self) -> Self {
         Self { follows_jumps: false, ..self }
+    }
+
+    /// The same with wear as in the mean cycle of a pass through the blocks, or with that of one block after the other.
+    #[must_use]
+    pub fn averaging(self, averages: bool) -> Self {
+        Self { averages: averages && self.recurs(), ..self }
+    }
+
+    /// Whether wear goes on as in the mean cycle of a pass.
+    pub fn averages(&self) -> bool {
+        self.averages
+    }
+
+    /// Whether blocks that differ follow one another again and again.
+    pub fn recurs(&self) -> bool {
+        self.conditions.repeat && self.changes_between_blocks()
+    }
+
+    /// Whether blocks recur, and steps end with each.
+    pub fn steps_through_passes(&self) -> bool {
+        self.conditions.repeat && !self.averages
+    }
+
+    /// Cycles of different blocks that a step sees at once.
+    pub fn cycles_at_once(&self) -> usize {
+        if self.averages { self.loadings.len() } else { 1 }
+    }
+
+    /// Cycles of each block of a pass.
+    pub fn durations(&self) -> impl Iterator<Item = f64> {
+        let begins = std::iter::once(&0.0).chain(&self.ends);
+        self.ends.iter().zip(begins).map(|(end, begin)| end - begin)
     }
 
     /// Whether steps follow an edge of stick that jumps between blocks.
@@ -277,9 +335,28 @@ impl Schedule {
         &self.conditions
     }
 
-    /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning.
+    /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning, or all of a pass.
     pub fn loading(&self, start: f64, cycles: f64) -> CycleLoading {
-        let mut loading = self.loadings[self.block(start).1].clone();
+        if !self.averages_at(start) {
+            return self.loading_in_block(start, cycles);
+        }
+        let whole = self.ends[self.ends.len() - 1];
+        let parts = (0..self.loadings.len()).zip(self.durations());
+        let mut parts = parts.map(|(block, cycles_of_it)| CycleLoading {
+            part: cycles_of_it / whole,
+            ..self.in_block(block, start, cycles)
+        });
+        let first = parts.next().expect("a pass has blocks");
+        CycleLoading { others: parts.collect(), ..first }
+    }
+
+    /// What acts in the block that is under way at `start`, whether steps see it or its pass.
+    pub fn loading_in_block(&self, start: f64, cycles: f64) -> CycleLoading {
+        self.in_block(self.block(start).1, start, cycles)
+    }
+
+    fn in_block(&self, block: usize, start: f64, cycles: f64) -> CycleLoading {
+        let mut loading = self.loadings[block].clone();
         if self.is_first(start) {
             loading.share = FROM_REST;
         }
@@ -293,14 +370,24 @@ impl Schedule {
         loading
     }
 
+    /// Whether steps from there on see whole passes. A first cycle that wears from rest is one of the first block, if that lasts as long.
+    fn averages_at(&self, start: f64) -> bool {
+        self.averages && !(self.is_first(start) && self.ends[0] >= FIRST_END)
+    }
+
     /// Whether what acts changes from one block to another.
     pub fn changes_between_blocks(&self) -> bool {
         !self.ends.is_empty()
     }
 
-    /// Whether one block, or one pass of it, ends between two times, cycles.
+    /// Whether steps see what acts change from one block to another.
+    pub fn changes_in_time(&self) -> bool {
+        self.changes_between_blocks() && !self.averages
+    }
+
+    /// Whether steps end where one block, or one pass of it, ends between two times, cycles.
     pub fn begins_block(&self, before: f64, now: f64) -> bool {
-        self.block(before) != self.block(now)
+        !self.averages && self.block(before) != self.block(now)
     }
 
     /// Whether a time, cycles, is within a first cycle that wears from rest.
@@ -325,7 +412,7 @@ impl Schedule {
     pub fn first_cycles(&self) -> impl Iterator<Item = CycleLoading> {
         let mut start = 0.0;
         self.loadings.iter().enumerate().map(move |(block, _)| {
-            let loading = CycleLoading { share: 1.0, ..self.loading(start, 0.0) };
+            let loading = CycleLoading { share: 1.0, ..self.loading_in_block(start, 0.0) };
             start = self.ends.get(block).copied().unwrap_or_default();
             loading
         })
@@ -335,6 +422,7 @@ impl Schedule {
     pub fn has_shown_all(&self, since: f64, now: f64) -> bool {
         match self.ends.last() {
             None => true,
+            Some(_) if self.averages => true,
             Some(whole) if self.conditions.repeat => now - since >= *whole,
             Some(_) => self.block(now).1 == self.loadings.len() - 1,
         }
@@ -361,7 +449,7 @@ impl Schedule {
     pub fn next_break(&self, cycles: f64) -> Option<f64> {
         let histories = [&self.conditions.friction_history, &self.conditions.wear_history];
         let kinks = histories.into_iter().flat_map(|history| history.kinks()).map(|t| t / self.clock_rate);
-        let block = (!self.ends.is_empty()).then(|| {
+        let block = self.changes_in_time().then(|| {
             let (pass, block) = self.block(cycles);
             self.end(pass, block)
         });
@@ -379,6 +467,7 @@ impl Schedule {
         let passed = |time: &&f64| **time / self.clock_rate < cycles;
         let kinks: usize = histories.iter().map(|it| it.kinks().iter().filter(passed).count()).sum();
         let ends = match self.ends.last() {
+            _ if self.averages => 0.0,
             Some(whole) if self.conditions.repeat => cycles / whole * self.ends.len() as f64,
             _ => self.ends.iter().filter(|end| **end < cycles).count() as f64,
         };
@@ -530,7 +619,7 @@ impl Schedule {
 
     /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.
     pub fn is_smooth_in_gross_slip(&self) -> bool {
-        self.conditions.blocks.is_empty() && self.keeps_friction() && !self.conditions.wear.has_kink()
+        !self.changes_in_time() && self.keeps_friction() && !self.conditions.wear.has_kink()
     }
 
     /// Whether cycles are the same, at a constant indentation, and wear is local: at most resolved cycles or a threshold make kinks along the annulus.

@@ -139,7 +139,7 @@ impl Simulation {
     /// Whether nothing moves from now on to the next break: the block under way asks for no amplitude.
     fn is_still(&self) -> bool {
         let now = self.state.cycles;
-        self.model.schedule().loading(now, now).asked() == 0.0
+        self.model.schedule().loading(now, now).rests()
     }
 
     /// The state at a later time up to which nothing wears; what slips without wear goes on to dissipate.

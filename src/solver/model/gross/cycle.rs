@@ -91,6 +91,25 @@ impl Sliding {
 }
 
 impl Model {
+    /// Depth worn at the inner nodes, m, in a cycle or in the mean cycle of a pass, and what that does.
+    pub(super) fn gross_mean_wear(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        compression: &[f64],
+        whole: &Whole,
+    ) -> (Vec<f64>, CycleFields) {
+        let of_block = |part: &CycleLoading| {
+            let (depth, cycle, _) = self.gross_wear(gross, part, compression, whole);
+            (depth, cycle)
+        };
+        if loading.others.is_empty() {
+            return of_block(loading);
+        }
+        let cycle = CycleFields::mean(loading.parts().map(|part| (part.part, of_block(part).1)));
+        (cycle.growth.iter().map(|growth| growth * self.contact.indentation()).collect(), cycle)
+    }
+
     /// What a cycle does, with the depth worn at the inner nodes, m.
     pub(super) fn gross_wear(
         &self,
