@@ -186,7 +186,7 @@ fn last_volume(results: &Results) -> f64 {
 #[test]
 fn a_million_passes_and_a_thousand_million_take_a_few_steps_and_wear_the_same() {
     for loading in
-        ["stick_ratio = 0.7\ntau = 3", "amplitude_ratio = 2\ntau = 3", "stick_ratio = 0.7\nuntil_rate = 0.01"]
+        ["stick_ratio = 0.7\ntau = 3", "amplitude_ratio = 3\ntau = 3", "stick_ratio = 0.7\nuntil_rate = 0.01"]
     {
         let of = |block: f64| {
             let results = scene(block, loading, "").simulate().unwrap();
@@ -207,7 +207,7 @@ fn a_million_passes_and_a_thousand_million_take_a_few_steps_and_wear_the_same() 
 /// Archard's law under Coulomb's friction: `V = (k_w/μ_f) ΣE`, of the surface and of the springs.
 #[test]
 fn the_volume_is_that_of_the_energy() {
-    for loading in ["stick_ratio = 0.7\ntau = 3", "amplitude_ratio = 2\ntau = 3"] {
+    for loading in ["stick_ratio = 0.7\ntau = 3", "amplitude_ratio = 3\ntau = 3"] {
         let results = scene(1.5e-6, loading, "").simulate().unwrap();
         let by_energy = 1.667e-13 / 0.5 * results.last().dissipated_energy;
         let off = last_volume(&results) / by_energy - 1.0;
@@ -249,7 +249,7 @@ fn passes_are_averaged_only_where_they_are_short_and_steps_are_free() {
 #[test]
 fn runs_in_parts_repeat_every_bit() {
     for loading in
-        ["stick_ratio = 0.7\ntau = 3", "amplitude_ratio = 2\ntau = 3", "stick_ratio = 0.7\nuntil_rate = 0.05"]
+        ["stick_ratio = 0.7\ntau = 3", "amplitude_ratio = 3\ntau = 3", "stick_ratio = 0.7\nuntil_rate = 0.05"]
     {
         for accuracy in ["1e-3", "1e-4"] {
             let folder = tempfile::tempdir().unwrap();
