@@ -137,6 +137,7 @@ fn checkpoint() -> Checkpoint {
             next_step: 5e-324,
             first_rate: 1e-15,
             busy_until: 0.7 / 3.0,
+            averages_from: 0.1 / 3.0,
             steps: u64::MAX,
             rejected_steps: 1 << 53 | 1,
             rate_evaluations: 3,

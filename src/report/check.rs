@@ -152,7 +152,12 @@ impl CheckReport {
             rows.row("edge of stick", method.stick_edge);
             rows.row("time stepping", method.time_stepping);
             if let Some(how) = method.repeated_blocks {
-                rows.row("repeated blocks", if how == "averaged" { "averaged over passes" } else { how });
+                let words = match how {
+                    "averaged" => "averaged over passes",
+                    "stepped-at-first" => "stepped through until passes are short, then averaged over them",
+                    _ => "stepped through",
+                };
+                rows.row("repeated blocks", words);
             }
             rows.row("memory of its matrices", format!("{} MB", number(1e-6 * method.memory_expected)));
             let seconds = self.seconds_expected.map(|it| Scale::TIME.show(it));

@@ -1,32 +1,54 @@
 //! Whether wear goes on as in the mean cycle of a pass through repeated blocks, and what that leaves out.
 
+use super::cost::steps_of_attempt;
 use crate::solver::model::{Model, PassSwing};
-use crate::solver::simulation::End;
+use crate::solver::simulation::{End, Simulation};
 
-/// Part of the accuracy asked for that averaging over passes may take up.
-const OF_PASSES: f64 = 0.1;
+/// Part of the accuracy asked for that averaging over passes may take up; more where an attempt does not come to all ends of blocks.
+const OF_PASSES: [f64; 2] = [0.1, 0.4];
 
-/// What averaging leaves out over the swing of a pass: that itself, by the phase of the pass, and up to 0.4 of it by the order of the blocks.
+/// What averaging leaves out over the swing of a pass: that itself, by the phase of the pass, and up to 0.6 of it by the order of the blocks.
 const OF_SWING: f64 = 1.5;
 
-fn swing(model: &Model) -> Option<PassSwing> {
-    model.pass_swing().ok().flatten()
+/// When steps see passes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Averaging {
+    /// Whether they do so from the first on.
+    pub at_once: bool,
+    /// The largest swing of a pass that may be left out, over the limit and over what is worn; zero where each block is stepped through.
+    pub most_swing: f64,
 }
 
-/// Whether what averaging leaves out is a small part of the accuracy: over the limit, and over what is worn at the end of the run.
-pub(super) fn are_short(model: &Model, end: End, accuracy: f64) -> bool {
-    let Some(swing) = swing(model) else { return false };
-    let of_depth = swing.depth / model.depth_scale();
-    let of_volume = if model.gross().is_some() { 0.0 } else { swing.volume / model.limit_volume() };
-    let of_end = match end {
-        End::Cycles(cycles) => swing.part * swing.cycles / cycles,
-        End::Rate(fraction) => of_depth / (1.0 - fraction),
-    };
-    [of_depth, of_volume, of_end].iter().all(|part| OF_SWING * part <= OF_PASSES * accuracy)
+fn first_swing(model: &Model) -> Option<PassSwing> {
+    model.initial_state().ok().and_then(|state| model.pass_swing(&state))
 }
 
-/// What averaging leaves out of the worn volume, m³, and of the depth, m; nothing where steps end with each block.
+impl Averaging {
+    /// That of an implicit run.
+    pub(super) fn of(model: &Model, end: End, accuracy: f64) -> Self {
+        let swing = if model.may_average() { first_swing(model) } else { None };
+        let Some(swing) = swing else { return Self::default() };
+        let of_limit = model.of_limit(&swing);
+        // Passes in the run, or as many as wear all that the limit takes away; and what is left out at its end.
+        let (passes, of_end) = match end {
+            End::Cycles(cycles) => (cycles / swing.cycles, swing.part * swing.cycles / cycles),
+            End::Rate(fraction) => (swing.part / of_limit, of_limit / (1.0 - fraction)),
+        };
+        let blocks = passes * model.schedule().durations().count() as f64;
+        let [few, many] = OF_PASSES;
+        let share = if blocks > steps_of_attempt(model) { many } else { few };
+        let most_swing = share / OF_SWING * accuracy;
+        Self { at_once: [of_limit, of_end].iter().all(|part| *part <= most_swing), most_swing }
+    }
+}
+
+/// What averaging from the first pass on leaves out of the worn volume, m³, and of the depth, m.
 pub(in crate::run) fn left_out(model: &Model) -> [f64; 2] {
-    let averaged = model.schedule().averages().then(|| swing(model)).flatten();
+    let averaged = if model.schedule().averages_from() > 0.0 { None } else { first_swing(model) };
     averaged.map_or([0.0; 2], |it| [it.volume, it.depth].map(|swing| OF_SWING * swing))
+}
+
+/// The same of averaging later on, over the limit.
+pub(in crate::run) fn left_out_later(simulation: &Simulation) -> f64 {
+    OF_SWING * simulation.swing_left_out()
 }

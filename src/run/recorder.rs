@@ -294,7 +294,8 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
     let whole = if model.gross().is_some() { by_depth } else { model.limit_volume() };
     let by_rate = (state.volume_by_rate - by_depth).abs() / whole;
     let [of_volume, of_depth] = passes::left_out(model);
-    let of_passes = (of_volume / whole).max(of_depth / model.depth_scale());
+    let of_passes =
+        (of_volume / whole).max(of_depth / model.depth_scale()) + passes::left_out_later(simulation);
     Some(by_rate.max(model.core_uncertainty()).max(model.unseen_depth().unwrap_or(0.0)) + of_passes)
 }
 

@@ -113,6 +113,8 @@ pub struct Progress {
     pub first_rate: f64,
     /// Cycles until which the rate was above the one at which to stop.
     pub busy_until: f64,
+    /// Cycles from which on steps see the mean cycle of a pass, where its blocks were stepped through before; else zero.
+    pub averages_from: f64,
     /// Index of the next entry of the plan's outputs.
     pub next_output: u64,
     /// Steps accepted.
@@ -154,6 +156,8 @@ pub struct Simulation {
     rejected: Rejected,
     /// When and where a rig broke the last stick, if it did.
     let_go: Option<String>,
+    /// Swing of a pass, over the limit and over what is worn, from which on downwards steps see its mean cycle; zero where they never come to do so.
+    most_swing: f64,
 }
 
 impl Simulation {
@@ -188,13 +192,16 @@ impl Simulation {
 
     /// Goes on from a state, as if there had been no interruption.
     pub fn resume(
-        model: Model,
+        mut model: Model,
         stepper: Box<dyn Stepper + Send>,
         tolerance: f64,
         plan: Plan,
         state: State,
         progress: Progress,
     ) -> Self {
+        if progress.averages_from > 0.0 {
+            model.average_from(progress.averages_from);
+        }
         let fields = model.fields(&state);
         let (cycle, rate) = cycle_of(&model, &state, &fields, state.cycles);
         let depth = model.depth_on_springs(&state, &fields);
@@ -214,7 +221,33 @@ impl Simulation {
             settles: false,
             rejected: Rejected::default(),
             let_go: None,
+            most_swing: 0.0,
         }
+    }
+
+    /// Lets steps no longer end with each block once the swing of a pass has fallen to this part of the limit and of what is worn.
+    #[must_use]
+    pub fn averaging_below(self, most_swing: f64) -> Self {
+        Self { most_swing, ..self }
+    }
+
+    /// Whether steps that end with each block may come to see passes.
+    pub fn may_come_to_average(&self) -> bool {
+        self.most_swing > 0.0 && self.model.may_average() && !self.model.wears_without_end()
+    }
+
+    /// The swing of a pass, over the limit, that is left out since blocks are no longer stepped through.
+    pub fn swing_left_out(&self) -> f64 {
+        if self.progress.averages_from > 0.0 { self.most_swing } else { 0.0 }
+    }
+
+    /// Whether passes have become short beside what is left of wear.
+    fn passes_are_short(&self, state: &State) -> bool {
+        let swing = if self.may_come_to_average() { self.model.pass_swing(state) } else { None };
+        swing.is_some_and(|swing| {
+            let parts = [self.model.of_limit(&swing), swing.volume / state.volume_by_rate];
+            parts.iter().all(|part| *part <= self.most_swing)
+        })
     }
 
     /// The model.
@@ -250,7 +283,7 @@ impl Simulation {
     /// What the next cycle does, in the block that is under way.
     pub fn cycle_in_block(&self) -> Cow<'_, CycleFields> {
         let (model, state) = (&self.model, &self.state);
-        if !model.schedule().averages() {
+        if !model.schedule().averages_at(state.cycles) {
             return Cow::Borrowed(&self.cycle);
         }
         let loading = model.schedule().loading_in_block(state.cycles, state.cycles);
@@ -534,6 +567,12 @@ impl Simulation {
             let (edge, before) = (state.stick.as_ref().map(|it| it.area), self.model.work_counted());
             state = self.model.begin_block(state, self.state.cycles)?;
             self.model.count_jump(edge, &state);
+            if self.model.schedule().ends_pass(self.state.cycles, state.cycles)
+                && self.passes_are_short(&state)
+            {
+                self.progress.averages_from = state.cycles;
+                self.model.average_from(state.cycles);
+            }
             self.progress.resolved_work += self.model.work_counted() - before;
             fields = self.model.fields(&state);
             // On a mesh that begins anew the depth between springs is another by as much as they leave open.

@@ -139,7 +139,7 @@ impl Coarsening {
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
             substeps,
-            averages: model.schedule().averages(),
+            averages: model.schedule().averages_from() == 0.0,
         }
     }
 
@@ -288,7 +288,7 @@ impl Companions {
         let below =
             worn.iter().flat_map(|it| &it.depth).fold(0.0, |most: f64, depth| most.max(-depth)) / scale[1];
         let [of_volume, of_depth] = self.of_passes;
-        let of_passes = (of_volume / scale[0]).max(of_depth / scale[1]);
+        let of_passes = (of_volume / scale[0]).max(of_depth / scale[1]) + passes::left_out_later(simulation);
         let left_out = self.left_out.max(below) + of_passes;
         let unknown = Shares { springs: UNKNOWN, left_out, ..Shares::default() };
         let Some(first) = &self.first else { return Some(unknown) };

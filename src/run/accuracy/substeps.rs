@@ -46,7 +46,6 @@ impl Unsampled {
         let points = model.schedule().loop_steps(1);
         let finer = Numerics { substeps: Some(finer_than(model.schedule()) * points), ..*numerics };
         let finer = Schedule::new(&contact, scene.conditions(), resolution(scene, &finer)).ok()?;
-        let finer = finer.averaging(model.schedule().averages());
         let volume = |contact: &InitialContact| {
             let limit = LimitingShape::from_contact(contact).ok().flatten()?;
             Some(limit.wear_volume())
@@ -75,6 +74,7 @@ impl Unsampled {
     /// Takes the state of a simulation into account.
     pub(super) fn see(&mut self, simulation: &Simulation) {
         let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
+        self.finer.average_from(model.schedule().averages_from());
         let loading = model.loading_in(state, self.finer.loading(state.cycles, state.cycles));
         let (fine, coarse) = (model.cycle(&loading, &state.compression, fields), simulation.cycle());
         // In gross slip growth is over the indentation.

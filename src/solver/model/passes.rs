@@ -7,11 +7,10 @@
 //!                                                                 and as much of the order of the blocks
 //! ```
 
-use super::Model;
-use crate::error::Result;
+use super::{Model, State};
 use crate::laws::history::History;
 
-/// By how much a pass leads the contact away from its mean evolution, and how much it wears.
+/// By how much a pass leads the contact away from its mean evolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassSwing {
     /// Of the worn volume, m³.
@@ -25,33 +24,30 @@ pub struct PassSwing {
 }
 
 impl Model {
-    /// The same with wear as in the mean cycle of a pass, where blocks recur and no edge of stick is followed from one to the next.
-    #[must_use]
-    pub fn averaging(mut self, averages: bool) -> Self {
+    /// Lets wear go on as in the mean cycle of a pass from some cycle on, where blocks recur and no edge of stick is followed from one to the next.
+    pub fn average_from(&mut self, cycles: f64) {
         let follows = self.moving().is_some();
-        self.schedule = self.schedule.averaging(averages && !follows);
-        self
+        self.schedule.average_from(if follows { f64::INFINITY } else { cycles });
     }
 
-    /// What a pass does to the unworn contact, with friction and wear at their largest; none where wear cannot go on as in its mean cycle.
-    ///
-    /// # Errors
-    /// Those of [`Model::initial_state`].
-    pub fn pass_swing(&self) -> Result<Option<PassSwing>> {
-        if !self.schedule().recurs() || self.moving().is_some() {
-            return Ok(None);
+    /// Whether wear may go on as in the mean cycle of a pass.
+    pub fn may_average(&self) -> bool {
+        self.schedule.recurs() && self.moving().is_none()
+    }
+
+    /// What a pass does to a contact, with friction and wear at their largest; none where wear may not go on as in its mean cycle.
+    pub fn pass_swing(&self, state: &State) -> Option<PassSwing> {
+        if !self.may_average() {
+            return None;
         }
-        // Ground that rests does so in each block of its own.
-        let averaged = self.clone().averaging(true);
-        let schedule = averaged.schedule();
-        let state = averaged.initial_state()?;
-        let fields = averaged.fields(&state);
+        let (schedule, now) = (&self.schedule, state.cycles);
+        let fields = self.fields(state);
         // In gross slip growth is over the indentation.
         let scale = |i: usize| fields.slip_depth.get(i).copied().unwrap_or(self.contact.indentation());
         let durations: Vec<f64> = schedule.durations().collect();
-        let worn = schedule.first_cycles().zip(&durations).map(|(loading, duration)| {
-            let loading = averaged.loading_in(&state, loading);
-            let cycle = averaged.cycle_in_block(&loading, &state.compression, &fields);
+        let loading = self.loading_in(state, schedule.mean_loading(now, now));
+        let worn = loading.parts().zip(&durations).map(|(part, duration)| {
+            let cycle = self.cycle_in_block(part, &state.compression, &fields);
             let depths = cycle.growth.iter().enumerate().map(|(i, growth)| growth * scale(i));
             std::iter::once(cycle.volume).chain(depths).map(|it| duration * it).collect()
         });
@@ -73,6 +69,12 @@ impl Model {
         let depth = springs.clone().map(swing).fold(0.0, f64::max);
         let deepest = springs.map(of_pass).fold(0.0, f64::max);
         let part = (volume / of_pass(0)).max(depth / deepest) / more;
-        Ok(Some(PassSwing { volume, depth, part, cycles }))
+        Some(PassSwing { volume, depth, part, cycles })
+    }
+
+    /// A swing over the limit's volume and depth, the larger of both; in gross slip of the depth over the indentation.
+    pub fn of_limit(&self, swing: &PassSwing) -> f64 {
+        let of_volume = if self.gross().is_some() { 0.0 } else { swing.volume / self.limit_volume() };
+        of_volume.max(swing.depth / self.depth_scale())
     }
 }

@@ -167,8 +167,8 @@ pub struct Schedule {
     largest_indentation: f64,
     /// Whether steps follow an edge of stick that jumps between blocks.
     follows_jumps: bool,
-    /// Whether wear goes on as in the mean cycle of a pass, so that no step ends at the end of a block.
-    averages: bool,
+    /// Cycles from which on wear goes on as in the mean cycle of a pass, so that no step ends at the end of a block; infinite where each does.
+    averages_from: f64,
     /// What [`Schedule::envelope`] found for a contact of this indentation and amplitude, m; copies of the schedule share it.
     envelope: Arc<OnceLock<([f64; 2], Envelope)>>,
 }
@@ -274,7 +274,7 @@ impl Schedule {
             friction_along_energy,
             largest_indentation,
             follows_jumps: true,
-            averages: false,
+            averages_from: f64::INFINITY,
             envelope: Arc::default(),
         })
     }
@@ -284,15 +284,14 @@ impl Schedule {
         Self { follows_jumps: false, ..self }
     }
 
-    /// The same with wear as in the mean cycle of a pass through the blocks, or with that of one block after the other.
-    #[must_use]
-    pub fn averaging(self, averages: bool) -> Self {
-        Self { averages: averages && self.recurs(), ..self }
+    /// Lets wear go on as in the mean cycle of a pass through the blocks, from some cycle on; before, or if that is infinite, a step ends with each block.
+    pub fn average_from(&mut self, cycles: f64) {
+        self.averages_from = if self.recurs() { cycles } else { f64::INFINITY };
     }
 
-    /// Whether wear goes on as in the mean cycle of a pass.
-    pub fn averages(&self) -> bool {
-        self.averages
+    /// Cycles from which on wear goes on as in the mean cycle of a pass.
+    pub fn averages_from(&self) -> f64 {
+        self.averages_from
     }
 
     /// Whether blocks that differ follow one another again and again.
@@ -302,12 +301,12 @@ impl Schedule {
 
     /// Whether blocks recur, and steps end with each.
     pub fn steps_through_passes(&self) -> bool {
-        self.conditions.repeat && !self.averages
+        self.conditions.repeat && self.averages_from > 0.0
     }
 
     /// Cycles of different blocks that a step sees at once.
     pub fn cycles_at_once(&self) -> usize {
-        if self.averages { self.loadings.len() } else { 1 }
+        if self.averages_from > 0.0 { 1 } else { self.loadings.len() }
     }
 
     /// Cycles of each block of a pass.
@@ -337,22 +336,32 @@ impl Schedule {
 
     /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning, or all of a pass.
     pub fn loading(&self, start: f64, cycles: f64) -> CycleLoading {
-        if !self.averages_at(start) {
-            return self.loading_in_block(start, cycles);
+        if self.averages_at(start) {
+            self.mean_loading(start, cycles)
+        } else {
+            self.loading_in_block(start, cycles)
         }
-        let whole = self.ends[self.ends.len() - 1];
-        let parts = (0..self.loadings.len()).zip(self.durations());
-        let mut parts = parts.map(|(block, cycles_of_it)| CycleLoading {
-            part: cycles_of_it / whole,
-            ..self.in_block(block, start, cycles)
-        });
+    }
+
+    /// What acts in a pass.
+    pub fn mean_loading(&self, start: f64, cycles: f64) -> CycleLoading {
+        let mut parts = (0..self.loadings.len())
+            .map(|block| CycleLoading { part: self.part(block), ..self.in_block(block, start, cycles) });
         let first = parts.next().expect("a pass has blocks");
         CycleLoading { others: parts.collect(), ..first }
     }
 
     /// What acts in the block that is under way at `start`, whether steps see it or its pass.
     pub fn loading_in_block(&self, start: f64, cycles: f64) -> CycleLoading {
-        self.in_block(self.block(start).1, start, cycles)
+        let block = self.block(start).1;
+        let part = if self.averages_at(start) { self.part(block) } else { 1.0 };
+        CycleLoading { part, ..self.in_block(block, start, cycles) }
+    }
+
+    /// The part of a pass that a block takes.
+    fn part(&self, block: usize) -> f64 {
+        let begin = if block == 0 { 0.0 } else { self.ends[block - 1] };
+        (self.ends[block] - begin) / self.ends[self.ends.len() - 1]
     }
 
     fn in_block(&self, block: usize, start: f64, cycles: f64) -> CycleLoading {
@@ -371,8 +380,8 @@ impl Schedule {
     }
 
     /// Whether steps from there on see whole passes. A first cycle that wears from rest is one of the first block, if that lasts as long.
-    fn averages_at(&self, start: f64) -> bool {
-        self.averages && !(self.is_first(start) && self.ends[0] >= FIRST_END)
+    pub fn averages_at(&self, start: f64) -> bool {
+        start >= self.averages_from && !(self.is_first(start) && self.ends[0] >= FIRST_END)
     }
 
     /// Whether what acts changes from one block to another.
@@ -382,12 +391,17 @@ impl Schedule {
 
     /// Whether steps see what acts change from one block to another.
     pub fn changes_in_time(&self) -> bool {
-        self.changes_between_blocks() && !self.averages
+        self.changes_between_blocks() && self.averages_from > 0.0
     }
 
     /// Whether steps end where one block, or one pass of it, ends between two times, cycles.
     pub fn begins_block(&self, before: f64, now: f64) -> bool {
-        !self.averages && self.block(before) != self.block(now)
+        before < self.averages_from && self.block(before) != self.block(now)
+    }
+
+    /// Whether a step that began at `before` ends with a pass.
+    pub fn ends_pass(&self, before: f64, now: f64) -> bool {
+        self.recurs() && self.begins_block(before, now) && self.block(now).1 == 0
     }
 
     /// Whether a time, cycles, is within a first cycle that wears from rest.
@@ -422,7 +436,7 @@ impl Schedule {
     pub fn has_shown_all(&self, since: f64, now: f64) -> bool {
         match self.ends.last() {
             None => true,
-            Some(_) if self.averages => true,
+            Some(_) if now >= self.averages_from => true,
             Some(whole) if self.conditions.repeat => now - since >= *whole,
             Some(_) => self.block(now).1 == self.loadings.len() - 1,
         }
@@ -449,7 +463,7 @@ impl Schedule {
     pub fn next_break(&self, cycles: f64) -> Option<f64> {
         let histories = [&self.conditions.friction_history, &self.conditions.wear_history];
         let kinks = histories.into_iter().flat_map(|history| history.kinks()).map(|t| t / self.clock_rate);
-        let block = self.changes_in_time().then(|| {
+        let block = (self.changes_between_blocks() && cycles < self.averages_from).then(|| {
             let (pass, block) = self.block(cycles);
             self.end(pass, block)
         });
@@ -467,8 +481,9 @@ impl Schedule {
         let passed = |time: &&f64| **time / self.clock_rate < cycles;
         let kinks: usize = histories.iter().map(|it| it.kinks().iter().filter(passed).count()).sum();
         let ends = match self.ends.last() {
-            _ if self.averages => 0.0,
-            Some(whole) if self.conditions.repeat => cycles / whole * self.ends.len() as f64,
+            Some(whole) if self.conditions.repeat => {
+                cycles.min(self.averages_from) / whole * self.ends.len() as f64
+            }
             _ => self.ends.iter().filter(|end| **end < cycles).count() as f64,
         };
         kinks as f64 + ends + f64::from(u8::from(self.conditions.wears_from_rest))
