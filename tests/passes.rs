@@ -284,3 +284,61 @@ fn a_first_cycle_from_rest_is_one_of_the_first_block() {
     println!("{more:e} of {settled:e}");
     assert!(more.abs() < 2.0 * settled, "{more:e} of {settled:e}");
 }
+
+/// A pass of τ = 0.02 wears too much at first, and next to nothing later.
+#[test]
+fn blocks_are_stepped_through_until_passes_are_short() {
+    let fine = "[numerics]\naccuracy = 1e-3";
+    for loading in ["stick_ratio = 0.7\ntau = 300", "stick_ratio = 0.7\nuntil_rate = 1e-6"] {
+        let scene = scene(1e-2, loading, fine);
+        assert!(!averages(&scene));
+        let folder = tempfile::tempdir().unwrap();
+        let (results, [whole, parts], interruptions) = whole_and_in_parts(&scene, folder.path(), 300);
+        let progress = &results.checkpoint().progress;
+        let from = progress.averages_from * results.last().tau / results.last().cycles;
+        println!(
+            "{loading:?}: averaged from τ = {from}, {} steps, {interruptions} interruptions",
+            progress.steps
+        );
+        assert!(
+            from > 1.0 && from < 30.0 && (progress.steps as f64) < 3.0 * 100.0 * from,
+            "{loading:?}: {from}"
+        );
+        assert!(interruptions > 1 && whole == parts, "{loading:?}: {interruptions}");
+        // Both amplitudes leave the limit of the larger.
+        let limit = results.limit().unwrap().wear_volume();
+        assert!(
+            (last_volume(&results) / limit - 1.0).abs() < 1e-3,
+            "{loading:?}: {:e}",
+            last_volume(&results)
+        );
+        assert!(results.error_estimate().unwrap() < 1e-3);
+    }
+}
+
+/// The same times on finer passes that are stepped through longer.
+#[test]
+fn a_run_that_comes_to_average_keeps_to_one_that_does_not() {
+    let case = Case::new(2.0, 0.0, 0.7, 24);
+    let conditions = in_passes(&laws::plain(&case.contact()), TWO, 0.1);
+    let of = |most_swing: f64| {
+        let model = laws::model(&case, &conditions, None);
+        let outputs = [10.05, 20.0, 40.0];
+        let plan = Plan { outputs: outputs.to_vec(), end: End::Cycles(outputs[2]) };
+        let stepper = stepper::implicit(&model, TOLERANCE);
+        let mut seen = Record::default();
+        let simulation = Simulation::new(model, stepper, TOLERANCE, plan).unwrap();
+        let mut simulation = simulation.averaging_below(most_swing);
+        simulation.run(&mut [&mut seen]).unwrap();
+        let volumes: Vec<f64> =
+            seen.0.iter().map(|it| it.wear_volume / simulation.model().limit_volume()).collect();
+        (volumes, simulation.progress().averages_from)
+    };
+    let (stepped, _) = of(0.0);
+    for most_swing in [1e-3, 3e-4] {
+        let (averaged, from) = of(most_swing);
+        let off = distance(&stepped, &averaged);
+        println!("from τ = {from}: off by {off:e}, {} of the swing", off / most_swing);
+        assert!(from > 0.0 && off < OF_SWING * most_swing, "{most_swing}: {off:e}");
+    }
+}
