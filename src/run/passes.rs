@@ -4,8 +4,9 @@ use super::cost::steps_of_attempt;
 use crate::solver::model::{Model, PassSwing};
 use crate::solver::simulation::{End, Simulation};
 
-/// Part of the accuracy asked for that averaging over passes may take up; more where an attempt does not come to all ends of blocks.
-const OF_PASSES: [f64; 2] = [0.1, 0.4];
+/// Part of the accuracy asked for that averaging over passes may take up, from the first on and later on; more where an attempt does not come to all ends of blocks.
+const OF_PASSES: [f64; 2] = [0.1, 0.03];
+const OF_MANY_PASSES: [f64; 2] = [0.4, 0.4];
 
 /// What averaging leaves out over the swing of a pass: that itself, by the phase of the pass, and up to 0.6 of it by the order of the blocks.
 const OF_SWING: f64 = 1.5;
@@ -15,7 +16,7 @@ const OF_SWING: f64 = 1.5;
 pub(super) struct Averaging {
     /// Whether they do so from the first on.
     pub at_once: bool,
-    /// The largest swing of a pass that may be left out, over the limit and over what is worn; zero where each block is stepped through.
+    /// The largest swing of a pass that may be left out later on, over the limit and over what is worn; zero where each block is stepped through.
     pub most_swing: f64,
 }
 
@@ -35,10 +36,9 @@ impl Averaging {
             End::Rate(fraction) => (swing.part / of_limit, of_limit / (1.0 - fraction)),
         };
         let blocks = passes * model.schedule().durations().count() as f64;
-        let [few, many] = OF_PASSES;
-        let share = if blocks > steps_of_attempt(model) { many } else { few };
-        let most_swing = share / OF_SWING * accuracy;
-        Self { at_once: [of_limit, of_end].iter().all(|part| *part <= most_swing), most_swing }
+        let shares = if blocks > steps_of_attempt(model) { OF_MANY_PASSES } else { OF_PASSES };
+        let [at_once, most_swing] = shares.map(|share| share / OF_SWING * accuracy);
+        Self { at_once: [of_limit, of_end].iter().all(|part| *part <= at_once), most_swing }
     }
 }
 
