@@ -15,6 +15,7 @@ mod memory;
 mod mesh;
 mod method;
 mod parts;
+mod passes;
 mod plan;
 pub mod readings;
 mod ready;

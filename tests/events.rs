@@ -181,7 +181,8 @@ fn check_says_beforehand_that_a_run_takes_minutes_and_why() {
 #[test]
 fn what_would_need_a_step_for_each_of_too_many_blocks_is_refused() {
     let blocks = "repeat = true\n[[loading.blocks]]\ntau = 1e-12\n[[loading.blocks]]\ntau = 1e-12\namplitude_factor = 0.5\n";
-    let error = run(&scene("stick_ratio = 0.7", "tau = 3", blocks)).err().map(|error| error.to_string());
+    let held = "stick_ratio = 0.7\ntangential_control = \"force\"";
+    let error = run(&scene(held, "tau = 3", blocks)).err().map(|error| error.to_string());
     let words = error.unwrap_or_default();
     assert!(words.starts_with("loading.blocks: ") && words.contains("make the blocks longer"), "{words}");
 }

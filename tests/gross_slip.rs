@@ -18,7 +18,7 @@ use fretwear::numerics::grid::Clustering;
 use fretwear::run::Results;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Outcome, Plan, Simulation};
-use fretwear::solver::stepper::{GrossSdirk, Sdirk};
+use fretwear::solver::stepper::GrossSdirk;
 use support::Record;
 use support::laws::plain;
 use support::reference::Table;
@@ -549,7 +549,7 @@ fn gross_slip_under_normal_oscillation_wears_from_the_first_cycle() {
         let model = model(&contact, &conditions, 60).unwrap();
         assert!(model.slides());
         let plan = Plan { outputs: vec![0.1], end: End::Cycles(0.1) };
-        let mut simulation = Simulation::new(model, Box::new(Sdirk::new(1e-3)), 1e-3, plan).unwrap();
+        let mut simulation = Simulation::new(model, Box::new(GrossSdirk::new(1e-3)), 1e-3, plan).unwrap();
         let first = simulation.progress().first_rate;
         assert_eq!(simulation.run(&mut []).unwrap(), Outcome::End);
         let (state, fields) = (simulation.state(), simulation.fields());
@@ -558,7 +558,7 @@ fn gross_slip_under_normal_oscillation_wears_from_the_first_cycle() {
             "n {exponent} U {over} {frequency_ratio:?}: {first:.5}, {volume:.5}, {:.5}",
             state.volume_by_rate
         );
-        assert!(volume > 0.0 && (volume / state.volume_by_rate - 1.0).abs() < 2e-2, "{volume}");
+        assert!(volume > 0.0 && (volume / state.volume_by_rate - 1.0).abs() < 1e-3, "{volume}");
     }
 }
 
@@ -588,5 +588,57 @@ fn the_output_ends_where_the_profile_does() {
                 snapshot.tau
             );
         }
+    }
+}
+
+/// A paraboloid at more than full sliding, with the tables given.
+fn on_cubics(grading: f64, tables: &str, control: &str, accuracy: f64, by_hand: &str) -> Results {
+    let text = format!(
+        "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666667\n\
+         {tables}\n[loading]\n{control}\namplitude_ratio = 2.5\ntau = 1\n[numerics]\naccuracy = {accuracy}\n{by_hand}\n[output]\nsnapshots = 2\n"
+    );
+    text.parse::<Scene>().unwrap().simulate().unwrap()
+}
+
+/// Wear that spreads, traction that is not in proportion to the pressure, and springs that lose contact within a period have kinks along the contact, or wear nothing smoother: three
+/// gradings and both controls keep to the accuracy asked for, by a run on 72 springs.
+#[test]
+fn gross_slip_on_cubics_keeps_to_its_accuracy() {
+    let coulomb = "[friction.coulomb]\ncoefficient = 0.5";
+    let spread = format!("{coulomb}\n[wear.non-local]\ncoefficient = 1.667e-13\nlength = \"50 um\"");
+    let by_energy = "[friction.load-dependent]\ncoefficient = 0.5\nexponent = -0.2\n[wear.dissipated-energy]\ncoefficient = 3.3e-13";
+    let archard = "[wear.archard]\ncoefficient = 1.667e-13";
+    let lifted = format!(
+        "{coulomb}\n{archard}\n[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1"
+    );
+    for (tables, may_hold_force) in [(spread.as_str(), true), (by_energy, true), (&lifted, false)] {
+        for grading in [-0.3, 0.0, 0.5] {
+            let controls = ["indentation = 1e-6", "normal_force = 266.6666666666667"];
+            for control in &controls[..if may_hold_force { 2 } else { 1 }] {
+                let [asked, fine] = [(1e-3, ""), (1e-3, "springs = 72")]
+                    .map(|(accuracy, by_hand)| on_cubics(grading, tables, control, accuracy, by_hand));
+                let volumes = [&asked, &fine].map(|results| results.last().wear_volume);
+                let off = (volumes[0] / volumes[1] - 1.0).abs();
+                let estimate = asked.error_estimate().unwrap();
+                println!(
+                    "{tables:?} k = {grading} {control}: off by {off:.1e}, by its estimate {estimate:.1e}"
+                );
+                assert_eq!(asked.accuracy_met(), Some(true));
+                assert!(off < 1e-3, "{off:e}");
+            }
+        }
+    }
+}
+
+/// `V = α ΣE` holds on cubics as well, where the law has it.
+#[test]
+fn gross_slip_on_cubics_wears_by_energy() {
+    let tables = "[friction.load-dependent]\ncoefficient = 0.5\nexponent = 0.3\n[wear.dissipated-energy]\ncoefficient = 3.3e-13";
+    for grading in [-0.5, -0.3, 0.0, 0.5, 0.9] {
+        let results = on_cubics(grading, tables, "indentation = 1e-6", 1e-3, "");
+        let last = results.last();
+        let off = last.wear_volume / (3.3e-13 * last.dissipated_energy) - 1.0;
+        println!("k = {grading}: {off:.1e}");
+        assert!(off.abs() < 1e-3, "{off:e}");
     }
 }

@@ -137,6 +137,7 @@ fn checkpoint() -> Checkpoint {
             next_step: 5e-324,
             first_rate: 1e-15,
             busy_until: 0.7 / 3.0,
+            averages_from: 0.1 / 3.0,
             steps: u64::MAX,
             rejected_steps: 1 << 53 | 1,
             rate_evaluations: 3,
@@ -442,7 +443,7 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
     let loops = file.group("loops").expect("the group");
     let in_groups = [group, loops].map(|it| it.datasets().expect("datasets")).concat();
     let all = [file.datasets().expect("datasets"), in_groups].concat();
-    assert_eq!(all.len(), 24 + 4 + 28 + 5, "{all:?}");
+    assert_eq!(all.len(), 24 + 4 + 29 + 5, "{all:?}");
     for dataset in all {
         for attribute in ["units", "long_name"] {
             let found = text(&dataset, attribute).unwrap_or_default();

@@ -248,7 +248,7 @@ pub(super) const LOOP_CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
 ];
 
 /// Scalars of the checkpoint, real.
-pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 11] = [
+pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 12] = [
     field(
         quantity("cycles", "1", "number of fretting cycles done"),
         |it| &it.state.cycles,
@@ -286,6 +286,15 @@ pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 11] = [
         ),
         |it| &it.progress.busy_until,
         |it| &mut it.progress.busy_until,
+    ),
+    field(
+        quantity(
+            "averages_from",
+            "1",
+            "cycles from which on steps see passes through repeated blocks, which were stepped through before",
+        ),
+        |it| &it.progress.averages_from,
+        |it| &mut it.progress.averages_from,
     ),
     field(
         quantity("next_step", "1", "number of cycles to be tried in the next step"),

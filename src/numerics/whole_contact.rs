@@ -598,3 +598,33 @@ fn product(matrix: &Mat<f64>, values: &[f64]) -> Vec<f64> {
     super::linear::multiply(matrix.as_ref(), values, &mut to);
     to
 }
+
+#[cfg(test)]
+mod tests {
+    use super::WholeContact;
+
+    /// Under a paraboloid `q = 1 - ξ`, `F q = 1 - ν ξ` and `ξ dq/dξ = -ξ`.
+    #[test]
+    fn cubics_carry_a_paraboloid() {
+        for grading in [-0.5, -0.3, 0.0, 0.5, 0.9] {
+            let nu = 0.5 * (1.0 + grading);
+            let off = |inner: usize| {
+                let mesh = WholeContact::on_cubics(grading, inner).unwrap();
+                let inside: Vec<f64> = mesh.distances().collect();
+                // ∫ ξ^(ν-1) (1-ξ) dξ and F ξ = ν ξ.
+                let load = (mesh.load(&inside) * nu * (nu + 1.0) - 1.0).abs();
+                let profile = mesh.profile(&inside);
+                let carried = profile.iter().zip(mesh.fractions()).map(|(u, x)| (u - 1.0 + nu * x).abs());
+                let dilated = mesh.dilation(&inside, &profile);
+                let dilated = dilated.iter().zip(mesh.fractions()).map(|(it, x)| (it + x).abs());
+                let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+                [load, most(&mut carried.into_iter()), most(&mut dilated.into_iter())]
+            };
+            let [coarse, fine] = [off(40), off(80)];
+            println!("k = {grading}: {coarse:?}, {fine:?}");
+            for (coarse, fine) in coarse.into_iter().zip(fine) {
+                assert!(fine < 1e-4 && fine < 0.2 * coarse, "{coarse:e}, {fine:e}");
+            }
+        }
+    }
+}

@@ -151,6 +151,14 @@ impl CheckReport {
             rows.row("springs", format!("{} over the {}", method.springs, method.mesh.replace('-', " ")));
             rows.row("edge of stick", method.stick_edge);
             rows.row("time stepping", method.time_stepping);
+            if let Some(how) = method.repeated_blocks {
+                let words = match how {
+                    "averaged" => "averaged over passes",
+                    "stepped-at-first" => "stepped through until passes are short, then averaged over them",
+                    _ => "stepped through",
+                };
+                rows.row("repeated blocks", words);
+            }
             rows.row("memory of its matrices", format!("{} MB", number(1e-6 * method.memory_expected)));
             let seconds = self.seconds_expected.map(|it| Scale::TIME.show(it));
             rows.row("wall time expected", seconds.unwrap_or_else(|| "below a minute".into()));

@@ -166,7 +166,7 @@ pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
             Some(_) => OF_STEPS * OF_TIME,
             None if loses_stick => OF_TIME_LOSING_STICK,
             None if nearly_slides(model) => NEAR_GROSS_SLIP * OF_TIME,
-            None if model.schedule().conditions().repeat => OF_TIME_IN_PASSES,
+            None if model.schedule().steps_through_passes() => OF_TIME_IN_PASSES,
             None => OF_TIME,
         }
 }

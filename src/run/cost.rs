@@ -95,9 +95,10 @@ fn work_of_step(model: &Model, springs: f64) -> f64 {
     let table = if is_table && moves == 1 { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
     let once = if model.gross().is_some() { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
+    let cycles = schedule.cycles_at_once() as f64;
     overhead
-        + evaluations(model, springs) * springs * (table * once + spread)
-        + BY_TRIPLE[usize::from(multiplies)] * springs.powi(3)
+        + evaluations(model, springs) * springs * cycles * (table * once + spread)
+        + BY_TRIPLE[usize::from(multiplies)] * cycles * springs.powi(3)
 }
 
 /// Evaluations of a step on so many springs.
@@ -185,6 +186,11 @@ pub(super) fn most_work(model: &Model) -> f64 {
     if fewer(model.springs()).is_some() { MOST_WORK } else { MOST_WORK_OF_LAST }
 }
 
+/// Steps that an attempt may try.
+pub(super) fn steps_of_attempt(model: &Model) -> f64 {
+    MOST_WORK / work_of_step(model, model.springs() as f64)
+}
+
 /// Whether a run that came to its end, after others that took so much, can be made anew on so many springs.
 pub(super) fn allows(simulation: &Simulation, springs: usize, work: u64) -> bool {
     let (model, progress) = (simulation.model(), simulation.progress());
@@ -237,6 +243,9 @@ pub(super) fn check(choice: Choice, by_hand: bool, simulation: &mut Simulation) 
 /// Refuses more ends of blocks, at each of which a step ends, than any attempt comes to on springs that the program chooses.
 fn check_blocks(simulation: &Simulation) -> Result<()> {
     let model = simulation.model();
+    if simulation.may_come_to_average() {
+        return Ok(());
+    }
     let (cycles, before) = match simulation.plan().end {
         End::Cycles(cycles) => (cycles, ""),
         End::Rate(rate) if rate < SLOWED * model.schedule().least_by_laws() => {
@@ -326,6 +335,10 @@ fn span(seconds: f64) -> String {
 /// Ends of blocks and kinks of histories in a run.
 fn breaks(simulation: &Simulation) -> f64 {
     let model = simulation.model();
+    if simulation.may_come_to_average() {
+        // How many are stepped through is not known.
+        return 0.0;
+    }
     let cycles = match simulation.plan().end {
         End::Cycles(cycles) => cycles,
         End::Rate(_) => SOME_TAU / model.contact().tau_per_cycle(),

@@ -17,6 +17,9 @@ pub struct Method {
     pub springs: usize,
     /// Method of time stepping.
     pub time_stepping: &'static str,
+    /// How repeated blocks are passed through: `averaged` over passes, as in their mean cycle, `stepped`, one after the other, or `stepped-at-first`, until passes are
+    /// short beside what is left of wear; none without.
+    pub repeated_blocks: Option<&'static str>,
     /// The edge of stick: `fixed`, `moving`, or `none` in gross slip.
     pub stick_edge: &'static str,
     /// Memory of the transforms and of Newton's matrix, bytes, about; some 15 MB of the program itself come on top.
@@ -34,6 +37,12 @@ impl Method {
             mesh: if in_gross_slip { "whole-contact" } else { "slip-annulus" },
             springs,
             time_stepping: simulation.stepper_name(),
+            repeated_blocks: match model.schedule() {
+                schedule if schedule.averages_from() == 0.0 => Some("averaged"),
+                schedule if schedule.recurs() && simulation.may_come_to_average() => Some("stepped-at-first"),
+                schedule if schedule.recurs() => Some("stepped"),
+                _ => None,
+            },
             stick_edge: match model.moving() {
                 Some(moving) if !moving.slides() => "moving",
                 None if !(in_gross_slip || model.slides()) => "fixed",

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::budget::{self, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up, springs_to_stick_again};
 use super::cost::work_so_far;
 use super::mesh::{self, SPRINGS_TO_SLIDE};
+use super::passes::Averaging;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
@@ -32,6 +33,8 @@ pub(super) struct Parts {
     pub limit: Option<LimitingShape>,
     /// What comes of gross slip where springs may stick again.
     pub hand_over: Option<HandOver>,
+    /// As in [`Simulation::averaging_below`].
+    pub most_swing: f64,
 }
 
 impl Parts {
@@ -46,7 +49,7 @@ impl Parts {
         known: Option<&Schedule>,
         store: &OperatorStore,
     ) -> Result<Self> {
-        let mut parts = Self::on_any(scene, numerics, wanted, known, store)?;
+        let mut parts = Self::on_any(scene, numerics, wanted, known, None, store)?;
         check_sliding(&parts.model)?;
         parts.limit = limit(&parts.model)?;
         if parts.model.gross().is_some() {
@@ -112,14 +115,14 @@ impl Parts {
     /// As [`Simulation::resume_handed_over`].
     pub(super) fn resume(self, state: State, progress: Progress) -> Result<Simulation> {
         let is_taken_up = self.is_taken_up(&state);
-        let Self { model, stepper, tolerance, plan, hand_over, .. } = self;
+        let Self { model, stepper, tolerance, plan, hand_over, most_swing, .. } = self;
         match hand_over {
             Some(hand_over) if is_taken_up => {
                 Simulation::resume_handed_over((model, tolerance), hand_over, plan, state, progress)
             }
             _ => {
                 let simulation = Simulation::resume(model, stepper, tolerance, plan, state, progress);
-                Ok(simulation.handing_over(hand_over))
+                Ok(simulation.handing_over(hand_over).averaging_below(most_swing))
             }
         }
     }
@@ -130,15 +133,19 @@ impl Parts {
     /// As [`Simulation::new`].
     pub(super) fn begin(self) -> Result<Simulation> {
         let simulation = Simulation::new(self.model, self.stepper, self.tolerance, self.plan)?;
-        Ok(simulation.handing_over(self.hand_over))
+        Ok(simulation.handing_over(self.hand_over).averaging_below(self.most_swing))
     }
 
     /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that is in gross slip, and without its limit.
+    ///
+    /// # Arguments
+    /// * `averages` -- whether steps see the mean cycle of a pass, where that is decided
     pub(super) fn on_any(
         scene: &Scene,
         numerics: &Numerics,
         wanted: Option<usize>,
         known: Option<&Schedule>,
+        averages: Option<bool>,
         store: &OperatorStore,
     ) -> Result<Self> {
         let contact = scene.contact()?;
@@ -153,6 +160,16 @@ impl Parts {
         };
         let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
         check_stepper(numerics.stepper, &model)?;
+        let whole = numerics.stepper == StepperChoice::EveryCycle;
+        let plan =
+            super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
+        let chosen = numerics.stepper == StepperChoice::Implicit;
+        let averaging = match chosen {
+            true => Averaging::of(&model, plan.end, numerics.accuracy),
+            false => Averaging::default(),
+        };
+        let mut model = model;
+        model.average_from(if averages.unwrap_or(averaging.at_once) { 0.0 } else { f64::INFINITY });
         let tolerance =
             numerics.tolerance.unwrap_or_else(|| budget::tolerance_for(numerics.accuracy, &model));
         let stepper: Box<dyn Stepper + Send> = match numerics.stepper {
@@ -160,9 +177,6 @@ impl Parts {
             StepperChoice::EveryCycle => Box::<EveryCycle>::default(),
             StepperChoice::CycleJump => Box::<CycleJump>::default(),
         };
-        let whole = numerics.stepper == StepperChoice::EveryCycle;
-        let plan =
-            super::plan::plan(scene.loading().duration, scene.output(), contact.tau_per_cycle(), whole)?;
         // By hand it is one tolerance for both meshes, and no more springs than by choice; near gross slip springs are those over the slip annulus.
         let again = springs_taken_up(&model);
         let springs = match numerics.springs {
@@ -177,7 +191,8 @@ impl Parts {
         };
         let hand_over =
             model.is_taken_up().then_some(HandOver { springs, tolerance: part * tolerance, expected: false });
-        Ok(Self { model, stepper, tolerance, plan, limit: None, hand_over })
+        let most_swing = averaging.most_swing;
+        Ok(Self { model, stepper, tolerance, plan, limit: None, hand_over, most_swing })
     }
 }
 

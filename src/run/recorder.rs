@@ -12,11 +12,12 @@ use super::accuracy::estimate::{Coarsening, Companions};
 use super::budget::{self, Shares};
 use super::cost;
 use super::limit::worn_profile;
+use super::passes;
 use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::Result;
 use crate::laws::loading::TangentialControl;
 use crate::scene::{Scene, Stepper};
-use crate::solver::model::{FrettingLoop, OperatorStore};
+use crate::solver::model::{CycleFields, FrettingLoop, OperatorStore};
 use crate::solver::simulation::{Flow, Observer, Outcome, Simulation};
 
 /// Steps along one fretting loop to and fro at constant indentation in the result file, even.
@@ -25,13 +26,14 @@ const LOOP_STEPS: usize = 64;
 /// The contact as it is now.
 pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
     let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
-    let (contact, cycle) = (model.contact(), simulation.cycle());
+    let (contact, cycle) = (model.contact(), simulation.cycle_in_block());
+    let cycle = &*cycle;
     let radial = simulation.radial_fields();
     let unworn = state.cycles == 0.0;
     let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
-    let fretting_loop = fretting_loop(simulation);
+    let fretting_loop = fretting_loop(simulation, cycle);
     let tangential_force = fretting_loop.largest_force();
-    let share = model.schedule().loading(state.cycles, state.cycles).share;
+    let share = model.schedule().loading_in_block(state.cycles, state.cycles).share;
     let [energy_ratio, sliding_ratio] =
         [fretting_loop.energy_ratio(cycle.work / share), fretting_loop.sliding_ratio()];
     let along_y = |values: Vec<f64>| if model.schedule().leaves_axis() { values } else { vec![] };
@@ -65,12 +67,11 @@ pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
 }
 
 /// The loop of the cycle that is under way, with as many points as every other of the run.
-fn fretting_loop(simulation: &Simulation) -> FrettingLoop {
+fn fretting_loop(simulation: &Simulation, cycle: &CycleFields) -> FrettingLoop {
     let (model, state) = (simulation.model(), simulation.state());
     let schedule = model.schedule();
-    let loading = model.loading_in(state, schedule.loading(state.cycles, state.cycles));
-    let mut found =
-        model.cycle_loop(&loading, simulation.cycle(), &state.compression, simulation.fields(), LOOP_STEPS);
+    let loading = model.loading_in(state, schedule.loading_in_block(state.cycles, state.cycles));
+    let mut found = model.cycle_loop(&loading, cycle, &state.compression, simulation.fields(), LOOP_STEPS);
     let points = 1 + schedule.loop_steps(LOOP_STEPS);
     for values in found.displacement.iter_mut().chain(&mut found.force) {
         let end = values[0];
@@ -292,7 +293,10 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
     let by_depth = model.wear_volume(simulation.fields());
     let whole = if model.gross().is_some() { by_depth } else { model.limit_volume() };
     let by_rate = (state.volume_by_rate - by_depth).abs() / whole;
-    Some(by_rate.max(model.core_uncertainty()).max(model.unseen_depth().unwrap_or(0.0)))
+    let [of_volume, of_depth] = passes::left_out(model);
+    let of_passes =
+        (of_volume / whole).max(of_depth / model.depth_scale()) + passes::left_out_later(simulation);
+    Some(by_rate.max(model.core_uncertainty()).max(model.unseen_depth().unwrap_or(0.0)) + of_passes)
 }
 
 /// Whether the two volumes tell the error: where the edge of stick moves neither sees that of its place, nor that of an amplitude which follows from a balance

@@ -1,10 +1,11 @@
 //! The loop over time: which step to try, where to land, when to stop.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
 use crate::numerics::linear::largest;
-use crate::solver::model::{CycleFields, Fields, Model, Past, RadialFields, State};
+use crate::solver::model::{CycleFields, CycleLoading, Fields, Model, Past, RadialFields, State};
 use crate::solver::stepper::{self, Stepper, Trial};
 
 mod failure;
@@ -112,6 +113,8 @@ pub struct Progress {
     pub first_rate: f64,
     /// Cycles until which the rate was above the one at which to stop.
     pub busy_until: f64,
+    /// Cycles from which on steps see the mean cycle of a pass, where its blocks were stepped through before; else zero.
+    pub averages_from: f64,
     /// Index of the next entry of the plan's outputs.
     pub next_output: u64,
     /// Steps accepted.
@@ -153,6 +156,8 @@ pub struct Simulation {
     rejected: Rejected,
     /// When and where a rig broke the last stick, if it did.
     let_go: Option<String>,
+    /// Swing of a pass, over the limit and over what is worn, from which on downwards steps see its mean cycle; zero where they never come to do so.
+    most_swing: f64,
 }
 
 impl Simulation {
@@ -172,7 +177,7 @@ impl Simulation {
         let mut growth = 0.0_f64;
         let mut finite = true;
         for loading in model.schedule().first_cycles() {
-            let cycle = model.cycle(&model.loading_in(&state, loading), &state.compression, &fields);
+            let cycle = model.cycle_in_block(&model.loading_in(&state, loading), &state.compression, &fields);
             first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
             growth = growth.max(largest(&cycle.growth));
             finite &= cycle.volume.is_finite() && cycle.growth.iter().all(|it| it.is_finite());
@@ -187,17 +192,19 @@ impl Simulation {
 
     /// Goes on from a state, as if there had been no interruption.
     pub fn resume(
-        model: Model,
+        mut model: Model,
         stepper: Box<dyn Stepper + Send>,
         tolerance: f64,
         plan: Plan,
         state: State,
         progress: Progress,
     ) -> Self {
+        if progress.averages_from > 0.0 {
+            model.average_from(progress.averages_from);
+        }
         let fields = model.fields(&state);
-        let cycle = cycle_of(&model, &state, &fields, state.cycles);
+        let (cycle, rate) = cycle_of(&model, &state, &fields, state.cycles);
         let depth = model.depth_on_springs(&state, &fields);
-        let rate = rate_of_wear(&model, &fields, &cycle);
         Self {
             model,
             stepper,
@@ -214,7 +221,33 @@ impl Simulation {
             settles: false,
             rejected: Rejected::default(),
             let_go: None,
+            most_swing: 0.0,
         }
+    }
+
+    /// Lets steps no longer end with each block once the swing of a pass has fallen to this part of the limit and of what is worn.
+    #[must_use]
+    pub fn averaging_below(self, most_swing: f64) -> Self {
+        Self { most_swing, ..self }
+    }
+
+    /// Whether steps that end with each block may come to see passes.
+    pub fn may_come_to_average(&self) -> bool {
+        self.most_swing > 0.0 && self.model.may_average() && !self.model.wears_without_end()
+    }
+
+    /// The swing of a pass, over the limit, that is left out since blocks are no longer stepped through.
+    pub fn swing_left_out(&self) -> f64 {
+        if self.progress.averages_from > 0.0 { self.most_swing } else { 0.0 }
+    }
+
+    /// Whether passes have become short beside what is left of wear.
+    fn passes_are_short(&self, state: &State) -> bool {
+        let swing = if self.may_come_to_average() { self.model.pass_swing(state) } else { None };
+        swing.is_some_and(|swing| {
+            let parts = [self.model.of_limit(&swing), swing.volume / state.volume_by_rate];
+            parts.iter().all(|part| *part <= self.most_swing)
+        })
     }
 
     /// The model.
@@ -242,14 +275,25 @@ impl Simulation {
         &self.fields
     }
 
-    /// What the next cycle does.
+    /// What the next cycle does, or the mean cycle of a pass through the blocks.
     pub fn cycle(&self) -> &CycleFields {
         &self.cycle
     }
 
-    /// The fields at the radii of the output.
+    /// What the next cycle does, in the block that is under way.
+    pub fn cycle_in_block(&self) -> Cow<'_, CycleFields> {
+        let (model, state) = (&self.model, &self.state);
+        if !model.schedule().averages_at(state.cycles) {
+            return Cow::Borrowed(&self.cycle);
+        }
+        let loading = model.schedule().loading_in_block(state.cycles, state.cycles);
+        let loading = model.loading_in(state, loading);
+        Cow::Owned(model.cycle_in_block(&loading, &state.compression, &self.fields))
+    }
+
+    /// The fields at the radii of the output, with the slip of the block that is under way.
     pub fn radial_fields(&self) -> RadialFields {
-        self.model.radial_fields(&self.state, &self.fields, &self.cycle)
+        self.model.radial_fields(&self.state, &self.fields, &self.cycle_in_block())
     }
 
     /// Wear depth at the radii of the output, m, shape `(node,)`.
@@ -362,7 +406,7 @@ impl Simulation {
         observers: &mut [&mut dyn Observer],
     ) -> Result<()> {
         for (state, fields) in passed {
-            let cycle = cycle_of(&self.model, &state, &fields, state.cycles);
+            let (cycle, _) = cycle_of(&self.model, &state, &fields, state.cycles);
             let mut shown = (state, fields, cycle);
             self.progress.next_output += 1;
             self.exchange(&mut shown);
@@ -469,8 +513,7 @@ impl Simulation {
     fn reached(&self, trial: Trial) -> Option<Reached> {
         let state = trial.state?;
         let fields = trial.fields.unwrap_or_else(|| self.model.fields(&state));
-        let cycle = cycle_of(&self.model, &state, &fields, self.state.cycles);
-        let rate = rate_of_wear(&self.model, &fields, &cycle);
+        let (cycle, rate) = cycle_of(&self.model, &state, &fields, self.state.cycles);
         Some(Reached { state, fields, cycle, rate })
     }
 
@@ -524,12 +567,17 @@ impl Simulation {
             let (edge, before) = (state.stick.as_ref().map(|it| it.area), self.model.work_counted());
             state = self.model.begin_block(state, self.state.cycles)?;
             self.model.count_jump(edge, &state);
+            if self.model.schedule().ends_pass(self.state.cycles, state.cycles)
+                && self.passes_are_short(&state)
+            {
+                self.progress.averages_from = state.cycles;
+                self.model.average_from(state.cycles);
+            }
             self.progress.resolved_work += self.model.work_counted() - before;
             fields = self.model.fields(&state);
             // On a mesh that begins anew the depth between springs is another by as much as they leave open.
             depth = self.model.depth_on_springs(&state, &fields);
-            cycle = cycle_of(&self.model, &state, &fields, state.cycles);
-            rate = rate_of_wear(&self.model, &fields, &cycle);
+            (cycle, rate) = cycle_of(&self.model, &state, &fields, state.cycles);
         }
         (self.state, self.fields, self.cycle, self.depth, self.rate) = (state, fields, cycle, depth, rate);
         Ok(true)
@@ -551,8 +599,20 @@ fn rate_of_wear(model: &Model, fields: &Fields, cycle: &CycleFields) -> f64 {
     cycle.volume.max(CERTAIN_WEAR * trapezoids)
 }
 
-/// The cycle that follows a state, in the block that is under way at `start`.
-fn cycle_of(model: &Model, state: &State, fields: &Fields, start: f64) -> CycleFields {
+/// The cycle that follows a state, in the block that is under way at `start` or as the mean of a pass, and its rate of wear: that of the block that wears most.
+fn cycle_of(model: &Model, state: &State, fields: &Fields, start: f64) -> (CycleFields, f64) {
     let loading = model.loading_in(state, model.schedule().loading(start, state.cycles));
-    model.cycle(&loading, &state.compression, fields)
+    let cycle_in = |loading: &CycleLoading| model.cycle_in_block(loading, &state.compression, fields);
+    if loading.others.is_empty() {
+        let cycle = cycle_in(&loading);
+        let rate = rate_of_wear(model, fields, &cycle);
+        return (cycle, rate);
+    }
+    let mut most = 0.0;
+    let cycle = CycleFields::mean(loading.parts().map(|part| {
+        let cycle = cycle_in(part);
+        most = rate_of_wear(model, fields, &cycle).max(most);
+        (part.part, cycle)
+    }));
+    (cycle, most)
 }

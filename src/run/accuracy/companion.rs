@@ -48,6 +48,8 @@ pub(super) struct Coarser<'a> {
     pub samples: bool,
     /// The schedule of the run, where that has as many substeps.
     pub schedule: Option<&'a Schedule>,
+    /// Whether steps see the mean cycle of a pass, as those of the run.
+    pub averages: bool,
     /// Steps after which it is lost, if it chooses them by itself.
     pub most_steps: f64,
     /// Work, as [`work_so_far`], after which the run would take too long.
@@ -97,8 +99,9 @@ impl Companion {
     /// Runs it.
     pub(super) fn run(coarser: &Coarser<'_>) -> Result<Self, Lost> {
         let Coarser { scene, numerics, .. } = coarser;
+        let averages = Some(coarser.averages);
         let Ok(parts) =
-            Parts::on_any(scene, numerics, Some(coarser.springs), coarser.schedule, coarser.store)
+            Parts::on_any(scene, numerics, Some(coarser.springs), coarser.schedule, averages, coarser.store)
         else {
             return Err(Lost::NoEnd);
         };

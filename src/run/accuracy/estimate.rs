@@ -11,6 +11,7 @@ use super::super::budget::{
 };
 use super::super::cost::{MOST_WORK, OF_COMPANION};
 use super::super::parts::resolution;
+use super::super::passes;
 use super::companion::{Coarser, Companion, Dear, Lost, Worn};
 use super::substeps::larger;
 use crate::data::{Snapshot, same_cycles};
@@ -83,6 +84,8 @@ pub(in crate::run) struct Companions {
     limit: Option<[f64; 2]>,
     /// What the discretisation leaves out in any case.
     left_out: f64,
+    /// What averaging over passes leaves out of the worn volume, m³, and of the depth, m.
+    of_passes: [f64; 2],
     first: Option<Companion>,
     second: Option<Companion>,
 }
@@ -109,6 +112,8 @@ pub(in crate::run) struct Coarsening {
     substeps: Option<usize>,
     /// That of the run, where companions have the same.
     schedule: Option<Schedule>,
+    /// Whether its steps see the mean cycle of a pass.
+    averages: bool,
 }
 
 impl Coarsening {
@@ -134,6 +139,7 @@ impl Coarsening {
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
             substeps,
+            averages: model.schedule().averages_from() == 0.0,
         }
     }
 
@@ -164,6 +170,7 @@ impl Coarsening {
                 .max(FEWEST),
                 offsets: &self.offsets,
                 schedule: self.schedule.as_ref(),
+                averages: self.averages,
                 samples: steps.abs() == 1 && self.substeps.is_none(),
                 most_work,
                 most_steps,
@@ -247,6 +254,7 @@ impl Companions {
                 .then(|| [model.limit_volume(), model.depth_scale()])
                 .filter(|limit| limit.iter().all(|it| *it > 0.0)),
             left_out: if smooth { 0.0 } else { model.core_uncertainty().max(unseen()).max(of_time) },
+            of_passes: passes::left_out(model),
             first: None,
             second: None,
         }
@@ -279,7 +287,9 @@ impl Companions {
         // Nothing wears less than not at all.
         let below =
             worn.iter().flat_map(|it| &it.depth).fold(0.0, |most: f64, depth| most.max(-depth)) / scale[1];
-        let left_out = self.left_out.max(below);
+        let [of_volume, of_depth] = self.of_passes;
+        let of_passes = (of_volume / scale[0]).max(of_depth / scale[1]) + passes::left_out_later(simulation);
+        let left_out = self.left_out.max(below) + of_passes;
         let unknown = Shares { springs: UNKNOWN, left_out, ..Shares::default() };
         let Some(first) = &self.first else { return Some(unknown) };
         let ratio = simulation.springs() as f64 / first.springs as f64;
@@ -308,7 +318,7 @@ impl Companions {
         }
         if self.gross {
             let shares = in_gross_slip(simulation, snapshots, nearest, ratio, scale);
-            return Some(Shares { substeps, ..shares });
+            return Some(Shares { substeps, left_out: shares.left_out + of_passes, ..shares });
         }
         let (order, difference) = self.observed_order(first, nearest, scale);
         Some(Shares {

@@ -74,6 +74,7 @@ impl Unsampled {
     /// Takes the state of a simulation into account.
     pub(super) fn see(&mut self, simulation: &Simulation) {
         let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
+        self.finer.average_from(model.schedule().averages_from());
         let loading = model.loading_in(state, self.finer.loading(state.cycles, state.cycles));
         let (fine, coarse) = (model.cycle(&loading, &state.compression, fields), simulation.cycle());
         // In gross slip growth is over the indentation.

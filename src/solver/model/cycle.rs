@@ -93,11 +93,43 @@ impl CycleFields {
         }
         self
     }
+
+    /// The mean cycle of a pass of which these cycles take parts. Amplitude and slip are means, the stick radius is the smallest.
+    pub fn mean(cycles: impl Iterator<Item = (f64, Self)>) -> Self {
+        let mut mean = Self { stick_radius: f64::INFINITY, ..Self::default() };
+        for (part, cycle) in cycles {
+            for (sum, values) in [(&mut mean.growth, &cycle.growth), (&mut mean.slip, &cycle.slip)] {
+                sum.resize(values.len(), 0.0);
+                sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += part * value);
+            }
+            mean.dissipation += part * cycle.dissipation;
+            mean.jump_loss += part * cycle.jump_loss;
+            mean.work += part * cycle.work;
+            mean.volume += part * cycle.volume;
+            mean.amplitude += part * cycle.amplitude;
+            mean.stick_radius = mean.stick_radius.min(cycle.stick_radius);
+        }
+        mean
+    }
 }
 
 impl Model {
-    /// What a cycle does to the contact whose fields are given.
+    /// What a cycle does to the contact whose fields are given, or the mean cycle of a pass.
     pub fn cycle(&self, loading: &CycleLoading, compression: &[f64], fields: &Fields) -> CycleFields {
+        if loading.others.is_empty() {
+            return self.cycle_in_block(loading, compression, fields);
+        }
+        let parts = loading.parts();
+        CycleFields::mean(parts.map(|part| (part.part, self.cycle_in_block(part, compression, fields))))
+    }
+
+    /// What a cycle of one block does, the others of its pass aside.
+    pub fn cycle_in_block(
+        &self,
+        loading: &CycleLoading,
+        compression: &[f64],
+        fields: &Fields,
+    ) -> CycleFields {
         if let Some(gross) = self.gross() {
             return self.gross_cycle(gross, loading, compression);
         }
@@ -338,6 +370,9 @@ impl Model {
         cycle: &CycleFields,
         factor: f64,
     ) -> Option<PlainSlopes> {
+        if !loading.others.is_empty() {
+            return None;
+        }
         let per_pressure = self.share_at_contact(loading, fields, cycle)
             * factor
             * 4.0
@@ -353,8 +388,27 @@ impl Model {
         })
     }
 
-    /// Adds `factor` times the derivatives of the growth in a cycle by compressions and edge to a matrix with these columns.
+    /// Adds `factor` times the derivatives of the growth in a cycle, or in the mean cycle of a pass, by compressions and edge to a matrix with these columns.
     pub fn add_growth_slopes(
+        &self,
+        loading: &CycleLoading,
+        compression: &[f64],
+        fields: &Fields,
+        cycle: &CycleFields,
+        factor: f64,
+        matrix: &mut Mat<f64>,
+    ) {
+        if loading.others.is_empty() {
+            return self.add_growth_slopes_in_block(loading, compression, fields, cycle, factor, matrix);
+        }
+        for part in loading.parts().cloned() {
+            let part = CycleLoading { others: vec![], ..part };
+            let cycle = self.cycle(&part, compression, fields);
+            self.add_growth_slopes_in_block(&part, compression, fields, &cycle, part.part * factor, matrix);
+        }
+    }
+
+    fn add_growth_slopes_in_block(
         &self,
         loading: &CycleLoading,
         compression: &[f64],

@@ -29,12 +29,15 @@ impl Model {
 
     /// A loading, with the ground that rests under it in a state.
     pub(super) fn held_at_rest(&self, state: &State, loading: CycleLoading) -> CycleLoading {
-        let resting_area = match (self.follows_ground_at_rest(), self.limit_changes()) {
-            (false, _) => 0.0,
-            (true, false) => state.resting_area,
-            (true, true) => state.least_stick_radius.powi(2),
-        };
-        CycleLoading { resting_area, ..loading }
+        let follows = self.follows_ground_at_rest();
+        loading.each(|loading| {
+            let resting_area = match (follows, self.limit_changes_in(&loading)) {
+                (false, _) => 0.0,
+                (true, false) => state.resting_area,
+                (true, true) => state.least_stick_radius.powi(2),
+            };
+            CycleLoading { resting_area, ..loading }
+        })
     }
 
     /// Whether the mesh begins where springs slip in some cycle, and those that slip in others are found by their compressions at an indentation that is held.
@@ -42,6 +45,11 @@ impl Model {
         let conditions = self.schedule.conditions();
         let changes = self.schedule.changes_between_blocks() || self.limit_changes();
         changes && !conditions.holds_normal_force && self.moving().is_none() && self.gross().is_none()
+    }
+
+    /// The same, or in a cycle that stands for a part of a pass: other blocks wear the ground at its edge of stick.
+    fn limit_changes_in(&self, loading: &CycleLoading) -> bool {
+        loading.part != 1.0 || self.limit_changes()
     }
 
     /// Whether the compression below which springs slip changes within a block.
@@ -69,7 +77,7 @@ impl Model {
     /// The ground that rests in a cycle of an amplitude of the contact, m. Where the limit of slip changes, that is ground that has never slipped, as far as the unworn
     /// profile bears it.
     pub(super) fn at_rest_in(&self, loading: &CycleLoading, amplitude: f64) -> AtRest {
-        if !self.follows_ground_at_rest() || !self.limit_changes() {
+        if !self.follows_ground_at_rest() || !self.limit_changes_in(loading) {
             return AtRest { area: loading.resting_area, limit: None };
         }
         let limit = match loading.control {

@@ -214,7 +214,7 @@ impl Model {
     ) -> Option<GrossRates> {
         let mesh = &gross.mesh;
         let whole = self.whole(gross, compression)?;
-        let (depth, cycle, _) = self.gross_wear(gross, loading, compression, &whole);
+        let (depth, cycle) = self.gross_mean_wear(gross, loading, compression, &whole);
         // q' = d' F⁻¹ 1 + (A'/A) F⁻¹ ξ ∂u/∂ξ - F⁻¹ W, with A'/A and d' from the edge and the force.
         let carried = mesh.dilation(compression, &whole.elastic);
         let mut worn = depth;
@@ -355,7 +355,7 @@ impl Model {
         let [mut wear_depth, mut pressure, mut slip] = [(); 3].map(|()| vec![0.0; offsets.len()]);
         if let Some(whole) = self.whole(gross, &state.compression) {
             let mesh = &gross.mesh;
-            let loading = self.loading_in(state, self.schedule.loading(state.cycles, state.cycles));
+            let loading = self.loading_in(state, self.schedule.loading_in_block(state.cycles, state.cycles));
             let (_, cycle, sliding) = self.gross_wear(gross, &loading, &state.compression, &whole);
             let transforms = self.beside_polynomials(state);
             for (i, squared) in offsets.iter().enumerate().take_while(|(_, squared)| **squared < whole.area) {

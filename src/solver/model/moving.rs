@@ -508,7 +508,8 @@ impl Model {
             History::Constant => loading,
             history => {
                 let area = PI * self.contact.contact_radius().powi(2);
-                CycleLoading { friction: loading.friction.scaled(history.at(energy / area)), ..loading }
+                let factor = history.at(energy / area);
+                loading.each(|loading| CycleLoading { friction: loading.friction.scaled(factor), ..loading })
             }
         }
     }

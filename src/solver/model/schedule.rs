@@ -38,7 +38,7 @@ impl AmplitudeControl {
     }
 }
 
-/// What acts in one cycle.
+/// What acts in one cycle, or in the mean cycle of a pass through the blocks.
 #[derive(Debug, Clone)]
 pub struct CycleLoading {
     /// Law of friction.
@@ -63,6 +63,10 @@ pub struct CycleLoading {
     pub share: f64,
     /// Squared radius, m², within which no spring slips whatever its compression, see [`State::resting_area`](super::State).
     pub resting_area: f64,
+    /// Part of the pass that such cycles take; one where a cycle is of one block.
+    pub part: f64,
+    /// The cycles that take the rest of the pass; none where a cycle is of one block.
+    pub others: Vec<CycleLoading>,
 }
 
 /// Settled cycles that the first one from rest wears as much as. The first loading moves every spring as a quarter of a settled cycle does: it
@@ -73,6 +77,23 @@ const FROM_REST: f64 = 1.25;
 const FIRST_END: f64 = 1.0;
 
 impl CycleLoading {
+    /// The cycles of which this is the mean, each of one block and with its part.
+    pub fn parts(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.others)
+    }
+
+    /// The same change of each of them.
+    pub fn each(mut self, change: impl Fn(Self) -> Self) -> Self {
+        let others = std::mem::take(&mut self.others);
+        let others = others.into_iter().map(&change).collect();
+        Self { others, ..change(self) }
+    }
+
+    /// Whether nothing moves.
+    pub fn rests(&self) -> bool {
+        self.parts().all(|cycle| cycle.asked() == 0.0)
+    }
+
     /// What is asked: an amplitude of the displacement, m, or of the force, N.
     pub fn asked(&self) -> f64 {
         if let AmplitudeControl::Force(asked) = self.control { asked } else { self.amplitude }
@@ -153,6 +174,8 @@ pub struct Schedule {
     largest_indentation: f64,
     /// Whether steps follow an edge of stick that jumps between blocks.
     follows_jumps: bool,
+    /// Cycles from which on wear goes on as in the mean cycle of a pass, so that no step ends at the end of a block; infinite where each does.
+    averages_from: f64,
     /// What [`Schedule::envelope`] found for a contact of this indentation and amplitude, m; copies of the schedule share it.
     envelope: Arc<OnceLock<([f64; 2], Envelope)>>,
 }
@@ -207,6 +230,8 @@ impl Schedule {
                 cycles_per_period: 1.0,
                 share: 1.0,
                 resting_area: 0.0,
+                part: 1.0,
+                others: vec![],
             };
             let mut depth = indentation;
             if resolved {
@@ -256,6 +281,7 @@ impl Schedule {
             friction_along_energy,
             largest_indentation,
             follows_jumps: true,
+            averages_from: f64::INFINITY,
             envelope: Arc::default(),
         })
     }
@@ -263,6 +289,37 @@ impl Schedule {
     /// The same for explicit steps, which do not follow an edge of stick that jumps between blocks: the mesh begins where that is innermost.
     pub(crate) fn for_explicit_steps(self) -> Self {
         Self { follows_jumps: false, ..self }
+    }
+
+    /// Lets wear go on as in the mean cycle of a pass through the blocks, from some cycle on; before, or if that is infinite, a step ends with each block.
+    pub fn average_from(&mut self, cycles: f64) {
+        self.averages_from = if self.recurs() { cycles } else { f64::INFINITY };
+    }
+
+    /// Cycles from which on wear goes on as in the mean cycle of a pass.
+    pub fn averages_from(&self) -> f64 {
+        self.averages_from
+    }
+
+    /// Whether blocks that differ follow one another again and again.
+    pub fn recurs(&self) -> bool {
+        self.conditions.repeat && self.changes_between_blocks()
+    }
+
+    /// Whether blocks recur, and steps end with each.
+    pub fn steps_through_passes(&self) -> bool {
+        self.conditions.repeat && self.averages_from > 0.0
+    }
+
+    /// Cycles of different blocks that a step sees at once.
+    pub fn cycles_at_once(&self) -> usize {
+        if self.averages_from > 0.0 { 1 } else { self.loadings.len() }
+    }
+
+    /// Cycles of each block of a pass.
+    pub fn durations(&self) -> impl Iterator<Item = f64> {
+        let begins = std::iter::once(&0.0).chain(&self.ends);
+        self.ends.iter().zip(begins).map(|(end, begin)| end - begin)
     }
 
     /// Whether steps follow an edge of stick that jumps between blocks.
@@ -284,10 +341,42 @@ impl Schedule {
         &self.conditions
     }
 
-    /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning.
+    /// What acts at `cycles` in a step that begins at `start`: the block is that of the beginning, or all of a pass.
     pub fn loading(&self, start: f64, cycles: f64) -> CycleLoading {
-        let loading = self.in_block(self.block(start).1, cycles);
-        if self.is_first(start) { CycleLoading { share: FROM_REST, ..loading } } else { loading }
+        if self.averages_at(start) {
+            self.mean_loading(start, cycles)
+        } else {
+            self.loading_in_block(start, cycles)
+        }
+    }
+
+    /// What acts in a pass.
+    pub fn mean_loading(&self, start: f64, cycles: f64) -> CycleLoading {
+        let of_block = |block: usize| {
+            let part = self.part(block);
+            CycleLoading { part, share: self.share(start), ..self.in_block(block, cycles) }
+        };
+        let mut parts = (0..self.loadings.len()).map(of_block);
+        let first = parts.next().expect("a pass has blocks");
+        CycleLoading { others: parts.collect(), ..first }
+    }
+
+    /// What acts in the block that is under way at `start`, whether steps see it or its pass.
+    pub fn loading_in_block(&self, start: f64, cycles: f64) -> CycleLoading {
+        let block = self.block(start).1;
+        let part = if self.averages_at(start) { self.part(block) } else { 1.0 };
+        CycleLoading { part, share: self.share(start), ..self.in_block(block, cycles) }
+    }
+
+    /// The part of a pass that a block takes.
+    fn part(&self, block: usize) -> f64 {
+        let begin = if block == 0 { 0.0 } else { self.ends[block - 1] };
+        (self.ends[block] - begin) / self.ends[self.ends.len() - 1]
+    }
+
+    /// Settled cycles that the one at `start` wears as much as.
+    fn share(&self, start: f64) -> f64 {
+        if self.is_first(start) { FROM_REST } else { 1.0 }
     }
 
     /// What acts at `cycles` in a block.
@@ -303,14 +392,29 @@ impl Schedule {
         loading
     }
 
+    /// Whether steps from there on see whole passes. A first cycle that wears from rest is one of the first block, if that lasts as long.
+    pub fn averages_at(&self, start: f64) -> bool {
+        start >= self.averages_from && !(self.is_first(start) && self.ends[0] >= FIRST_END)
+    }
+
     /// Whether what acts changes from one block to another.
     pub fn changes_between_blocks(&self) -> bool {
         !self.ends.is_empty()
     }
 
-    /// Whether one block, or one pass of it, ends between two times, cycles.
+    /// Whether steps see what acts change from one block to another.
+    pub fn changes_in_time(&self) -> bool {
+        self.changes_between_blocks() && self.averages_from > 0.0
+    }
+
+    /// Whether steps end where one block, or one pass of it, ends between two times, cycles.
     pub fn begins_block(&self, before: f64, now: f64) -> bool {
-        self.block(before) != self.block(now)
+        before < self.averages_from && self.block(before) != self.block(now)
+    }
+
+    /// Whether a step that began at `before` ends with a pass.
+    pub fn ends_pass(&self, before: f64, now: f64) -> bool {
+        self.recurs() && self.begins_block(before, now) && self.block(now).1 == 0
     }
 
     /// Whether a time, cycles, is within a first cycle that wears from rest.
@@ -335,7 +439,7 @@ impl Schedule {
     pub fn first_cycles(&self) -> impl Iterator<Item = CycleLoading> {
         let mut start = 0.0;
         self.loadings.iter().enumerate().map(move |(block, _)| {
-            let loading = CycleLoading { share: 1.0, ..self.loading(start, 0.0) };
+            let loading = CycleLoading { share: 1.0, ..self.loading_in_block(start, 0.0) };
             start = self.ends.get(block).copied().unwrap_or_default();
             loading
         })
@@ -345,6 +449,7 @@ impl Schedule {
     pub fn has_shown_all(&self, since: f64, now: f64) -> bool {
         match self.ends.last() {
             None => true,
+            Some(_) if now >= self.averages_from => true,
             Some(whole) if self.conditions.repeat => now - since >= *whole,
             Some(_) => self.block(now).1 == self.loadings.len() - 1,
         }
@@ -374,7 +479,7 @@ impl Schedule {
     pub fn next_break(&self, cycles: f64) -> Option<f64> {
         let histories = [&self.conditions.friction_history, &self.conditions.wear_history];
         let kinks = histories.into_iter().flat_map(|history| history.kinks()).map(|t| t / self.clock_rate);
-        let block = (!self.ends.is_empty()).then(|| {
+        let block = (self.changes_between_blocks() && cycles < self.averages_from).then(|| {
             let (pass, block) = self.block(cycles);
             self.end(pass, block)
         });
@@ -392,7 +497,9 @@ impl Schedule {
         let passed = |time: &&f64| **time / self.clock_rate < cycles;
         let kinks: usize = histories.iter().map(|it| it.kinks().iter().filter(passed).count()).sum();
         let ends = match self.ends.last() {
-            Some(whole) if self.conditions.repeat => cycles / whole * self.ends.len() as f64,
+            Some(whole) if self.conditions.repeat => {
+                cycles.min(self.averages_from) / whole * self.ends.len() as f64
+            }
             _ => self.ends.iter().filter(|end| **end < cycles).count() as f64,
         };
         kinks as f64 + ends + f64::from(u8::from(self.conditions.wears_from_rest))
@@ -543,7 +650,8 @@ impl Schedule {
 
     /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.
     pub fn is_smooth_in_gross_slip(&self) -> bool {
-        !self.slips_otherwise() && self.keeps_friction() && !self.conditions.wear.has_kink()
+        let differs = self.changes_in_time() && self.slips_otherwise();
+        !differs && self.keeps_friction() && !self.conditions.wear.has_kink()
     }
 
     /// Whether cycles are the same, at a constant indentation, and wear is local: at most resolved cycles or a threshold make kinks along the annulus.

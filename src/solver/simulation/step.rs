@@ -14,6 +14,9 @@ const LARGEST_FACTOR: f64 = 2.5;
 /// Smallest useful step, as growth `κ p ΔN` of the slip under the largest pressure; below it round-off rules.
 pub(super) const SMALLEST_GROWTH: f64 = 1e-13;
 
+/// Step over the cycles before it that is as short as that.
+const SHORT: f64 = 1e-6;
+
 /// Growth of slip up to the next break, over the tolerance, below which nothing wears.
 const SPENT: f64 = 1e-6;
 
@@ -99,8 +102,7 @@ impl Simulation {
             return Ok(Landing { rests: true, ..landing(target - now, Some(target)) });
         }
         let step = self.progress.next_step;
-        let growth = step * largest(&self.cycle.growth);
-        if !(growth > SMALLEST_GROWTH || (now > 0.0 && step > 1e-6 * now)) {
+        if self.rounds_off(step) {
             return Err(self.stuck("no step is small enough for wear to go on from there"));
         }
         let Some(target) = target else { return Ok(landing(step, None)) };
@@ -122,9 +124,17 @@ impl Simulation {
         self.is_still() || self.rejected.count > 0 && stays()
     }
 
+    /// Whether a step is so short that nothing but round-off would come of it.
+    fn rounds_off(&self, step: f64) -> bool {
+        let now = self.state.cycles;
+        let growth = step * largest(&self.cycle.growth);
+        !(growth > SMALLEST_GROWTH || (now > 0.0 && step > SHORT * now))
+    }
+
     /// Whether no step leads on from a contact that has worn out.
     pub(super) fn wears_no_more(&self) -> bool {
-        self.rejected.count >= NO_STEP && self.is_worn_out()
+        let short = self.progress.next_step <= SHORT * self.state.cycles;
+        (self.rejected.count >= NO_STEP || short) && self.is_worn_out()
     }
 
     /// Whether gross slip at a held indentation has worn off all that presses, to the tolerance. Where wear goes by a power of the pressure below one that is so after a finite
@@ -139,7 +149,7 @@ impl Simulation {
     /// Whether nothing moves from now on to the next break: the block under way asks for no amplitude.
     fn is_still(&self) -> bool {
         let now = self.state.cycles;
-        self.model.schedule().loading(now, now).is_pause()
+        self.model.schedule().loading(now, now).rests()
     }
 
     /// The state at a later time up to which nothing wears; what slips without wear goes on to dissipate.
@@ -165,8 +175,9 @@ impl Simulation {
         let reached = rate.max(f64::MIN_POSITIVE);
         let now = self.wear_rate();
         let part = (now / wanted).ln() / (now / reached).ln();
-        (now > wanted && reached < OVERSHOT * wanted && part < 1.0)
-            .then(|| step * part.clamp(SMALLEST_FACTOR, 0.99))
+        let shorter = step * part.clamp(SMALLEST_FACTOR, 0.99);
+        (now > wanted && reached < OVERSHOT * wanted && part < 1.0 && !self.rounds_off(shorter))
+            .then_some(shorter)
     }
 
     /// Whether a block of another amplitude or indentation has begun just now.

@@ -93,6 +93,25 @@ impl Sliding {
 }
 
 impl Model {
+    /// Depth worn at the inner nodes, m, in a cycle or in the mean cycle of a pass, and what that does.
+    pub(super) fn gross_mean_wear(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        compression: &[f64],
+        whole: &Whole,
+    ) -> (Vec<f64>, CycleFields) {
+        let of_block = |part: &CycleLoading| {
+            let (depth, cycle, _) = self.gross_wear(gross, part, compression, whole);
+            (depth, cycle)
+        };
+        if loading.others.is_empty() {
+            return of_block(loading);
+        }
+        let cycle = CycleFields::mean(loading.parts().map(|part| (part.part, of_block(part).1)));
+        (cycle.growth.iter().map(|growth| growth * self.contact.indentation()).collect(), cycle)
+    }
+
     /// What a cycle does, with the depth worn at the inner nodes, m.
     pub(super) fn gross_wear(
         &self,
@@ -314,11 +333,20 @@ impl Model {
         let sticks = |spring: &usize| (0..motion.free.len()).all(|m| motion.slip[(*spring, m)] == 0.0);
         let last = (0..mesh.inner()).rev().find(sticks);
         let slip: Vec<Vec<f64>> = (0..motion.free.len()).map(column).collect();
-        // What a kink in the slip of one step makes of that elsewhere cancels over the steps, by its sign.
-        let direction = directions(motion, mesh.profile_weights(), &motion.slip);
-        let mut path = Mat::from_fn(mesh.inner(), motion.steps(), |i, step| {
-            let parts = components * step..components * (step + 1);
-            parts.map(|m| slip[m][i] * direction[(i, m)]).sum()
+        // Along a line: what a kink in the slip of one step makes of that elsewhere cancels over the steps, by its sign.
+        let direction = (components == 1).then(|| directions(motion, mesh.profile_weights(), &motion.slip));
+        let along = |i: usize, one: usize, other: usize| -> f64 {
+            (0..components)
+                .map(|axis| slip[components * one + axis][i] * slip[components * other + axis][i])
+                .sum()
+        };
+        let mut path = Mat::from_fn(mesh.inner(), motion.steps(), |i, step| match &direction {
+            Some(direction) => slip[step][i] * direction[(i, step)],
+            None => {
+                let path = along(i, step, step).sqrt();
+                let against = motion.paired && along(i, step, step) + along(i, step, step ^ 1) < 0.0;
+                if against { -path } else { path }
+            }
         });
         for i in 0..mesh.inner() {
             if path.row(i).iter().sum::<f64>() < 0.0 {
