@@ -114,9 +114,13 @@ pub(in crate::run) fn springs_in_gross_slip(
     accuracy: f64,
 ) -> usize {
     if !Gross::is_smooth(contact, schedule) {
-        let [springs, at, power] = CUBICS_IN_GROSS_SLIP;
-        return (springs * (at / accuracy).powf(power)).clamp(springs, MOST_CUBICS_IN_GROSS_SLIP).ceil()
-            as usize;
+        let [at, power] = CUBICS_IN_GROSS_SLIP;
+        let least = FEWEST_CUBICS as f64;
+        // Debris leaves a layer at the contact edge as wide as it spreads.
+        let layer =
+            schedule.conditions().wear.spreading().map_or(0.0, |it| contact.contact_radius() / it.length);
+        let wanted = (least * (at / accuracy).powf(power)).max(OF_LAYER * layer);
+        return wanted.clamp(least, MOST_CUBICS_IN_GROSS_SLIP).ceil() as usize;
     }
     let [springs, at, power] = SPRINGS_IN_GROSS_SLIP;
     let most =
@@ -199,8 +203,11 @@ const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [17.0, 1e-4, 0.12];
 /// Most springs that are asked for there.
 const MOST_ASKED_IN_GROSS_SLIP: f64 = 60.0;
 
-/// The same of cubics over the whole contact, which are at least the first number.
-const CUBICS_IN_GROSS_SLIP: [f64; 3] = [24.0, 1e-3, 1.0 / 3.0];
+/// The same of cubics over the whole contact: the fewest, the accuracy up to which they serve, and the power with which they grow from there on; for each layer of debris in the contact radius,
+/// which grows to a few times its first length; and the most.
+pub(in crate::run) const FEWEST_CUBICS: usize = 24;
+const CUBICS_IN_GROSS_SLIP: [f64; 2] = [1e-3, 1.0 / 3.0];
+const OF_LAYER: f64 = 3.0;
 const MOST_CUBICS_IN_GROSS_SLIP: f64 = 120.0;
 
 /// The same below a grading at which more make the pressure at the edge grow.

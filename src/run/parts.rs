@@ -2,7 +2,9 @@
 
 use std::cell::Cell;
 
-use super::budget::{self, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up, springs_to_stick_again};
+use super::budget::{
+    self, FEWEST_CUBICS, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up, springs_to_stick_again,
+};
 use super::cost::work_so_far;
 use super::mesh::{self, SPRINGS_TO_SLIDE};
 use super::passes::Averaging;
@@ -12,7 +14,9 @@ use crate::contact::stick_slip::Regime;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
-use crate::solver::model::{FEWEST_SPRINGS, Model, MovingStick, OperatorStore, Resolution, Schedule, State};
+use crate::solver::model::{
+    FEWEST_SPRINGS, Gross, Model, MovingStick, OperatorStore, Resolution, Schedule, State,
+};
 use crate::solver::simulation::{Flow, HandOver, Observer, Outcome, Plan, Progress, Simulation};
 use crate::solver::stepper::{self, CycleJump, EveryCycle, GrossSdirk, Stepper};
 
@@ -238,7 +242,10 @@ impl Reach {
                 sticks_again: sticks_again.get(),
             }))
         };
-        let [first, fewer] = springs;
+        let [first, fewer] = match Gross::is_smooth(contact, schedule) {
+            true => springs,
+            false => [parts.model.springs(), FEWEST_CUBICS],
+        };
         let (mut why, mut too_slow) = (None, None);
         for (springs, follow) in [(first, true), (fewer, true), (first, false)] {
             if !follow && !sticks_again.get() {

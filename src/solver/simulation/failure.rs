@@ -87,7 +87,7 @@ impl Simulation {
     pub(super) fn slides_off(&self) -> Error {
         let then = match self.model.schedule().conditions().tangential_control {
             TangentialControl::Rig { .. } => {
-                "moves as a whole with the rig, which is followed at gradings from -0.5 on where friction does not rise and has no memory of slip, and wear is local"
+                "moves as a whole with the rig, which is followed at gradings from -0.5 on where friction does not rise and has no memory of slip"
             }
             _ => "is in gross slip and no longer bears the tangential force that is asked for",
         };
