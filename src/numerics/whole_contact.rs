@@ -267,7 +267,7 @@ impl WholeContact {
     pub fn up_to(&self, end: Coordinate, inside: &[f64]) -> Result<Vec<[f64; 3]>> {
         let mut values = inside.to_vec();
         values.push(0.0);
-        let places = self.from_axis(end, self.nu)?;
+        let places = self.places_from_axis(end, self.nu)?;
         Ok(places
             .into_iter()
             .map(|(coordinate, weight)| [self.fraction(coordinate), weight, self.value(&values, coordinate)])
@@ -402,7 +402,7 @@ impl WholeContact {
     }
 
     /// Places and weights of `∫_0^ξ(end) ξ^(exponent-1) ... dξ`.
-    fn from_axis(&self, end: Coordinate, exponent: f64) -> Result<Vec<(Coordinate, f64)>> {
+    fn places_from_axis(&self, end: Coordinate, exponent: f64) -> Result<Vec<(Coordinate, f64)>> {
         let lower = 4.0 * exponent - 1.0;
         let rule = Rule::jacobi(self.rule_size(), 0.0, lower)?;
         let axis = Coordinate { y: 0.0, h: 1.0 };
@@ -452,7 +452,7 @@ impl WholeContact {
                     sum[j] += prefactor * weight * value;
                 }
             };
-            for (coordinate, weight) in self.from_axis(Coordinate::inwards(end, half), nu)? {
+            for (coordinate, weight) in self.places_from_axis(Coordinate::inwards(end, half), nu)? {
                 add(coordinate, weight * self.rise(end, coordinate, end.y - coordinate.y).powf(-nu));
             }
             // Near the node, at a distance below that of the edge first: 1 - √√ξ is a power of the distance from there.
@@ -572,7 +572,7 @@ impl WholeContact {
                 }
             }
             Between::Cubics => {
-                for (coordinate, weight) in self.from_axis(self.nodes[self.inner()], exponent)? {
+                for (coordinate, weight) in self.places_from_axis(self.nodes[self.inner()], exponent)? {
                     add(coordinate, weight);
                 }
             }
