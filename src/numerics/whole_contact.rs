@@ -351,33 +351,26 @@ impl WholeContact {
         })
     }
 
-    /// Nodes whose values tell the derivative by `y` at an inner node, with their weights: of cubics one more of those farther out, from where ground comes in.
-    fn slopes(&self, node: Coordinate) -> Vec<(usize, f64)> {
+    /// Nodes whose values tell the derivative by `y`, with their weights: of one polynomial at a node, of cubics anywhere. At a node these have one more of those farther out, from
+    /// where ground comes in.
+    fn slopes(&self, coordinate: Coordinate) -> Vec<(usize, f64)> {
         match &self.between {
             Between::Polynomial(weights) => {
                 let count = self.nodes.len();
-                let at = (0..count).find(|j| difference(node, self.nodes[*j]) == 0.0).unwrap_or_default();
-                let away = |j: usize| weights[j] / weights[at] / difference(node, self.nodes[j]);
+                let at =
+                    (0..count).find(|j| difference(coordinate, self.nodes[*j]) == 0.0).unwrap_or_default();
+                let away = |j: usize| weights[j] / weights[at] / difference(coordinate, self.nodes[j]);
                 let mut slopes: Vec<(usize, f64)> =
                     (0..count).map(|j| (j, if j == at { 0.0 } else { away(j) })).collect();
                 slopes[at].1 = -slopes.iter().map(|(_, slope)| slope).sum::<f64>();
                 slopes
             }
             Between::Cubics => {
-                let first = self.first_of_cubic(node, self.nodes.len());
-                self.cubic_slopes(node, first)
-                    .into_iter()
-                    .enumerate()
-                    .map(|(j, it)| (first + j, it))
-                    .collect()
+                let first = self.first_of_cubic(coordinate, self.nodes.len());
+                let near = self.cubic_slopes(coordinate, first).into_iter().enumerate();
+                near.map(|(j, slope)| (first + j, slope)).collect()
             }
         }
-    }
-
-    /// Nodes whose values tell the derivative by `y` at any coordinate, with their weights.
-    fn slopes_between(&self, coordinate: Coordinate) -> Vec<(usize, f64)> {
-        let first = self.first_of_cubic(coordinate, self.nodes.len());
-        self.cubic_slopes(coordinate, first).into_iter().enumerate().map(|(j, it)| (first + j, it)).collect()
     }
 
     /// Ends of panels, distances from a coordinate outwards or, negative, inwards, parted where one cubic follows another.
@@ -501,18 +494,18 @@ impl WholeContact {
         let (nu, size) = (self.nu, self.rule_size());
         let plain = Rule::legendre(size)?;
         let at_node = Rule::jacobi(size, 0.0, nu - 1.0)?;
+        let at_nodes: Vec<_> = self.nodes.iter().map(|node| self.slopes(*node)).collect();
         for row in 0..self.inner() {
             let start = self.nodes[row];
             let half = 0.5 * start.h;
             let mut sum = vec![0.0; self.nodes.len()];
-            let is_local = matches!(self.between, Between::Cubics);
             let mut add = |coordinate: Coordinate, weight: f64| {
-                // The slope of one polynomial is the one through its slopes at the nodes.
-                let near: &mut dyn Iterator<Item = (usize, f64)> = match is_local {
-                    true => &mut self.slopes_between(coordinate).into_iter(),
-                    false => &mut self.cardinals(coordinate, self.nodes.len()),
-                };
-                near.for_each(|(j, value)| sum[j] -= weight * value / PI);
+                let mut add = |(j, value): (usize, f64)| sum[j] -= weight * value / PI;
+                match self.between {
+                    // The slope of one polynomial is the one through its slopes at the nodes.
+                    Between::Polynomial(_) => self.cardinals(coordinate, self.nodes.len()).for_each(add),
+                    Between::Cubics => self.slopes(coordinate).into_iter().for_each(&mut add),
+                }
             };
             let mut panels = vec![[0.0, start.y.min(half)]];
             while panels[panels.len() - 1][1] < half {
@@ -541,14 +534,14 @@ impl WholeContact {
                     add(coordinate, (to - from) * w * self.rise(coordinate, start, distance).powf(nu - 1.0));
                 }
             }
-            if is_local {
-                (0..self.inner()).for_each(|j| self.pressure[(row, j)] = sum[j]);
-                continue;
-            }
-            for (i, sum) in sum.into_iter().enumerate() {
-                for (j, slope) in self.slopes(self.nodes[i]).into_iter().take(self.inner()) {
-                    self.pressure[(row, j)] += sum * slope;
+            match self.between {
+                Between::Polynomial(_) => {
+                    for (sum, slopes) in sum.into_iter().zip(&at_nodes) {
+                        let inner = slopes.iter().take(self.inner());
+                        inner.for_each(|(j, slope)| self.pressure[(row, *j)] += sum * slope);
+                    }
                 }
+                Between::Cubics => (0..self.inner()).for_each(|j| self.pressure[(row, j)] = sum[j]),
             }
         }
         Ok(())

@@ -76,7 +76,7 @@ impl Gross {
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
         let by_first = begins(contact, schedule);
-        if !(by_first || contact.regime() == Regime::FullSliding && carries(schedule)) {
+        if !(by_first || contact.regime() == Regime::FullSliding && carries(contact, schedule)) {
             return Ok(false);
         }
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
