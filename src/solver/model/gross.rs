@@ -27,6 +27,7 @@ use crate::contact::stick_slip::Regime;
 use crate::contact::transforms::Transforms;
 use crate::error::{Error, Result};
 use crate::numerics::linear::{dot, largest_magnitude};
+use crate::numerics::roots::next_to;
 use crate::numerics::whole_contact::WholeContact;
 
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
@@ -116,12 +117,13 @@ impl Gross {
 
     pub(super) fn new(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Result<Self> {
         let grading = contact.half_space().grading();
-        let mesh = match is_smooth(contact, schedule) {
+        let is_smooth = is_smooth(contact, schedule);
+        let mesh = match is_smooth {
             true => WholeContact::new(grading, springs - 1)?,
             false => WholeContact::on_cubics(grading, springs - 1)?,
         };
-        let first = unworn_compression(contact, &mesh);
-        let first_load = contact.contact_radius().powf(1.0 + grading) * mesh.load(&first);
+        let (radius, first) = unworn(contact, &mesh, is_smooth);
+        let first_load = radius.powf(1.0 + grading) * mesh.load(&first);
         let mut lifted = vec![1.0; mesh.inner()];
         mesh.solve_profile(&mut lifted);
         let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
@@ -138,10 +140,23 @@ impl Gross {
     }
 }
 
-/// `q_0 = g_0(a_0) - g_0` inside the first contact, m, to full relative accuracy at its edge as well.
-fn unworn_compression(contact: &InitialContact, mesh: &WholeContact) -> Vec<f64> {
+/// Radius of the first contact, m, and `q_0 = g_0(a_0) - g_0` inside it, m, to full relative accuracy at its edge as well; on cubics those of which the surface is the unworn profile at
+/// all nodes, so that what wears at first is not less than what they are off by.
+fn unworn(contact: &InitialContact, mesh: &WholeContact, is_smooth: bool) -> (f64, Vec<f64>) {
     let (profile, edge) = (contact.equivalent_profile(), contact.contact_radius());
-    mesh.distances().map(|distance| -profile.rise(edge, -edge * edge * distance)).collect()
+    if is_smooth {
+        return (edge, mesh.distances().map(|distance| -profile.rise(edge, -edge * edge * distance)).collect());
+    }
+    let (indenter, depth) = (contact.indenter(), contact.indentation());
+    let height = |radius: f64, fraction: f64| depth - indenter.profile(radius * fraction.sqrt());
+    let on = |radius: f64| {
+        let mut compression: Vec<f64> =
+            mesh.fractions()[..mesh.inner()].iter().map(|fraction| height(radius, *fraction)).collect();
+        mesh.solve_profile(&mut compression);
+        compression
+    };
+    let radius = next_to(|radius| mesh.profile_at_edge(&on(radius)) - height(radius, 1.0), edge);
+    (radius, on(radius))
 }
 
 impl Model {
@@ -164,9 +179,10 @@ impl Model {
     }
 
     pub(super) fn gross_initial_state(&self, gross: &Gross) -> State {
-        let compression = unworn_compression(&self.contact, &gross.mesh);
+        let (radius, compression) =
+            unworn(&self.contact, &gross.mesh, is_smooth(&self.contact, &self.schedule));
         State {
-            slip_area: self.contact.contact_radius().powi(2),
+            slip_area: radius * radius,
             compression_rate: vec![0.0; compression.len()],
             compression,
             least_stick_radius: f64::INFINITY,
@@ -358,11 +374,10 @@ impl Model {
             let loading = self.loading_in(state, self.schedule.loading_in_block(state.cycles, state.cycles));
             let (_, cycle, sliding) = self.gross_wear(gross, &loading, &state.compression, &whole);
             let transforms = self.beside_polynomials(state);
+            let depth = self.gross_fields(gross, state).wear_depth;
             for (i, squared) in offsets.iter().enumerate().take_while(|(_, squared)| **squared < whole.area) {
                 let coordinate = mesh.coordinate(squared / whole.area);
-                let elastic = mesh.value(&whole.elastic, coordinate);
-                let unworn = self.contact.indenter().profile(squared.sqrt());
-                wear_depth[i] = (whole.indentation - elastic - unworn).max(0.0);
+                wear_depth[i] = mesh.value(&depth, coordinate).max(0.0);
                 let first = transforms.as_ref().and_then(|it| self.unworn_pressure(it, squared.sqrt()));
                 pressure[i] = first.unwrap_or_else(|| mesh.value_inside(&whole.pressure, coordinate));
                 slip[i] = sliding.slip_at(mesh, &cycle, coordinate).max(0.0);
