@@ -21,8 +21,9 @@ use crate::solver::simulation::{Flow, HandOver, Observer, Outcome, Plan, Progres
 use crate::solver::stepper::{self, CycleJump, EveryCycle, GrossSdirk, Stepper};
 
 /// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, most steps that it may try,
-/// most work of all that resolve periods, and what is added to that radius.
+/// most work of all, and what is added to that radius.
 const COARSE: ([usize; 2], f64) = ([12, FEWEST_SPRINGS], 1e-3);
+const MOST_COARSE_CUBICS: usize = 60;
 const MOST_TRIED: u64 = 8000;
 const MOST_WORK: f64 = 5e8;
 const MARGIN: f64 = 1.02;
@@ -244,7 +245,7 @@ impl Reach {
         };
         let [first, fewer] = match Gross::is_smooth(contact, schedule) {
             true => springs,
-            false => [parts.model.springs(), FEWEST_CUBICS],
+            false => [parts.model.springs().min(MOST_COARSE_CUBICS), FEWEST_CUBICS],
         };
         let (mut why, mut too_slow) = (None, None);
         for (springs, follow) in [(first, true), (fewer, true), (first, false)] {
@@ -269,7 +270,6 @@ impl Reach {
 
 /// Stops the coarse run that takes too long.
 struct Bounded {
-    /// Where periods are resolved.
     most_work: f64,
 }
 
@@ -281,8 +281,7 @@ impl Observer for Bounded {
     fn rejected(&mut self, simulation: &Simulation) -> Result<Flow> {
         let progress = simulation.progress();
         let tried = progress.steps + progress.rejected_steps;
-        let resolves = progress.resolved_work > 0;
-        let goes_on = tried < MOST_TRIED && !(resolves && work_so_far(simulation) > self.most_work);
+        let goes_on = tried < MOST_TRIED && work_so_far(simulation) <= self.most_work;
         Ok(if goes_on { Flow::Continue } else { Flow::Stop })
     }
 }

@@ -145,7 +145,10 @@ impl Gross {
 fn unworn(contact: &InitialContact, mesh: &WholeContact, is_smooth: bool) -> (f64, Vec<f64>) {
     let (profile, edge) = (contact.equivalent_profile(), contact.contact_radius());
     if is_smooth {
-        return (edge, mesh.distances().map(|distance| -profile.rise(edge, -edge * edge * distance)).collect());
+        return (
+            edge,
+            mesh.distances().map(|distance| -profile.rise(edge, -edge * edge * distance)).collect(),
+        );
     }
     let (indenter, depth) = (contact.indenter(), contact.indentation());
     let height = |radius: f64, fraction: f64| depth - indenter.profile(radius * fraction.sqrt());
