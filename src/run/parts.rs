@@ -21,11 +21,12 @@ use crate::solver::simulation::{Flow, HandOver, Observer, Outcome, Plan, Progres
 use crate::solver::stepper::{self, CycleJump, EveryCycle, GrossSdirk, Stepper};
 
 /// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, most steps that it may try,
-/// most work of all, and what is added to that radius.
+/// most work of all that resolve periods, over which others may take so many times as much, and what is added to that radius.
 const COARSE: ([usize; 2], f64) = ([12, FEWEST_SPRINGS], 1e-3);
 const MOST_COARSE_CUBICS: usize = 60;
 const MOST_TRIED: u64 = 8000;
 const MOST_WORK: f64 = 5e8;
+const OF_STEPS_ALONE: f64 = 8.0;
 const MARGIN: f64 = 1.02;
 const WITHIN_END: f64 = 1.0 - 1e-12;
 
@@ -225,7 +226,8 @@ impl Reach {
     fn of(parts: &Parts) -> Result<Self> {
         let (springs, tolerance) = COARSE;
         let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
-        let (sticks_again, most_work) = (Cell::new(false), Cell::new(MOST_WORK));
+        let most_work = if schedule.resolves() { MOST_WORK } else { OF_STEPS_ALONE * MOST_WORK };
+        let (sticks_again, most_work) = (Cell::new(false), Cell::new(most_work));
         let coarse = |springs: usize, follow: bool| -> Result<std::result::Result<Self, Error>> {
             let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
             let plan = Plan { outputs: vec![], end: parts.plan.end };
