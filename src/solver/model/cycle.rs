@@ -253,15 +253,8 @@ impl Model {
         let pressure_scale = self.pressure_scale(fields);
         self.pressures(&mut pressure, &motion.load, pressure_scale);
         if let Some(spreading) = loading.wear.spreading() {
-            // Debris passes pressure on, not tension, and into gaps that it can fill.
-            let mean = self.contact.mean_pressure();
-            pressure =
-                Mat::from_fn(n, pressure.ncols(), |i, m| spreading.passed_on(pressure[(i, m)], mean).0);
-            self.debris(loading, motion.at_rest, compression, fields).spread(spreading, &mut pressure);
-            for i in 0..n {
-                let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
-                (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
-            }
+            let debris = self.debris(loading, motion.at_rest, compression, fields);
+            self.pass_on(loading, spreading, &debris, compression, &mut pressure);
         }
         let plain = self.slip_per_depth(loading, fields);
         let mut slip = Mat::zeros(n, columns);
@@ -307,11 +300,7 @@ impl Model {
             }
         }
         // Ahead of a front of slip that cells do not resolve the stencils may leave a negative sum over the steps: there is no slip there.
-        for (i, total) in row_sums(&path).into_iter().enumerate() {
-            if total < 0.0 {
-                path.row_mut(i).fill(0.0);
-            }
-        }
+        clear_negative(&mut path);
         Surface { pressure, direction, path }
     }
 
@@ -633,6 +622,15 @@ pub(super) fn directions(motion: &Motion, profile: &Mat<f64>, slipped: &Mat<f64>
         direction.col_as_slice_mut(column).copy_from_slice(found.col_as_slice(m));
     }
     direction
+}
+
+/// Clears the rows of paths of slip whose sum over the steps is negative.
+pub(super) fn clear_negative(path: &mut Mat<f64>) {
+    for (i, total) in row_sums(path).into_iter().enumerate() {
+        if total < 0.0 {
+            path.row_mut(i).fill(0.0);
+        }
+    }
 }
 
 /// Columns of a matrix, some at a time.

@@ -41,6 +41,8 @@ pub struct Gross {
     held_load: Option<f64>,
     /// The same of the first contact in any case.
     first_load: f64,
+    /// Its `A`, m², and compressions, m.
+    first: (f64, Vec<f64>),
     /// `F⁻¹ 1` at the inner nodes.
     lifted: Vec<f64>,
 }
@@ -127,7 +129,7 @@ impl Gross {
         let mut lifted = vec![1.0; mesh.inner()];
         mesh.solve_profile(&mut lifted);
         let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
-        Ok(Self { mesh, held_load, first_load, lifted })
+        Ok(Self { mesh, held_load, first_load, first: (radius * radius, first), lifted })
     }
 
     pub(super) fn springs(&self) -> usize {
@@ -182,10 +184,9 @@ impl Model {
     }
 
     pub(super) fn gross_initial_state(&self, gross: &Gross) -> State {
-        let (radius, compression) =
-            unworn(&self.contact, &gross.mesh, is_smooth(&self.contact, &self.schedule));
+        let (slip_area, compression) = gross.first.clone();
         State {
-            slip_area: radius * radius,
+            slip_area,
             compression_rate: vec![0.0; compression.len()],
             compression,
             least_stick_radius: f64::INFINITY,
@@ -278,20 +279,22 @@ impl Model {
         })
     }
 
+    /// Wear depth at all nodes, m.
+    fn gross_depth(&self, gross: &Gross, whole: &Whole) -> Vec<f64> {
+        let unworn = |fraction: &f64| self.contact.indenter().profile((whole.area * fraction).sqrt());
+        let nodes = whole.elastic.iter().zip(gross.mesh.fractions());
+        nodes.map(|(u, fraction)| whole.indentation - u - unworn(fraction)).collect()
+    }
+
     pub(super) fn gross_fields(&self, gross: &Gross, state: &State) -> Fields {
         let Some(whole) = self.whole(gross, &state.compression) else { return Fields::default() };
-        let mesh = &gross.mesh;
-        let depth =
-            whole.elastic.iter().zip(mesh.fractions()).map(|(u, x)| {
-                whole.indentation - u - self.contact.indenter().profile((whole.area * x).sqrt())
-            });
         Fields {
             stick_zone: StickZone {
                 slip_compression: self.contact.slip_compression(),
                 ..StickZone::default()
             },
             slip_area: whole.area,
-            wear_depth: depth.collect(),
+            wear_depth: self.gross_depth(gross, &whole),
             elastic_depth: whole.elastic,
             pressure: whole.pressure,
             density: state.compression.clone(),
@@ -377,7 +380,7 @@ impl Model {
             let loading = self.loading_in(state, self.schedule.loading_in_block(state.cycles, state.cycles));
             let (_, cycle, sliding) = self.gross_wear(gross, &loading, &state.compression, &whole);
             let transforms = self.beside_polynomials(state);
-            let depth = self.gross_fields(gross, state).wear_depth;
+            let depth = self.gross_depth(gross, &whole);
             for (i, squared) in offsets.iter().enumerate().take_while(|(_, squared)| **squared < whole.area) {
                 let coordinate = mesh.coordinate(squared / whole.area);
                 wear_depth[i] = mesh.value(&depth, coordinate).max(0.0);

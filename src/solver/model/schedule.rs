@@ -89,9 +89,9 @@ impl CycleLoading {
         Self { others, ..change(self) }
     }
 
-    /// Whether nothing moves.
+    /// Whether nothing moves in any of them.
     pub fn rests(&self) -> bool {
-        self.parts().all(|cycle| cycle.asked() == 0.0)
+        self.parts().all(Self::is_pause)
     }
 
     /// What is asked: an amplitude of the displacement, m, or of the force, N.
@@ -316,10 +316,13 @@ impl Schedule {
         if self.averages_from > 0.0 { 1 } else { self.loadings.len() }
     }
 
+    fn duration(&self, block: usize) -> f64 {
+        self.ends[block] - if block == 0 { 0.0 } else { self.ends[block - 1] }
+    }
+
     /// Cycles of each block of a pass.
     pub fn durations(&self) -> impl Iterator<Item = f64> {
-        let begins = std::iter::once(&0.0).chain(&self.ends);
-        self.ends.iter().zip(begins).map(|(end, begin)| end - begin)
+        (0..self.ends.len()).map(|block| self.duration(block))
     }
 
     /// Whether steps follow an edge of stick that jumps between blocks.
@@ -370,8 +373,7 @@ impl Schedule {
 
     /// The part of a pass that a block takes.
     fn part(&self, block: usize) -> f64 {
-        let begin = if block == 0 { 0.0 } else { self.ends[block - 1] };
-        (self.ends[block] - begin) / self.ends[self.ends.len() - 1]
+        self.duration(block) / self.ends[self.ends.len() - 1]
     }
 
     /// Settled cycles that the one at `start` wears as much as.

@@ -56,6 +56,26 @@ impl Model {
         spread
     }
 
+    /// Pressure at the springs, Pa, shape `(springs, steps)`, as debris passes it on: no tension, and into gaps that it can fill.
+    pub(super) fn pass_on(
+        &self,
+        loading: &CycleLoading,
+        spreading: Spreading,
+        debris: &Debris,
+        compression: &[f64],
+        pressure: &mut Mat<f64>,
+    ) {
+        let mean = self.contact.mean_pressure();
+        for m in 0..pressure.ncols() {
+            pressure.col_as_slice_mut(m).iter_mut().for_each(|p| *p = spreading.passed_on(*p, mean).0);
+        }
+        debris.spread(spreading, pressure);
+        for i in 0..pressure.nrows() {
+            let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
+            (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
+        }
+    }
+
     /// Where debris lies: where springs slip, alone.
     pub(super) fn debris(
         &self,

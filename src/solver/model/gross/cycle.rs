@@ -14,7 +14,7 @@ use super::{Gross, Whole};
 use crate::laws::wear::Spreading;
 use crate::numerics::roots::bracketed;
 use crate::numerics::whole_contact::{Coordinate, WholeContact};
-use crate::solver::model::cycle::{Surface, directions};
+use crate::solver::model::cycle::{Surface, clear_negative, directions};
 use crate::solver::model::motion::{Bearing, Energies, Motion};
 use crate::solver::model::moving::LAST_STICK;
 use crate::solver::model::schedule::{AmplitudeControl, CycleLoading};
@@ -180,16 +180,7 @@ impl Model {
         let radius = |fraction: &f64| (fraction * whole.area).sqrt();
         let radii = mesh.fractions()[..mesh.inner()].iter().map(radius).collect();
         let debris = Debris::new(radii, 0.0, [sliding.stuck, end].map(|it| radius(&it)));
-        let mean = self.contact.mean_pressure();
-        let pressure = &mut sliding.surface.pressure;
-        for m in 0..pressure.ncols() {
-            pressure.col_as_slice_mut(m).iter_mut().for_each(|p| *p = spreading.passed_on(*p, mean).0);
-        }
-        debris.spread(spreading, pressure);
-        for (i, q) in compression.iter().enumerate() {
-            let (filled, _) = self.filled(loading, spreading, Some(*q));
-            (0..pressure.ncols()).for_each(|m| pressure[(i, m)] *= filled);
-        }
+        self.pass_on(loading, spreading, &debris, compression, &mut sliding.surface.pressure);
     }
 
     /// To and fro at constant indentation.
@@ -348,11 +339,7 @@ impl Model {
                 if against { -path } else { path }
             }
         });
-        for i in 0..mesh.inner() {
-            if path.row(i).iter().sum::<f64>() < 0.0 {
-                path.row_mut(i).fill(0.0);
-            }
-        }
+        clear_negative(&mut path);
         let pressure = self.pressed(gross, whole, &motion.load);
         let stiffness = self.contact.half_space().normal_stiffness() * whole.area.powf(1.0 - self.mu());
         let energy = |part: fn(&Energies) -> f64| -> f64 {
