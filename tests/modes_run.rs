@@ -241,11 +241,9 @@ fn beyond_the_amplitude_of_full_sliding_there_is_no_stick_radius_and_no_limit() 
 }
 
 #[test]
-fn too_few_springs_for_full_sliding_are_refused_with_a_cure() {
-    let tables = "[loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = \"3/2\"\nphase = \"35 deg\"\n\
-                  [[loading.blocks]]\ntau = 1\namplitude_factor = 0.2\n[[loading.blocks]]\ntau = 2\n";
-    let sliding = Mode { loading: "amplitude_ratio = 3\ntau = 3", tables, ..PLAIN };
-    let folder = folder_with(&sliding.scene("snapshots = 8"));
+fn too_few_springs_for_stick_that_is_lost_are_refused_with_a_cure() {
+    let sliding = Mode { loading: "stick_ratio = 0.3\ntau = 1\ntangential_control = \"force\"", ..PLAIN };
+    let folder = folder_with(&sliding.scene_on(40, "snapshots = 8"));
     let output = support::command::run(folder.path(), &["run", "scene.toml"]);
     let message = support::command::text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{message}");

@@ -245,7 +245,7 @@ fn what_slides_and_sticks_again_on_a_stiff_rig_is_the_contact_without_one() {
         for blocks in [&[(0.5, 1.0), (0.5, 2.2), (2.0, 1.0)][..], &[(0.5, 1.0), (0.5, 2.2), (2.0, 0.4)]] {
             let blocks = &blocks_of(blocks, false);
             let held = Rig { grading, blocks, tau: 3.0, stiffness: f64::INFINITY, ..PLAIN };
-            let expected = volume(&held.run("springs = 240\ntolerance = 1e-6"));
+            let expected = volume(&held.run("springs = 160\ntolerance = 1e-6"));
             let results = Rig { stiffness: 1e13, ..held }.run("accuracy = 1e-3");
             let (off, estimate) =
                 (volume(&results) / expected - 1.0, results.error_estimate().expect("an estimate"));
@@ -331,11 +331,11 @@ fn friction_that_depends_on_the_load_keeps_its_accuracy_next_to_gross_slip() {
         let contact =
             Rig { grading: 0.76, amplitude, stiffness: f64::INFINITY, tau: 0.004, friction, ..PLAIN };
         let fine = contact.run("springs = 120\ntolerance = 1e-6");
-        let results = contact.run("accuracy = 1e-4");
+        let results = contact.run("accuracy = 1e-3");
         let off = volume(&results) / volume(&fine) - 1.0;
         let estimate = results.error_estimate().expect("an estimate");
         println!("{ratio}: {off:.1e}, estimate {estimate:.1e}");
-        assert!(slides(&results) && estimate < 1e-4 && off.abs() < 1e-4, "{ratio}: {off:e}, {estimate:e}");
+        assert!(slides(&results) && estimate < 1e-3 && off.abs() < 1e-3, "{ratio}: {off:e}, {estimate:e}");
     }
 }
 

@@ -224,19 +224,68 @@ fn blocks_that_grow_under_both_forces_end_at_the_closed_form_of_the_last() {
     assert!(off.abs() < 1e-4 && stick.abs() < 1e-5, "{off:e} {stick:e}");
 }
 
-/// Where some cycles slide and others do not, the force would have to be held over both meshes.
+/// All of the contact slides in some cycles and springs stick in others: a mesh over the whole contact carries both. Next to the transition, where some springs stick in all
+/// cycles, another mesh follows their edge.
 #[test]
-fn what_slides_in_some_cycles_under_a_held_normal_force_is_refused() {
-    let refused = |control: &str, friction: &str, blocks: &str| {
-        let scene = scene(NORMAL, control, friction, blocks, "tau = 1", "");
-        let text = scene.text().replace("stick_ratio = 0.7", "amplitude_ratio = 1.7");
-        let error = Simulation::new(&Scene::from_str(&text).unwrap()).map(drop).unwrap_err().to_string();
-        println!("{error}");
-        error
+fn what_slides_in_some_cycles_goes_over_from_what_sticks_in_all() {
+    let at_transition = |factor: f64| -> [(String, String); 3] {
+        let amplitude = |ratio: f64| format!("amplitude_ratio = {}", ratio * factor);
+        let growing = format!(
+            "[[loading.blocks]]\ntau = 0.2\namplitude_factor = 0.4\n[[loading.blocks]]\ntau = 1\namplitude_factor = {factor}"
+        );
+        [
+            (amplitude(0.75), history(0.5)),
+            (amplitude(1.5), history(1.8)),
+            ("amplitude_ratio = 1.5".into(), format!("{COULOMB}|{growing}")),
+        ]
     };
-    let blocks = "[[loading.blocks]]\ntau = 0.3\namplitude_factor = 0.5\n[[loading.blocks]]\ntau = 1";
-    let error = refused("", COULOMB, blocks);
-    assert!(error.contains("loading.normal_force") && error.contains("loading.blocks"), "{error}");
+    for load in [NORMAL, PRESSED] {
+        let at = |factor: f64| {
+            at_transition(factor).map(|(amplitude, rest)| {
+                let (friction, blocks) = rest.split_once('|').unwrap_or((&rest, ""));
+                let text = scene(load, "", friction, blocks, "tau = 1", "accuracy = 1e-4").text().to_string();
+                let scene = Scene::from_str(&text.replace("stick_ratio = 0.7", &amplitude)).unwrap();
+                let results = run(&scene);
+                let last = results.last();
+                assert!((last.wear_volume / (PER_ENERGY * last.dissipated_energy) - 1.0).abs() < 1e-3);
+                last.wear_volume
+            })
+        };
+        // Volumes grow by 3.5 times what the amplitude does, and by a little more below, where stick is lost.
+        for (below, above) in at(0.99).into_iter().zip(at(1.0)) {
+            println!("{load}: {below:e} {above:e}, {:.4}", above / below - 1.0);
+            assert!((0.025..0.05).contains(&(above / below - 1.0)), "{load}: {below:e} {above:e}");
+        }
+    }
+}
+
+/// The measure of it is a run on more springs.
+#[test]
+fn what_slides_in_some_cycles_keeps_its_accuracy() {
+    let blocks = [[(0.2, 2.0), (0.8, 0.8)], [(0.2, 0.7), (0.8, 2.0)]].map(|it| blocks_of(&it));
+    let frictions = [COULOMB.to_string(), load_dependent(-0.2), load_dependent(0.3)];
+    let mut scenes: Vec<(String, &str)> = frictions
+        .iter()
+        .flat_map(|friction| blocks.iter().map(move |it| (friction.clone(), it.as_str())))
+        .collect();
+    scenes.extend([history(1.8), history(0.4), by_energy(0.7)].map(|friction| (friction, "")));
+    let (mut within, mut told) = (0, 0);
+    for (friction, blocks) in &scenes {
+        for (load, control) in [(PRESSED, ""), (NORMAL, ""), (NORMAL, "rig_stiffness = 3e9")] {
+            let at = |numerics: &str| {
+                let text = scene(load, control, friction, blocks, "tau = 1", numerics).text().to_string();
+                run(&Scene::from_str(&text.replace("stick_ratio = 0.7", "amplitude_ratio = 1.2")).unwrap())
+            };
+            let (found, fine) = (at("accuracy = 3e-3"), at("springs = 140\naccuracy = 1e-5"));
+            let off = found.last().wear_volume / fine.last().wear_volume - 1.0;
+            let met = found.accuracy_met() == Some(true);
+            println!("{load} {control} {friction:.60} {blocks:.60}: {off:.1e}, met: {met}");
+            assert!(off.abs() < 3e-3, "{load} {control} {friction} {blocks}: {off:e}");
+            (within, told) = (within + usize::from(met), told + usize::from(!met));
+        }
+    }
+    println!("{within} met, {told} told");
+    assert!(told <= within / 3, "{within} met, {told} told");
 }
 
 /// By a small power of the load to either side the edge jumps about as it does by none.

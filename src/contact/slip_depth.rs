@@ -37,8 +37,6 @@ const SAME_STICK: f64 = 1e-14;
 pub struct UnwornSlip {
     stick_radius_squared: f64,
     slip_compression: f64,
-    /// By how much `q_c` exceeds the compression at `c`, m: where the whole contact slides, springs slip next to `c` too.
-    surplus: f64,
     profile: EquivalentProfile,
     mu: f64,
     /// `(F 1)/ℓ^μ` over `ℓ = ln(r²/c²)`, with `μ = (1-k)/2`.
@@ -145,7 +143,6 @@ impl UnwornSlip {
     /// * `profile` -- the unworn equivalent profile
     /// * `stick_radius` -- `c`, m
     /// * `slip_compression` -- `q(c)`, m, of the unworn contact
-    /// * `surplus` -- `q_c - q(c)`, m; zero where `c` is an edge of stick
     /// * `initial_edge` -- `a0² - c²`, m²
     ///
     /// # Errors
@@ -155,7 +152,6 @@ impl UnwornSlip {
         profile: &EquivalentProfile,
         stick_radius: f64,
         slip_compression: f64,
-        surplus: f64,
         initial_edge: f64,
     ) -> Result<Self> {
         let mu = 0.5 * (1.0 - profile.grading());
@@ -190,8 +186,7 @@ impl UnwornSlip {
         };
         Ok(Self {
             stick_radius_squared: squared,
-            slip_compression: slip_compression + surplus,
-            surplus,
+            slip_compression,
             profile: profile.clone(),
             mu,
             uniform: Chebyshev::fit(|l| transform.uniform(l), end),
@@ -266,11 +261,7 @@ impl UnwornSlip {
     fn values_with(&self, logarithm: f64, slip_compression: f64, rise: f64, uniform: f64) -> UnwornValues {
         let powered = power(logarithm, self.mu);
         let uniform = powered * uniform;
-        UnwornValues {
-            logarithm,
-            limit_slip: slip_compression * uniform,
-            slip: logarithm * powered * rise + self.surplus * uniform,
-        }
+        UnwornValues { logarithm, limit_slip: slip_compression * uniform, slip: logarithm * powered * rise }
     }
 
     /// Slip depths at `z = r² - c²`, m², of the unworn contact with another stick radius `c` and compression `q_c` there.
@@ -345,12 +336,7 @@ impl UnwornSlip {
         let (uniform, uniform_slope) = self.uniform.value_and_derivative(logarithm);
         let of_uniform = uniform_slope / uniform + self.mu / logarithm;
         let of_rise = self.slip.log_slope(logarithm) + (1.0 + self.mu) / logarithm;
-        // The part of the slip depth that the surplus makes.
-        let part = self.surplus / self.slip_compression * values.limit_slip / values.slip;
-        UnwornSlopes {
-            limit_slip: values.limit_slip * by_z * of_uniform,
-            log_slip: by_z * (of_rise + part * (of_uniform - of_rise)),
-        }
+        UnwornSlopes { limit_slip: values.limit_slip * by_z * of_uniform, log_slip: by_z * of_rise }
     }
 }
 

@@ -211,7 +211,7 @@ impl Attempts<'_> {
             Ok(_) if companions.is_smooth() => budget::refined(springs, checkpoint.error_estimate, accuracy),
             Ok(_) => {
                 let shares = self.recorder.shares(simulation)?;
-                budget::refined_by_order(springs, shares, accuracy, simulation.model().schedule().lifts())
+                budget::refined_by_order(springs, shares, accuracy, simulation.model())
             }
             // More springs may find an end where few do not.
             Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),

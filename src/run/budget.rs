@@ -113,6 +113,18 @@ pub(in crate::run) fn springs_in_gross_slip(
     schedule: &Schedule,
     accuracy: f64,
 ) -> usize {
+    let sliding = springs_that_slide(contact, schedule, accuracy);
+    if !Gross::would_stick(contact, schedule) {
+        return sliding;
+    }
+    let ([springs, at], soft) = (SPRINGS_THAT_STICK, contact.half_space().grading() < SOFT);
+    let most = if soft { MOST_THAT_STICK_AT_SOFT_TOP } else { MOST_IN_GROSS_SLIP };
+    let sticking = (springs * (at / accuracy).sqrt()).ceil() as usize;
+    sliding.max(sticking).min(most)
+}
+
+/// The same where springs slip in every cycle.
+fn springs_that_slide(contact: &InitialContact, schedule: &Schedule, accuracy: f64) -> usize {
     if !Gross::is_smooth(contact, schedule) {
         let [at, power] = CUBICS_IN_GROSS_SLIP;
         let least = FEWEST_CUBICS as f64;
@@ -199,6 +211,11 @@ const FEWEST_UNDER_FORCE: f64 = 28.0;
 /// Springs with which gross slip is followed to an accuracy, and the power with which they grow: polynomials over the whole contact
 /// (docs/numerics.md).
 const SPRINGS_IN_GROSS_SLIP: [f64; 3] = [17.0, 1e-4, 0.12];
+
+/// Springs with which springs that stick in some cycles are followed there to an accuracy, to second order: polynomials as well as cubics make of the kink where slip begins what they
+/// can.
+const SPRINGS_THAT_STICK: [f64; 2] = [40.0, 1e-3];
+const MOST_THAT_STICK_AT_SOFT_TOP: usize = 40;
 
 /// Most springs that are asked for there.
 const MOST_ASKED_IN_GROSS_SLIP: f64 = 60.0;
@@ -342,14 +359,18 @@ pub(in crate::run) fn refined(springs: usize, error: Option<f64>, accuracy: f64)
 /// As [`refined`] where the order of convergence was observed: the first that a run may take of the springs that this order asks for, those that the full one does, and twice as many.
 ///
 /// # Arguments
-/// * `lifts` -- whether the normal load changes along the period, which then takes long
+/// * `model` -- of the run: in gross slip more springs are of no use, and where the normal load changes along the period they take long
 pub(in crate::run) fn refined_by_order(
     springs: usize,
     shares: Shares,
     accuracy: f64,
-    lifts: bool,
+    model: &Model,
 ) -> Option<usize> {
-    let most = if lifts { MOST_REFINED_LIFTING } else { MOST_RAISED };
+    let most = match model.gross() {
+        Some(_) => MOST_IN_GROSS_SLIP,
+        None if model.schedule().lifts() => MOST_REFINED_LIFTING,
+        None => MOST_RAISED,
+    };
     if shares.springs >= UNKNOWN {
         // Companions of a finer run may tell.
         return refined(springs, None, accuracy).filter(|springs| *springs <= most);

@@ -44,9 +44,9 @@ impl Method {
                 _ => None,
             },
             stick_edge: match model.moving() {
-                Some(moving) if !moving.slides() => "moving",
-                None if !(in_gross_slip || model.slides()) => "fixed",
-                _ => "none",
+                Some(_) => "moving",
+                None if in_gross_slip => "none",
+                None => "fixed",
             },
             memory_expected: operator_bytes(backend, springs),
         }

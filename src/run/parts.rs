@@ -28,6 +28,13 @@ const MOST_TRIED: u64 = 8000;
 const MOST_WORK: f64 = 5e8;
 const OF_STEPS_ALONE: f64 = 8.0;
 const MARGIN: f64 = 1.02;
+
+/// Depth worn in a run, over the indentation, below which it is short.
+const SHORT: f64 = 0.1;
+
+/// Least tolerance there: errors of the compressions that are round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 const WITHIN_END: f64 = 1.0 - 1e-12;
 
 /// Everything that follows from a scene alone.
@@ -61,7 +68,12 @@ impl Parts {
         if parts.model.gross().is_some() {
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
-            let Reach { radius, sticks_again } = Reach::of(&parts)?;
+            let Reach { radius, sticks_again, worn } = Reach::of(&parts)?;
+            // Errors of the compressions are relative to all of them, those of a short run to what it wears.
+            if numerics.tolerance.is_none() && numerics.stepper == StepperChoice::Implicit && worn < SHORT {
+                parts.tolerance = (parts.tolerance * worn / SHORT).max(ROUND_OFF);
+                parts.stepper = stepper::implicit(&parts.model, parts.tolerance);
+            }
             if let Some(hand_over) = &mut parts.hand_over {
                 hand_over.expected = sticks_again;
             }
@@ -218,6 +230,8 @@ struct Reach {
     radius: f64,
     /// Whether springs stick again on the way.
     sticks_again: bool,
+    /// Depth worn, over the first indentation.
+    worn: f64,
 }
 
 impl Reach {
@@ -240,9 +254,11 @@ impl Reach {
             if outcome? == Outcome::Interrupted {
                 return Ok(Err(coarse.reaches_too_slowly()));
             }
+            let depths = coarse.fields().wear_depth.iter().copied();
             Ok(Ok(Self {
                 radius: coarse.model().contact_radius(coarse.state()),
                 sticks_again: sticks_again.get(),
+                worn: depths.fold(0.0, f64::max) / contact.indentation(),
             }))
         };
         let [first, fewer] = match Gross::is_smooth(contact, schedule) {
@@ -266,7 +282,7 @@ impl Reach {
             return Err(too_slow.unwrap_or_else(no_end));
         }
         let radius = contact.indenter().radius_at_height(contact.indentation());
-        Ok(Self { radius, sticks_again: sticks_again.get() })
+        Ok(Self { radius, sticks_again: sticks_again.get(), worn: 1.0 })
     }
 }
 

@@ -17,7 +17,7 @@ use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::Result;
 use crate::laws::loading::TangentialControl;
 use crate::scene::{Scene, Stepper};
-use crate::solver::model::{CycleFields, FrettingLoop, OperatorStore};
+use crate::solver::model::{CycleFields, FrettingLoop, Gross, OperatorStore};
 use crate::solver::simulation::{Flow, Observer, Outcome, Simulation};
 
 /// Steps along one fretting loop to and fro at constant indentation in the result file, even.
@@ -296,13 +296,14 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
     let [of_volume, of_depth] = passes::left_out(model);
     let of_passes =
         (of_volume / whole).max(of_depth / model.depth_scale()) + passes::left_out_later(simulation);
-    Some(by_rate.max(model.core_uncertainty()).max(model.unseen_depth().unwrap_or(0.0)) + of_passes)
+    Some(by_rate.max(model.unseen_depth().unwrap_or(0.0)) + of_passes)
 }
 
 /// Whether the two volumes tell the error: where the edge of stick moves neither sees that of its place, nor that of an amplitude which follows from a balance
-/// of forces.
+/// of forces, nor that of the kink where springs begin to slip in gross slip.
 fn has_balance(simulation: &Simulation) -> bool {
     let (model, _) = simulation.first();
     let tangential = model.schedule().conditions().tangential_control != TangentialControl::Displacement;
-    !tangential && model.moving().is_none()
+    let has_kink = model.gross().is_some_and(Gross::sticks);
+    !tangential && model.moving().is_none() && !has_kink
 }

@@ -154,7 +154,7 @@ enum SpringMesh {
     Whole(Box<Gross>),
 }
 
-/// The slip annulus around a stick zone, or around a core that is left unworn where gross slip comes and goes.
+/// The slip annulus around a stick zone.
 #[derive(Debug, Clone)]
 struct AnnulusMesh {
     unworn: UnwornSlip,
@@ -180,7 +180,7 @@ impl Model {
         &self.contact
     }
 
-    /// Whether there is gross slip in some cycle, so that only the core of the mesh is not worn.
+    /// Whether there is gross slip in some cycle, or all stick is lost in the end.
     pub fn slides(&self) -> bool {
         self.slides
     }
@@ -198,13 +198,7 @@ impl Model {
 
     /// Whether wear goes on as long as the contact is moved: in gross slip under a held normal force.
     pub fn wears_without_end(&self) -> bool {
-        self.moving().is_some_and(MovingStick::slides) || self.gross().is_some_and(Gross::holds_force)
-    }
-
-    /// Relative uncertainty of the worn volume by the core that stays unworn in gross slip; zero where a stick zone is left.
-    pub fn core_uncertainty(&self) -> f64 {
-        let core = self.gross().is_none() && self.moving().is_none_or(MovingStick::slides);
-        if self.slides && core { envelope::core_share(self.contact.half_space().grading()) } else { 0.0 }
+        self.gross().is_some_and(Gross::holds_force)
     }
 
     /// What acts when.

@@ -74,6 +74,8 @@ pub(in crate::run) struct Companions {
     order: f64,
     /// Whether the contact is in gross slip, where the order is known and one companion serves.
     gross: bool,
+    /// Whether springs stick there in some cycles, so that it is not.
+    sticks: bool,
     /// Whether the companion is a finer one.
     finer: bool,
     /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
@@ -131,7 +133,7 @@ impl Coarsening {
             springs: model.springs(),
             tolerance,
             smooth,
-            alone: smooth || finer || model.gross().is_some() && !sticks_again,
+            alone: smooth || finer || model.gross().is_some_and(|gross| !gross.sticks()) && !sticks_again,
             finer,
             by_hand: numerics.springs.is_some(),
             sticks_again,
@@ -247,13 +249,14 @@ impl Companions {
             smooth,
             order,
             gross,
+            sticks: model.gross().is_some_and(Gross::sticks),
             finer: compares_with_finer(scene, model),
             every,
             radii,
             limit: (limited || smooth)
                 .then(|| [model.limit_volume(), model.depth_scale()])
                 .filter(|limit| limit.iter().all(|it| *it > 0.0)),
-            left_out: if smooth { 0.0 } else { model.core_uncertainty().max(unseen()).max(of_time) },
+            left_out: if smooth { 0.0 } else { unseen().max(of_time) },
             of_passes: passes::left_out(model),
             first: None,
             second: None,
@@ -316,7 +319,7 @@ impl Companions {
             let springs = if tells { finite(farther) } else { UNKNOWN };
             return Some(Shares { springs, order: ORDER, substeps, left_out: finite(left_out) });
         }
-        if self.gross {
+        if self.gross && !self.sticks {
             let shares = in_gross_slip(simulation, snapshots, nearest, ratio, scale);
             return Some(Shares { substeps, left_out: shares.left_out + of_passes, ..shares });
         }

@@ -70,8 +70,8 @@ impl Model {
         }
         let backend = Self::backend(contact, &schedule, springs);
         let uniform = schedule.is_uniform() && contact.regime() != Regime::FullSliding;
-        let Envelope { contact, slides, surplus } = if uniform {
-            Envelope { contact: contact.clone(), slides: false, surplus: 0.0 }
+        let Envelope { contact, slides } = if uniform {
+            Envelope { contact: contact.clone(), slides: false }
         } else {
             schedule.envelope(contact)?
         };
@@ -85,12 +85,12 @@ impl Model {
             ),
         })?;
         check_springs(springs)?;
-        let moving = MovingStick::new(&schedule, contact, slides)?;
+        let moving = MovingStick::new(&schedule, contact)?;
         let farthest = match &moving {
             Some(moving) => moving.farthest(contact)?,
             None => contact.clone(),
         };
-        Annulus { innermost: contact, stick_radius, farthest: &farthest, moving, surplus, slides }.model(
+        Annulus { innermost: contact, stick_radius, farthest: &farthest, moving, slides }.model(
             contact.clone(),
             schedule,
             springs,
@@ -141,11 +141,10 @@ impl Model {
         schedule: &Schedule,
         springs: usize,
     ) -> Result<Self> {
-        let moving = MovingStick::new(schedule, innermost, false)?;
+        let moving = MovingStick::new(schedule, innermost)?;
         let farthest = innermost.under_held_forces()?.unwrap_or_else(|| innermost.clone());
         let stick_radius = innermost.stick_radius().unwrap_or_default();
-        let annulus =
-            Annulus { innermost, stick_radius, farthest: &farthest, moving, surplus: 0.0, slides: false };
+        let annulus = Annulus { innermost, stick_radius, farthest: &farthest, moving, slides: false };
         let operators = (Backend::Dense, &OperatorStore::default());
         let model =
             annulus.model(contact.clone(), schedule.clone(), springs, Clustering::Cubic, operators)?;
@@ -171,8 +170,6 @@ struct Annulus<'a> {
     /// The contact of which the limit bounds where wear can reach.
     farthest: &'a InitialContact,
     moving: Option<MovingStick>,
-    /// See [`Envelope::surplus`].
-    surplus: f64,
     /// See [`Envelope::slides`].
     slides: bool,
 }
@@ -187,27 +184,19 @@ impl Annulus<'_> {
         clustering: Clustering,
         (backend, store): (Backend, &OperatorStore),
     ) -> Result<Model> {
-        let Self { innermost, stick_radius, farthest, moving, surplus, slides } = self;
+        let Self { innermost, stick_radius, farthest, moving, slides } = self;
         let profile = innermost.equivalent_profile();
         let grading = profile.grading();
         if moving.is_some() && profile.end_of_table().is_some() {
             // The closed form refuses profiles that lose contact in rings.
             LimitingShape::from_contact(farthest)?;
         }
-        let unworn = UnwornSlip::new(
-            profile,
-            stick_radius,
-            farthest.slip_compression(),
-            surplus,
-            farthest.slip_area_offset(),
-        )?;
+        let unworn =
+            UnwornSlip::new(profile, stick_radius, farthest.slip_compression(), farthest.slip_area_offset())?;
         let stick_radius_squared = stick_radius * stick_radius;
         let first = innermost.contact_radius().powi(2);
         let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
         let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering));
-        // In gross slip nothing is singular next to the core, so that finer cells would resolve nothing.
-        let rests = matches!(clustering, Clustering::Cubic | Clustering::Even | Clustering::Front);
-        let clustering = if rests && surplus > 0.0 { Clustering::CreepingStick } else { clustering };
         let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
         let natural = match &moving {
             Some(moving) if moving.creeps() => natural.min(MOST_STRETCHED),
@@ -243,7 +232,7 @@ impl Annulus<'_> {
             })),
             stick_zone: StickZone {
                 stick_area: stick_radius_squared,
-                slip_compression: compression + surplus,
+                slip_compression: compression,
                 stick_load,
             },
             depth_scale,

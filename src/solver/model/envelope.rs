@@ -4,29 +4,14 @@ use super::moving::{
     LAST_CORE, first_slip_compression, follows_held_force, held_stick_radius, slides_at_once,
 };
 use super::schedule::{CycleLoading, Envelope, Schedule};
+use super::whole::not_carried;
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::bracketed;
 
-/// Radius, over that of the contact, of the core that stays unworn in gross slip, since the mesh needs a smallest radius: 1e-3 takes 60 springs,
-/// 1e-4 would take 120.
-const CORE: f64 = 1e-3;
-
-/// Least surplus of the compression below which springs slip over that at the core, over the latter, where a contact is in gross slip: the
-/// slip depth, of which wear is the growth, keeps its digits next to the core, however flat the profile is there.
-const LEAST_SURPLUS: f64 = 1e-2;
-
-/// Largest surplus: a larger one changes nothing in the slip of springs and would cost digits of the depth.
-const LARGEST_SURPLUS: f64 = 1e3;
-
-/// Largest share of the load on the core for which full sliding is followed.
-const LARGEST_CORE_SHARE: f64 = 5e-3;
-
-/// Share of the load, in order of magnitude, on the core that stays unworn in gross slip.
-pub(super) fn core_share(grading: f64) -> f64 {
-    CORE.powf(1.0 + grading)
-}
+/// Stick radius, over that of the contact, below which all of it slides.
+const LEAST_STICK: f64 = 1e-3;
 
 /// Steps in the search for the last stick radius.
 const SEARCH: usize = 400;
@@ -34,10 +19,10 @@ const SEARCH: usize = 400;
 impl Schedule {
     /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
     ///
-    /// In gross slip a core of a thousandth of the contact radius is left.
+    /// Where a balance of forces takes all stick away in the end, with the [core](LAST_CORE) up to which that is followed.
     ///
     /// # Errors
-    /// [`Error::Inconsistent`](crate::Error::Inconsistent) if nothing slips; those of [`InitialContact::at`].
+    /// [`Error::Inconsistent`](crate::Error::Inconsistent) if the whole contact slides in some cycle, which is not stepped on this mesh; those of [`InitialContact::at`].
     pub fn envelope(&self, contact: &InitialContact) -> Result<Envelope> {
         let same = [contact.indentation(), contact.amplitude()];
         if let Some((of, found)) = self.known_envelope().get()
@@ -83,8 +68,7 @@ impl Schedule {
         } else {
             profile.radius_at(depth)?
         };
-        let largest = depth - profile.value(CORE * radius);
-        let grading = contact.half_space().grading();
+        let largest = depth - profile.value(LEAST_STICK * radius);
         let slides = compression > largest;
         let accelerates = match self.conditions().tangential_control {
             TangentialControl::Force if both => slides,
@@ -102,26 +86,13 @@ impl Schedule {
             });
         }
         let follows = follows_held_force(self, contact)?;
-        if slides && !follows && core_share(grading) > LARGEST_CORE_SHARE {
-            return Err(Error::Inconsistent {
-                what: "loading.amplitude",
-                why: format!(
-                    "at an amplitude of {:e} m the contact comes to gross slip, and at grading {grading} the core of its mesh, a \
-                     thousandth of its radius, would bear {:.2} of the load unworn; reduce the amplitude or the force",
-                    contact.amplitude(),
-                    core_share(grading)
-                ),
-            });
-        }
         if !slides {
-            return Ok(Envelope { contact: contact.at(depth, compression)?, slides, surplus: 0.0 });
+            return Ok(Envelope { contact: contact.at(depth, compression)?, slides });
         }
-        let core = if follows { LAST_CORE } else { CORE };
-        let contact = contact.with_core(depth, core * radius)?;
-        let at_core = contact.slip_compression();
-        let surplus = (compression - at_core).clamp(LEAST_SURPLUS * at_core, LARGEST_SURPLUS * at_core);
-        // An edge of stick that is followed gives way only in the end, and all slip is counted from there.
-        Ok(Envelope { contact, slides, surplus: if follows { 0.0 } else { surplus } })
+        if !follows {
+            return Err(not_carried(contact, self));
+        }
+        Ok(Envelope { contact: contact.with_core(depth, LAST_CORE * radius)?, slides })
     }
 
     /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the

@@ -19,13 +19,15 @@ mod hand_over;
 use std::f64::consts::PI;
 
 use super::moving::{height_of_last_core, slides_on_rig};
+use hand_over::BEGINS_BELOW;
+
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::whole::{begins, carries, is_smooth};
+use super::whole::{carries, is_smooth, slides_on};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
-use crate::contact::stick_slip::Regime;
 use crate::contact::transforms::Transforms;
 use crate::error::{Error, Result};
+use crate::laws::loading::TangentialControl;
 use crate::numerics::linear::{dot, largest_magnitude};
 use crate::numerics::roots::next_to;
 use crate::numerics::whole_contact::WholeContact;
@@ -45,6 +47,8 @@ pub struct Gross {
     first: (f64, Vec<f64>),
     /// `F⁻¹ 1` at the inner nodes.
     lifted: Vec<f64>,
+    /// Whether springs stick in some cycles, as the unworn contact tells.
+    sticks: bool,
 }
 
 /// A contact in gross slip.
@@ -72,32 +76,14 @@ pub struct GrossRates {
 }
 
 impl Gross {
-    /// Whether a contact begins on the mesh of gross slip: the first cycle slides, and [what sticks later](begins) may do so there; or every cycle slides on the unworn
-    /// contact, at the largest indentation of the run.
+    /// Whether a contact is on the mesh of gross slip, whatever sticks in other cycles: all of it slides in some cycle of the run on the unworn contact, at the largest
+    /// indentation.
     ///
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        let by_first = begins(contact, schedule);
-        if !(by_first || contact.regime() == Regime::FullSliding && carries(contact, schedule)) {
+        if !carries(contact, schedule) || Slides::of(contact, schedule)? == Slides::Never {
             return Ok(false);
-        }
-        let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
-        // What moves all of the contact in the first cycle does so on this mesh, whatever sticks later.
-        let loadings: Vec<CycleLoading> = match by_first {
-            true => vec![schedule.first_slip()],
-            false => schedule.extremes().collect(),
-        };
-        let innermost = if by_first { depth - height_of_last_core(contact) } else { depth };
-        for loading in loadings {
-            let slides = match loading.control {
-                AmplitudeControl::Displacement => loading.slip_compression(ratio) >= depth,
-                AmplitudeControl::Force(_) => false,
-                AmplitudeControl::Rig(_) => slides_on_rig(contact, &loading, innermost)?,
-            };
-            if !slides {
-                return Ok(false);
-            }
         }
         if schedule.resolves() && schedule.conditions().mode.is_tangential() {
             return Err(Error::Inconsistent {
@@ -129,16 +115,78 @@ impl Gross {
         let mut lifted = vec![1.0; mesh.inner()];
         mesh.solve_profile(&mut lifted);
         let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
-        Ok(Self { mesh, held_load, first_load, first: (radius * radius, first), lifted })
+        let sticks = Slides::of(contact, schedule)? == Slides::InSomeCycles;
+        Ok(Self { mesh, held_load, first_load, first: (radius * radius, first), lifted, sticks })
     }
 
     pub(super) fn springs(&self) -> usize {
         self.mesh.inner() + 1
     }
 
+    /// Whether springs stick in some cycles, as the unworn contact tells, so that there is a kink where they begin to slip.
+    pub fn sticks(&self) -> bool {
+        self.sticks
+    }
+
+    /// Whether they do, before the mesh is made.
+    pub fn would_stick(contact: &InitialContact, schedule: &Schedule) -> bool {
+        Slides::of(contact, schedule).is_ok_and(|slides| slides == Slides::InSomeCycles)
+    }
+
     /// Whether the normal force is held, so that wear never ends.
     pub fn holds_force(&self) -> bool {
         self.held_load.is_some()
+    }
+}
+
+/// In which cycles all of an unworn contact slides, at the largest indentation of the run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Slides {
+    Never,
+    InSomeCycles,
+    Always,
+}
+
+impl Slides {
+    /// # Errors
+    /// Those of the force of the first cycle.
+    fn of(contact: &InitialContact, schedule: &Schedule) -> Result<Self> {
+        let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
+        let conditions = schedule.conditions();
+        // Springs that hardly stick do so soon after under a held normal force, and an edge that is followed from there has no time to settle in.
+        let nearly = match conditions.holds_normal_force && !schedule.keeps_slipping_alike() {
+            true => contact.equivalent_profile().value(BEGINS_BELOW * contact.contact_radius()),
+            false => 0.0,
+        };
+        let slides = |loading: &CycleLoading, nearly: f64| match loading.control {
+            AmplitudeControl::Displacement => Ok(loading.slip_compression(ratio) >= depth - nearly),
+            AmplitudeControl::Force(_) => Ok(false),
+            AmplitudeControl::Rig(_) => slides_on_rig(contact, loading, depth - height_of_last_core(contact)),
+        };
+        let on_rig = matches!(conditions.tangential_control, TangentialControl::Rig { .. });
+        let plain = conditions.friction.coefficient().is_some() && is_smooth(contact, schedule);
+        // The edge of stick is followed until the last springs give way.
+        if on_rig
+            && plain
+            && schedule.keeps_friction()
+            && slides_on(contact, schedule)
+            && !slides(&schedule.first_slip(), nearly)?
+        {
+            return Ok(Self::Never);
+        }
+        let [mut some, mut all] = [false, true];
+        for loading in schedule.extremes() {
+            some |= slides(&loading, nearly)?;
+            all &= slides(&loading, 0.0)?;
+        }
+        // Under a balance of forces it is the past of each spring that decides which of them stick.
+        let by_past = on_rig && conditions.friction.remembers_slip();
+        Ok(match some {
+            true if all => Self::Always,
+            true if by_past => Self::Never,
+            true => Self::InSomeCycles,
+            false => Self::Never,
+        })
     }
 }
 

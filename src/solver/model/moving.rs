@@ -42,9 +42,6 @@ pub use stage::{StickStage, StickTarget, StickTrial};
 /// Radii at which what was left behind is known, for interpolation over where the contact edge can be.
 const STATIONS: usize = 24;
 
-/// Indentation over the first one up to which a contact that slides under a held force is followed.
-const FARTHEST: f64 = 5.0;
-
 /// Steps in the search for the first balance of forces where the force may fall as the displacement grows.
 const FIRST_BALANCE: usize = 200;
 
@@ -78,8 +75,6 @@ enum Cause {
     NormalForce(f64),
     /// The tangential amplitude follows from a balance of forces.
     Tangential,
-    /// This normal force, N, is held while the whole contact slides: the edge stays at the core of the mesh, `q_c = d - g_0(c)` grows.
-    Sliding(f64),
     /// This normal force, N, and the tangential amplitude of force are held: the edge stays, `q_c = d - g_0(c)` grows, the amplitude with it. So it is
     /// on a rig where springs remember their slip.
     BothForces(f64),
@@ -95,7 +90,6 @@ impl Cause {
     fn normal_force(self) -> Option<f64> {
         match self {
             Self::NormalForce(force)
-            | Self::Sliding(force)
             | Self::BothForces(force)
             | Self::ReleasedForces(force)
             | Self::TwoBalances(force) => Some(force),
@@ -168,11 +162,6 @@ impl MovingStick {
     ///
     /// Under a held force the unworn stick zone alone would bear it there.
     pub(super) fn farthest(&self, contact: &InitialContact) -> Result<InitialContact> {
-        if let Cause::Sliding(_) = self.cause {
-            // Wear goes on without end; this is how far it is followed.
-            let core = contact.stick_radius().unwrap_or_default();
-            return contact.with_core(FARTHEST * contact.indentation(), core);
-        }
         match self.cause {
             Cause::NormalForce(_)
             | Cause::BothForces(_)
@@ -189,11 +178,6 @@ impl MovingStick {
             _ if self.recedes() => Clustering::RecedingStick,
             _ => Clustering::CreepingStick,
         }
-    }
-
-    /// Whether the contact is in gross slip under a held normal force, so that wear never ends.
-    pub fn slides(&self) -> bool {
-        matches!(self.cause, Cause::Sliding(_))
     }
 
     /// Whether the edge moves inwards, upon unworn ground.
@@ -223,7 +207,7 @@ impl MovingStick {
 
     /// Whether the edge stays while the compression there follows from the normal force, which is then what is solved for in place of the height.
     fn deepens(&self) -> bool {
-        matches!(self.cause, Cause::Sliding(_) | Cause::BothForces(_))
+        matches!(self.cause, Cause::BothForces(_))
     }
 
     pub(super) fn with_span(mut self, first: f64, last: f64) -> Self {
@@ -267,7 +251,7 @@ impl MovingStick {
         let profile = model.contact.equivalent_profile();
         let loading = model.schedule.first_slip();
         let compression = match self.cause {
-            Cause::Sliding(_) | Cause::BothForces(_) => {
+            Cause::BothForces(_) => {
                 let radius = model.stick_zone.stick_area.sqrt();
                 return Ok(StickEdge {
                     area: model.stick_zone.stick_area,
@@ -457,7 +441,7 @@ impl Model {
             _ if moving.keeps => stick.slip_compression,
             Cause::NormalForce(_) => loading.slip_compression(self.contact.half_space().stiffness_ratio()),
             Cause::TwoBalances(_) => unreachable!("guessed above"),
-            Cause::Sliding(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => stick.depth,
+            Cause::BothForces(_) | Cause::ReleasedForces(_) => stick.depth,
         };
         StickZone { stick_area: stick.area, slip_compression, stick_load: stick.load }
     }

@@ -22,8 +22,7 @@ const MOST_SHOWN: usize = 16_384;
 /// Most springs at which the depth is compared from step to step.
 const MOST_JUDGED: usize = 4096;
 
-/// Stick radius, over that of the core, below which nothing sticks in gross slip: springs lie densely next to the core, and the innermost may be
-/// as strong as the core.
+/// Stick radius, over that of the core of a mesh that follows it until none is left, below which nothing sticks.
 const MIDDLE: f64 = 2.0;
 
 /// The fields on the fixed radii of the output, shape `(node,)` each.
@@ -179,7 +178,7 @@ impl Model {
         }
     }
 
-    /// A stick radius of [`CycleFields`] or [`State`], m: zero where that is the core of a contact in gross slip.
+    /// A stick radius of [`CycleFields`] or [`State`], m: zero where that is the core of a mesh on which stick is lost.
     pub fn without_core(&self, stick_radius: f64) -> f64 {
         if self.reaches_the_middle(stick_radius) { 0.0 } else { stick_radius }
     }

@@ -153,10 +153,8 @@ const SUBSTEPS_PER_STEP: usize = 4;
 pub struct Envelope {
     /// The contact at the largest indentation, with the smallest stick radius.
     pub contact: InitialContact,
-    /// Whether no stick radius is left in some cycle.
+    /// Whether no stick is left in the end.
     pub slides: bool,
-    /// By how much the compression below which springs slip exceeds that at the edge of stick, m; zero where that is one.
-    pub surplus: f64,
 }
 
 /// What acts when.
@@ -587,15 +585,18 @@ impl Schedule {
     /// Whether every cycle is the same: one amplitude at one indentation, under friction that does not change.
     fn is_steady(&self) -> bool {
         let conditions = &self.conditions;
-        !self.slips_otherwise()
-            && self.keeps_friction()
-            && conditions.tangential_control == TangentialControl::Displacement
+        self.keeps_slipping_alike() && conditions.tangential_control == TangentialControl::Displacement
     }
 
     /// Whether the mesh of the plain contact serves: every cycle the same, to and fro, under Coulomb's law.
     pub fn is_uniform(&self) -> bool {
         let Conditions { mode, friction, .. } = &self.conditions;
         self.is_steady() && mode.is_tangential() && friction.coefficient().is_some()
+    }
+
+    /// Whether springs of the same compression slip by as much in every cycle: neither blocks nor friction change that.
+    pub fn keeps_slipping_alike(&self) -> bool {
+        !self.slips_otherwise() && self.keeps_friction()
     }
 
     /// Whether friction changes neither along the cycles nor along the energy dissipated.
@@ -645,7 +646,7 @@ impl Schedule {
     /// springs.
     fn rests_under_both_forces(&self) -> bool {
         let Conditions { mode, friction, wear, .. } = &self.conditions;
-        let same = !self.slips_otherwise() && self.keeps_friction();
+        let same = self.keeps_slipping_alike();
         let closed = mode.is_tangential() && friction.coefficient().is_some() && !self.resolves();
         self.conditions.holds_both_forces() && same && closed && wear.spreading().is_none()
     }

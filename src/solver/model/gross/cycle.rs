@@ -201,7 +201,9 @@ impl Model {
             if plain { compression.to_vec() } else { compression.iter().map(resisting).collect() };
         let per_depth = coefficient / ratio;
         let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
-        let presses = gross.holds_force() && loading.control == AmplitudeControl::Displacement;
+        // Exactly where slip sets in with a jump, or the edge of stick is to be followed from there on.
+        let exact = friction.remembers_slip() || gross.holds_force() && !gross.sticks();
+        let presses = exact && loading.control == AmplitudeControl::Displacement;
         let (amplitude, stick) = match presses {
             true => (loading.amplitude, self.pressed_to_stick(gross, loading, compression, &borne)),
             false => self.sticking(gross, loading, force, &mut borne),

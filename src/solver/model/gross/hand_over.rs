@@ -27,7 +27,7 @@ use crate::solver::model::{Model, Past, State, StickZone};
 const FOLLOWED: f64 = 0.1;
 
 /// The same of an unworn contact below which it begins on the mesh of gross slip: an edge that is followed at once would leave no time to settle in.
-const BEGINS_BELOW: f64 = 0.09;
+pub(super) const BEGINS_BELOW: f64 = 0.09;
 
 /// Radius of the core of the mesh that follows it, over that of the first contact.
 const CORE: f64 = 0.03;
@@ -35,9 +35,8 @@ const CORE: f64 = 0.03;
 /// Whether the edge of springs that stick again is followed.
 fn is_followed(schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
-    let stays = schedule.keeps_friction()
-        && !schedule.slips_otherwise()
-        && conditions.tangential_control == TangentialControl::Displacement;
+    let stays =
+        schedule.keeps_slipping_alike() && conditions.tangential_control == TangentialControl::Displacement;
     let local = conditions.wear.spreading().is_none() && !schedule.resolves();
     stays && local && conditions.friction.coefficient().is_some()
 }

@@ -8,6 +8,7 @@ use crate::laws::conditions::Conditions;
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::solver::model::schedule::{CycleLoading, Schedule};
+use crate::solver::model::whole::besides_energy;
 
 /// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
@@ -15,29 +16,19 @@ const SAME_COMPRESSION: f64 = 1e-9;
 impl MovingStick {
     /// How the edge of stick moves under a schedule; none if it stays, or if the mesh from where it is innermost serves.
     ///
-    /// # Arguments
-    /// * `slides` -- whether no stick is left in some cycle
-    ///
     /// # Errors
     /// [`Error::Inconsistent`] for friction that falls and rises under normal oscillation; for blocks of other indentations of which the last slips less far than
     /// others before.
-    pub fn new(schedule: &Schedule, contact: &InitialContact, slides: bool) -> Result<Option<Self>> {
+    pub fn new(schedule: &Schedule, contact: &InitialContact) -> Result<Option<Self>> {
         let conditions = schedule.conditions();
         let force = contact.normal_force();
         let follows = follows_held_force(schedule, contact)?;
         let by_energy = *schedule.friction_along_energy() != History::Constant;
         if by_energy {
-            check_along_energy(schedule, slides && !follows)?;
+            check_along_energy(schedule)?;
         }
         let in_blocks = schedule.slips_otherwise_between_blocks();
         check_memory(schedule, contact, follows)?;
-        if slides && !follows {
-            if conditions.holds_normal_force {
-                check_sliding_under_force(conditions, contact)?;
-            }
-            let sliding = conditions.holds_normal_force && !in_blocks;
-            return Ok(sliding.then_some(Self::by(Cause::Sliding(force))));
-        }
         let [falls, rises] = schedule.friction_change().directions();
         let coulomb = conditions.friction.coefficient().is_some();
         let moving = match (conditions.holds_normal_force, conditions.tangential_control) {
@@ -168,25 +159,8 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
 }
 
-/// Refuses a contact that is in gross slip in some cycles only under a held normal force, where blocks or a rig decide which.
-fn check_sliding_under_force(conditions: &Conditions, contact: &InitialContact) -> Result<()> {
-    let beside = match conditions.tangential_control {
-        TangentialControl::Displacement if conditions.blocks.is_empty() => return Ok(()),
-        TangentialControl::Displacement => "loading.blocks",
-        _ => "loading.tangential_control or loading.rig_stiffness",
-    };
-    Err(Error::Inconsistent {
-        what: "loading.normal_force",
-        why: format!(
-            "is held, and at an amplitude of {:e} m the contact is in gross slip in some cycles, but not in all; beside {beside} that is not followed; \
-             change the amplitude, or hold the indentation",
-            contact.amplitude()
-        ),
-    })
-}
-
 /// Refuses what is not followed while friction changes with the energy that it dissipates.
-fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
+fn check_along_energy(schedule: &Schedule) -> Result<()> {
     let conditions = schedule.conditions();
     let beside = [
         (conditions.friction_history != History::Constant, "friction.history", "leave it out"),
@@ -200,15 +174,9 @@ fn check_along_energy(schedule: &Schedule, slides: bool) -> Result<()> {
             "blocks where the indentation changes within a period",
             "leave out the blocks, or the normal oscillation",
         ),
-        (slides, "an amplitude at which the contact is in gross slip", "reduce the amplitude"),
     ];
     match beside.iter().find(|(is_there, ..)| *is_there) {
         None => Ok(()),
-        Some((_, what, cure)) => Err(Error::Inconsistent {
-            what: "friction",
-            why: format!(
-                "changes with the energy that it dissipates, and so does the edge of stick; that is not followed beside {what}; {cure}"
-            ),
-        }),
+        Some((_, what, cure)) => Err(besides_energy(what, cure)),
     }
 }

@@ -163,7 +163,6 @@ impl StickStage<'_> {
             self.fill_by_difference(n, step, &moved, trial, &mut matrix)?;
         }
         match self.moving.cause {
-            Cause::Sliding(force) => self.fill_by_sliding_depth(force, at, trial, &mut matrix),
             _ if self.moving.jumps => matrix[(n + 1, n + 1)] = trial.stick_zone.slip_compression.recip(),
             _ => {
                 let step = self.difference() * trial.stick_zone.slip_compression;
@@ -225,7 +224,7 @@ impl StickStage<'_> {
     fn slip_compression(&self, at: &Unknowns) -> f64 {
         match self.moving.cause {
             Cause::Tangential => self.model.contact.indentation() - at.stick_depth,
-            Cause::Sliding(_) | Cause::BothForces(_) | Cause::ReleasedForces(_) => at.stick_depth,
+            Cause::BothForces(_) | Cause::ReleasedForces(_) => at.stick_depth,
             Cause::TwoBalances(_) => at.slip_compression,
             _ => self.driven_slip_compression(),
         }
@@ -387,7 +386,6 @@ impl StickStage<'_> {
             _ if self.moving.jumps => passed.risen / q,
             Cause::Friction => (at.stick_depth - (model.contact.indentation() - q)) / q,
             Cause::NormalForce(force)
-            | Cause::Sliding(force)
             | Cause::BothForces(force)
             | Cause::ReleasedForces(force)
             | Cause::TwoBalances(force) => model.normal_force(&trial.fields) / force - 1.0,
@@ -503,7 +501,6 @@ impl StickStage<'_> {
         match self.moving.cause {
             Cause::Friction => 0.0,
             Cause::NormalForce(force)
-            | Cause::Sliding(force)
             | Cause::BothForces(force)
             | Cause::ReleasedForces(force)
             | Cause::TwoBalances(force) => weight / force,
@@ -532,24 +529,6 @@ impl StickStage<'_> {
             matrix[(i, column)] = (after - before) / step;
         }
         Some(())
-    }
-
-    /// By a difference the small slip next to the core would change its sign.
-    fn fill_by_sliding_depth(&self, force: f64, at: &Unknowns, trial: &StickTrial, matrix: &mut Mat<f64>) {
-        let (model, fields) = (self.model, &trial.fields);
-        let (n, inner) = (model.springs(), model.springs() - 1);
-        let target = &self.target.springs;
-        let slopes: Vec<f64> = (0..n).map(|i| model.uniform_slip(fields, i) / fields.slip_depth[i]).collect();
-        let along = self.model.along_annulus(&slopes);
-        for i in 0..inner {
-            let moved = along[i] * (at.slip_area - target.slip_area) / at.slip_area;
-            matrix[(i, n + 1)] = slopes[i] * (1.0 + target.step * trial.cycle.growth[i]) - moved;
-        }
-        matrix[(inner, n + 1)] = slopes[inner];
-        let half_space = model.contact.half_space();
-        let exponent = 1.0 + half_space.grading();
-        matrix[(n + 1, n + 1)] =
-            2.0 * half_space.normal_stiffness() * at.stick_area.powf(0.5 * exponent) / (exponent * force);
     }
 }
 
