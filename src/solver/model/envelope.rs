@@ -4,14 +4,11 @@ use super::moving::{
     LAST_CORE, first_slip_compression, follows_held_force, held_stick_radius, slides_at_once,
 };
 use super::schedule::{CycleLoading, Envelope, Schedule};
-use super::whole::not_carried;
+use super::whole::{LEAST_STICK, not_carried};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::roots::bracketed;
-
-/// Stick radius, over that of the contact, below which all of it slides.
-const LEAST_STICK: f64 = 1e-3;
 
 /// Steps in the search for the last stick radius.
 const SEARCH: usize = 400;
@@ -38,40 +35,13 @@ impl Schedule {
 
     /// [`Schedule::envelope`], which takes a search for the edge of stick on some paths.
     fn envelope_of(&self, contact: &InitialContact) -> Result<Envelope> {
-        let ratio = contact.half_space().stiffness_ratio();
-        let depth = self.largest_indentation();
-        let first = self.conditions().tangential_control == TangentialControl::Displacement;
-        let profile = contact.equivalent_profile();
-        let conditions = self.conditions();
-        let both = conditions.holds_both_forces();
-        let coulomb = conditions.friction.coefficient().is_some();
-        let rests = conditions.holds_normal_force && conditions.friction.remembers_slip();
-        let compression = if rests && !first {
-            let slipping = |loading| first_slip_compression(contact, &loading, contact.indentation());
-            self.extremes().map(slipping).collect::<Result<Vec<f64>>>()?.into_iter().fold(0.0, f64::max)
-        } else if conditions.holds_normal_force && !first && !(both && coulomb) {
-            let least = self.extremes().map(|loading| least_stick_radius(contact, &loading));
-            let least = least.collect::<Result<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);
-            depth - profile.value(least)
-        } else if both && !self.keeps_friction() {
-            // Falling friction lets the edge of stick recede over unworn ground; rising friction lets it creep from where it is at first.
-            let edge = |loading| held_stick_radius(contact, contact.normal_force(), &loading);
-            let least = self.extremes().map(|loading| edge(loading).unwrap_or_default());
-            depth - profile.value(least.fold(f64::INFINITY, f64::min))
-        } else if first || both {
-            self.extremes().map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
-        } else {
-            self.last_slip_compression(contact)?
-        };
-        let radius = if depth == contact.indentation() {
-            contact.contact_radius()
-        } else {
-            profile.radius_at(depth)?
-        };
-        let largest = depth - profile.value(LEAST_STICK * radius);
+        let (depth, conditions) = (self.largest_indentation(), self.conditions());
+        let compression = self.largest_slip_compression(contact)?;
+        let radius = self.largest_first_radius(contact)?;
+        let largest = depth - contact.equivalent_profile().value(LEAST_STICK * radius);
         let slides = compression > largest;
-        let accelerates = match self.conditions().tangential_control {
-            TangentialControl::Force if both => slides,
+        let accelerates = match conditions.tangential_control {
+            TangentialControl::Force if conditions.holds_both_forces() => slides,
             TangentialControl::Force => slides_at_once(self, contact)?,
             _ => false,
         };
@@ -93,6 +63,49 @@ impl Schedule {
             return Err(not_carried(contact, self));
         }
         Ok(Envelope { contact: contact.with_core(depth, LAST_CORE * radius)?, slides })
+    }
+
+    /// Contact radius, m, at the largest indentation, without wear.
+    ///
+    /// # Errors
+    /// As [`EquivalentProfile::radius_at`](crate::contact::indenter::EquivalentProfile::radius_at).
+    pub(super) fn largest_first_radius(&self, contact: &InitialContact) -> Result<f64> {
+        match self.largest_indentation() {
+            same if same == contact.indentation() => Ok(contact.contact_radius()),
+            deeper => contact.equivalent_profile().radius_at(deeper),
+        }
+    }
+
+    /// The largest compression, m, at which springs slip in some cycle, from the largest indentation; all of that where no stick is left.
+    ///
+    /// # Errors
+    /// As [`EquivalentProfile::radius_at`](crate::contact::indenter::EquivalentProfile::radius_at).
+    pub(super) fn largest_slip_compression(&self, contact: &InitialContact) -> Result<f64> {
+        let ratio = contact.half_space().stiffness_ratio();
+        let depth = self.largest_indentation();
+        let first = self.conditions().tangential_control == TangentialControl::Displacement;
+        let profile = contact.equivalent_profile();
+        let conditions = self.conditions();
+        let both = conditions.holds_both_forces();
+        let coulomb = conditions.friction.coefficient().is_some();
+        let rests = conditions.holds_normal_force && conditions.friction.remembers_slip();
+        if rests && !first {
+            let slipping = |loading| first_slip_compression(contact, &loading, contact.indentation());
+            Ok(self.extremes().map(slipping).collect::<Result<Vec<f64>>>()?.into_iter().fold(0.0, f64::max))
+        } else if conditions.holds_normal_force && !first && !(both && coulomb) {
+            let least = self.extremes().map(|loading| least_stick_radius(contact, &loading));
+            let least = least.collect::<Result<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);
+            Ok(depth - profile.value(least))
+        } else if both && !self.keeps_friction() {
+            // Falling friction lets the edge of stick recede over unworn ground; rising friction lets it creep from where it is at first.
+            let edge = |loading| held_stick_radius(contact, contact.normal_force(), &loading);
+            let least = self.extremes().map(|loading| edge(loading).unwrap_or_default());
+            Ok(depth - profile.value(least.fold(f64::INFINITY, f64::min)))
+        } else if first || both {
+            Ok(self.extremes().map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max))
+        } else {
+            self.last_slip_compression(contact)
+        }
     }
 
     /// Compression at the edge of stick when wear has taken all load off the slipping springs, m, with the tangential amplitude that the

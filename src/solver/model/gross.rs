@@ -18,11 +18,11 @@ mod hand_over;
 
 use std::f64::consts::PI;
 
-use super::moving::{height_of_last_core, slides_on_rig};
+use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
 use hand_over::BEGINS_BELOW;
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::whole::{carries, is_smooth, slides_on};
+use super::whole::{LEAST_STICK, carries, is_smooth, slides_on};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::transforms::Transforms;
@@ -154,10 +154,12 @@ impl Slides {
         let (depth, ratio) = (schedule.largest_indentation(), contact.half_space().stiffness_ratio());
         let conditions = schedule.conditions();
         // Springs that hardly stick do so soon after under a held normal force, and an edge that is followed from there has no time to settle in.
-        let nearly = match conditions.holds_normal_force && !schedule.keeps_slipping_alike() {
-            true => contact.equivalent_profile().value(BEGINS_BELOW * contact.contact_radius()),
-            false => 0.0,
+        let least = match conditions.holds_normal_force && !schedule.keeps_slipping_alike() {
+            true => BEGINS_BELOW,
+            false if schedule.is_uniform() => 0.0,
+            false => LEAST_STICK,
         };
+        let nearly = contact.equivalent_profile().value(least * schedule.largest_first_radius(contact)?);
         let slides = |loading: &CycleLoading, nearly: f64| match loading.control {
             AmplitudeControl::Displacement => Ok(loading.slip_compression(ratio) >= depth - nearly),
             AmplitudeControl::Force(_) => Ok(false),
@@ -175,6 +177,9 @@ impl Slides {
             return Ok(Self::Never);
         }
         let [mut some, mut all] = [false, true];
+        if on_rig && !follows_held_force(schedule, contact)? {
+            some = schedule.largest_slip_compression(contact)? >= depth - nearly;
+        }
         for loading in schedule.extremes() {
             some |= slides(&loading, nearly)?;
             all &= slides(&loading, 0.0)?;

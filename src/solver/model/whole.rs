@@ -12,6 +12,9 @@ const EVEN: f64 = 1e-12;
 /// Grading below which cubics over the whole contact come to no end.
 pub(super) const SOFT: f64 = -0.5;
 
+/// Stick radius, over that of the contact, below which all of it slides, where cycles differ.
+pub(super) const LEAST_STICK: f64 = 1e-3;
+
 /// Whether the mesh of gross slip carries what happens in a contact, once all of it slides.
 pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
     // Below, pressure at the contact edge takes cubics apart: two of three random scenes came to no end.
@@ -25,6 +28,15 @@ pub(super) fn not_carried(contact: &InitialContact, schedule: &Schedule) -> Erro
         return besides_energy("friction.history", "leave it out");
     }
     let (amplitude, grading) = (contact.amplitude(), contact.half_space().grading());
+    if carries(contact, schedule) {
+        return Error::Inconsistent {
+            what: "loading.tangential_control",
+            why: format!(
+                "at an amplitude of {amplitude:e} m the tangential force that is held takes all stick away in the end, which is not followed beside blocks of other \
+                 indentations, or beside blocks under friction that falls as steeply with the load; reduce the amplitude, or hold it"
+            ),
+        };
+    }
     Error::Inconsistent {
         what: "loading.amplitude",
         why: format!(
