@@ -71,6 +71,8 @@ const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 const BY_SPRING: [f64; 2] = [150.0, 300.0];
 const BY_SPRING_IN_GROSS_SLIP: f64 = 200.0;
 const BY_SPREADING: f64 = 10.0;
+/// How much longer an evaluation in gross slip takes where springs stick and slip sets in with a jump, up to which its sums are integrated.
+const OF_JUMP: f64 = 6.0;
 const BY_TRIPLE: [f64; 2] = [0.05, 0.35];
 const OVERHEAD: [f64; 2] = [4e3, 4e4];
 
@@ -94,7 +96,13 @@ fn work_of_step(model: &Model, springs: f64) -> f64 {
     let is_table = model.contact().equivalent_profile().end_of_table().is_some();
     let table = if is_table && moves == 1 { OF_TABLE } else { 1.0 };
     let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
-    let once = if model.gross().is_some() { BY_SPRING_IN_GROSS_SLIP } else { BY_SPRING[moves] };
+    let once = match model.gross() {
+        Some(gross) if gross.sticks() && schedule.conditions().friction.remembers_slip() => {
+            OF_JUMP * BY_SPRING_IN_GROSS_SLIP
+        }
+        Some(_) => BY_SPRING_IN_GROSS_SLIP,
+        None => BY_SPRING[moves],
+    };
     let cycles = schedule.cycles_at_once() as f64;
     overhead
         + evaluations(model, springs) * springs * cycles * (table * once + spread)

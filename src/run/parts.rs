@@ -240,7 +240,9 @@ impl Reach {
     fn of(parts: &Parts) -> Result<Self> {
         let (springs, tolerance) = COARSE;
         let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
-        let most_work = if schedule.resolves() { MOST_WORK } else { OF_STEPS_ALONE * MOST_WORK };
+        // At an indentation that is held another radius serves as well.
+        let bounded = schedule.resolves() || !parts.model.wears_without_end();
+        let most_work = if bounded { MOST_WORK } else { OF_STEPS_ALONE * MOST_WORK };
         let (sticks_again, most_work) = (Cell::new(false), Cell::new(most_work));
         let coarse = |springs: usize, follow: bool| -> Result<std::result::Result<Self, Error>> {
             let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
