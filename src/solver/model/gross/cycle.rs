@@ -202,7 +202,7 @@ impl Model {
         let per_depth = coefficient / ratio;
         let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
         // Exactly where slip sets in with a jump, or the edge of stick is to be followed from there on.
-        let exact = friction.remembers_slip() || gross.holds_force() && !gross.sticks();
+        let exact = if gross.sticks() { friction.remembers_slip() } else { gross.holds_force() };
         let presses = exact && loading.control == AmplitudeControl::Displacement;
         let (amplitude, stick) = match presses {
             true => (loading.amplitude, self.pressed_to_stick(gross, loading, compression, &borne)),
