@@ -131,6 +131,11 @@ fn what_the_past_of_single_springs_would_decide_is_refused() {
             }
         }
     }
+    // Also where a block moves all of the contact.
+    let blocks = "[[loading.blocks]]\ntau = 0.2\n[[loading.blocks]]\ntau = 0.8\namplitude_factor = 20";
+    let words =
+        at_rest(STATIC, &format!("{held}\nrig_stiffness = 4\ntau = 1\n{blocks}"), 60).error().to_string();
+    assert!(words.contains("loading.blocks") && words.contains("past of each"), "{words}");
     let loading = format!("{held}\n{FORCE}\ntau = 1");
     assert!(at_rest(&falling, &loading, 60).run().last().wear_volume > 0.0);
 }

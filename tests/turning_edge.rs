@@ -47,11 +47,16 @@ fn by_energy(last: f64) -> String {
 
 /// A paraboloid of 1 m radius that is pressed by 1 µm at first.
 fn scene(load: &str, control: &str, friction: &str, blocks: &str, duration: &str, numerics: &str) -> Scene {
+    moved_by("stick_ratio = 0.7", load, control, friction, &format!("{duration}\n{blocks}"), numerics)
+}
+
+/// The same under another amplitude.
+fn moved_by(amplitude: &str, load: &str, control: &str, friction: &str, rest: &str, numerics: &str) -> Scene {
     Scene::from_str(&format!(
         "[indenter.paraboloid]\nradius = 1.0\n\
          [half_space]\ngrading = 0\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666667\n\
          {friction}\n[wear.dissipated-energy]\ncoefficient = {PER_ENERGY}\n\
-         [loading]\n{load}\nstick_ratio = 0.7\n{control}\n{duration}\n{blocks}\n[numerics]\n{numerics}\n[output]\nsnapshots = 4\n"
+         [loading]\n{load}\n{amplitude}\n{control}\n{rest}\n[numerics]\n{numerics}\n[output]\nsnapshots = 4\n"
     ))
     .unwrap()
 }
@@ -228,24 +233,20 @@ fn blocks_that_grow_under_both_forces_end_at_the_closed_form_of_the_last() {
 /// cycles, another mesh follows their edge.
 #[test]
 fn what_slides_in_some_cycles_goes_over_from_what_sticks_in_all() {
-    let at_transition = |factor: f64| -> [(String, String); 3] {
+    let at_transition = |factor: f64| {
         let amplitude = |ratio: f64| format!("amplitude_ratio = {}", ratio * factor);
-        let growing = format!(
-            "[[loading.blocks]]\ntau = 0.2\namplitude_factor = 0.4\n[[loading.blocks]]\ntau = 1\namplitude_factor = {factor}"
-        );
+        let growing = blocks_of(&[(0.2, 0.4), (1.0, factor)]);
         [
-            (amplitude(0.75), history(0.5)),
-            (amplitude(1.5), history(1.8)),
-            ("amplitude_ratio = 1.5".into(), format!("{COULOMB}|{growing}")),
+            (amplitude(0.75), history(0.5), String::new()),
+            (amplitude(1.5), history(1.8), String::new()),
+            ("amplitude_ratio = 1.5".into(), COULOMB.into(), growing),
         ]
     };
     for load in [NORMAL, PRESSED] {
         let at = |factor: f64| {
-            at_transition(factor).map(|(amplitude, rest)| {
-                let (friction, blocks) = rest.split_once('|').unwrap_or((&rest, ""));
-                let text = scene(load, "", friction, blocks, "tau = 1", "accuracy = 1e-4").text().to_string();
-                let scene = Scene::from_str(&text.replace("stick_ratio = 0.7", &amplitude)).unwrap();
-                let results = run(&scene);
+            at_transition(factor).map(|(amplitude, friction, blocks)| {
+                let rest = format!("tau = 1\n{blocks}");
+                let results = run(&moved_by(&amplitude, load, "", &friction, &rest, "accuracy = 1e-4"));
                 let last = results.last();
                 assert!((last.wear_volume / (PER_ENERGY * last.dissipated_energy) - 1.0).abs() < 1e-3);
                 last.wear_volume
@@ -272,9 +273,9 @@ fn what_slides_in_some_cycles_keeps_its_accuracy() {
     let (mut within, mut told) = (0, 0);
     for (friction, blocks) in &scenes {
         for (load, control) in [(PRESSED, ""), (NORMAL, ""), (NORMAL, "rig_stiffness = 3e9")] {
+            let rest = format!("tau = 1\n{blocks}");
             let at = |numerics: &str| {
-                let text = scene(load, control, friction, blocks, "tau = 1", numerics).text().to_string();
-                run(&Scene::from_str(&text.replace("stick_ratio = 0.7", "amplitude_ratio = 1.2")).unwrap())
+                run(&moved_by("amplitude_ratio = 1.2", load, control, friction, &rest, numerics))
             };
             let (found, fine) = (at("accuracy = 3e-3"), at("springs = 140\naccuracy = 1e-5"));
             let off = found.last().wear_volume / fine.last().wear_volume - 1.0;

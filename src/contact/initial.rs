@@ -140,7 +140,7 @@ impl InitialContact {
         })
     }
 
-    /// The same bodies at another indentation, with a core that no spring slips within: where the whole contact slides.
+    /// The same bodies at another indentation, with a core that no spring slips within: where a mesh follows an edge of stick from or to next to nothing.
     ///
     /// As [`InitialContact::at`] with the compression at the radius of the core, which may differ from the indentation by less than a double can
     /// tell.

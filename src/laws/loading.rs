@@ -138,6 +138,13 @@ pub enum TangentialControl {
     },
 }
 
+impl TangentialControl {
+    /// Whether a spring in series with the contact moves it.
+    pub fn is_rig(self) -> bool {
+        matches!(self, Self::Rig { .. })
+    }
+}
+
 /// Some cycles in which amplitude and indentation are multiplied by factors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Block {

@@ -11,7 +11,7 @@ use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Stepper};
 use crate::solver::model::{FEWEST_SPRINGS, Gross, Model, OperatorStore, Schedule};
 
-/// Fewest springs that carry a contact which is in gross slip: their mesh begins at a thousandth of its radius.
+/// Fewest springs that carry a contact which loses its stick in the end: their mesh begins at a fiftieth of its radius.
 pub(super) const SPRINGS_TO_SLIDE: usize = 60;
 
 /// Fewest springs of gross slip from which one goes over to springs by hand.
@@ -130,8 +130,8 @@ pub(super) fn model(
                 springs = SPRINGS_TO_SLIDE;
                 continue 'springs;
             }
-            // Where the edge of stick moves or the contact is in gross slip, what is known beforehand belongs to another mesh.
-            if model.moving().is_some() || model.slides() {
+            // Where the edge of stick moves, what is known beforehand belongs to another mesh.
+            if model.moving().is_some() {
                 return Ok(model);
             }
             let quality = Quality::of(&model)?;

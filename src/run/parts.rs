@@ -323,7 +323,7 @@ fn check_sliding(model: &Model) -> Result<()> {
         return Ok(());
     }
     let why = format!(
-        "{springs} springs are too few where the whole contact slides; ask for at least {SPRINGS_TO_SLIDE}, or for a smaller amplitude"
+        "{springs} springs are too few where all stick is lost; ask for at least {SPRINGS_TO_SLIDE}, or for a smaller amplitude"
     );
     Err(Error::Inconsistent { what: "numerics.springs", why })
 }

@@ -72,10 +72,8 @@ pub(in crate::run) struct Companions {
     smooth: bool,
     /// The largest order believed, where it is not known.
     order: f64,
-    /// Whether the contact is in gross slip, where the order is known and one companion serves.
-    gross: bool,
-    /// Whether springs stick there in some cycles, so that it is not.
-    sticks: bool,
+    /// Whether the contact is in gross slip in every cycle, where the order is known and one companion serves.
+    slides: bool,
     /// Whether the companion is a finer one.
     finer: bool,
     /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
@@ -133,7 +131,7 @@ impl Coarsening {
             springs: model.springs(),
             tolerance,
             smooth,
-            alone: smooth || finer || model.gross().is_some_and(|gross| !gross.sticks()) && !sticks_again,
+            alone: smooth || finer || always_slides(model) && !sticks_again,
             finer,
             by_hand: numerics.springs.is_some(),
             sticks_again,
@@ -214,6 +212,11 @@ fn is_smooth(scene: &Scene, model: &Model) -> bool {
     scene.numerics().stepper == Stepper::Implicit && model.wears_smoothly()
 }
 
+/// Whether no spring sticks in any cycle, as the unworn contact tells.
+fn always_slides(model: &Model) -> bool {
+    model.gross().is_some_and(|gross| !gross.sticks())
+}
+
 /// One in so many radii of a run is compared.
 fn every(model: &Model) -> usize {
     (model.offsets().len() / model.springs()).max(1)
@@ -234,7 +237,7 @@ impl Companions {
         let radii = (moves || sampled || gross).then(|| shown.map(|r| r / radius).collect());
         let held = scene.conditions().tangential_control != TangentialControl::Displacement;
         let recedes = model.moving().is_some_and(MovingStick::recedes);
-        let order = match held || model.slides() && !gross {
+        let order = match held {
             _ if scene.numerics().springs.is_some() => ORDER_BY_HAND,
             _ if recedes => ORDER_RECEDING,
             true => ORDER_INWARDS,
@@ -248,8 +251,7 @@ impl Companions {
         Self {
             smooth,
             order,
-            gross,
-            sticks: model.gross().is_some_and(Gross::sticks),
+            slides: always_slides(model),
             finer: compares_with_finer(scene, model),
             every,
             radii,
@@ -319,7 +321,7 @@ impl Companions {
             let springs = if tells { finite(farther) } else { UNKNOWN };
             return Some(Shares { springs, order: ORDER, substeps, left_out: finite(left_out) });
         }
-        if self.gross && !self.sticks {
+        if self.slides {
             let shares = in_gross_slip(simulation, snapshots, nearest, ratio, scale);
             return Some(Shares { substeps, left_out: shares.left_out + of_passes, ..shares });
         }

@@ -1,7 +1,7 @@
 //! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
 use super::moving::{
-    LAST_CORE, first_slip_compression, follows_held_force, held_stick_radius, slides_at_once,
+    LAST_CORE, check_friction, first_slip_compression, follows_held_force, held_stick_radius, slides_at_once,
 };
 use super::schedule::{CycleLoading, Envelope, Schedule};
 use super::whole::{LEAST_STICK, not_carried};
@@ -60,6 +60,7 @@ impl Schedule {
             return Ok(Envelope { contact: contact.at(depth, compression)?, slides });
         }
         if !follows {
+            check_friction(self, contact, follows)?;
             return Err(not_carried(contact, self));
         }
         Ok(Envelope { contact: contact.with_core(depth, LAST_CORE * radius)?, slides })

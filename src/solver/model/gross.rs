@@ -27,7 +27,6 @@ use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZo
 use crate::contact::InitialContact;
 use crate::contact::transforms::Transforms;
 use crate::error::{Error, Result};
-use crate::laws::loading::TangentialControl;
 use crate::numerics::linear::{dot, largest_magnitude};
 use crate::numerics::roots::next_to;
 use crate::numerics::whole_contact::WholeContact;
@@ -165,7 +164,7 @@ impl Slides {
             AmplitudeControl::Force(_) => Ok(false),
             AmplitudeControl::Rig(_) => slides_on_rig(contact, loading, depth - height_of_last_core(contact)),
         };
-        let on_rig = matches!(conditions.tangential_control, TangentialControl::Rig { .. });
+        let on_rig = conditions.tangential_control.is_rig();
         let plain = conditions.friction.coefficient().is_some() && is_smooth(contact, schedule);
         // The edge of stick is followed until the last springs give way, and where polynomials would not carry what a rig does at first.
         let followed = plain && schedule.keeps_friction() && slides_on(contact, schedule);

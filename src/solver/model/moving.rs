@@ -37,6 +37,7 @@ use crate::numerics::grid::Clustering;
 use crate::numerics::roots::bracketed;
 use crate::solver::model::whole::slides_on;
 pub use both_forces::Bearing;
+pub(super) use causes::check_friction;
 pub use stage::{StickStage, StickTarget, StickTrial};
 
 /// Radii at which what was left behind is known, for interpolation over where the contact edge can be.

@@ -583,7 +583,7 @@ impl Schedule {
     }
 
     /// Whether every cycle is the same: one amplitude at one indentation, under friction that does not change.
-    fn is_steady(&self) -> bool {
+    pub fn is_steady(&self) -> bool {
         let conditions = &self.conditions;
         self.keeps_slipping_alike() && conditions.tangential_control == TangentialControl::Displacement
     }

@@ -4,7 +4,6 @@ use super::schedule::Schedule;
 use crate::contact::InitialContact;
 use crate::error::Error;
 use crate::laws::history::History;
-use crate::laws::loading::TangentialControl;
 
 /// Difference of a slope of friction from that of its strength at all of the indentation, relative, that is round-off.
 const EVEN: f64 = 1e-12;
@@ -17,16 +16,14 @@ pub(super) const LEAST_STICK: f64 = 1e-3;
 
 /// Whether the mesh of gross slip carries what happens in a contact, once all of it slides.
 pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
+    let along_energy = *schedule.friction_along_energy() != History::Constant;
+    let both = along_energy && schedule.conditions().friction_history != History::Constant;
     // Below, pressure at the contact edge takes cubics apart: two of three random scenes came to no end.
-    !changes_friction_twice(schedule)
-        && (contact.half_space().grading() >= SOFT || is_smooth(contact, schedule))
+    !both && (contact.half_space().grading() >= SOFT || is_smooth(contact, schedule))
 }
 
 /// Why a contact is refused that [is not carried](carries).
 pub(super) fn not_carried(contact: &InitialContact, schedule: &Schedule) -> Error {
-    if changes_friction_twice(schedule) {
-        return besides_energy("friction.history", "leave it out");
-    }
     let (amplitude, grading) = (contact.amplitude(), contact.half_space().grading());
     if carries(contact, schedule) {
         return Error::Inconsistent {
@@ -47,12 +44,6 @@ pub(super) fn not_carried(contact: &InitialContact, schedule: &Schedule) -> Erro
     }
 }
 
-/// Whether friction changes both with the energy that it dissipates and along the cycles.
-fn changes_friction_twice(schedule: &Schedule) -> bool {
-    *schedule.friction_along_energy() != History::Constant
-        && schedule.conditions().friction_history != History::Constant
-}
-
 /// Whether polynomials over the whole contact carry what happens in it; else cubics do.
 pub(super) fn is_smooth(contact: &InitialContact, schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
@@ -71,18 +62,8 @@ pub(super) fn is_smooth(contact: &InitialContact, schedule: &Schedule) -> bool {
 /// Whether a rig goes on to move a contact whose stick it has broken.
 pub(super) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
-    let on_rig = matches!(conditions.tangential_control, TangentialControl::Rig { .. });
+    let on_rig = conditions.tangential_control.is_rig();
     let breaks_away = conditions.friction.remembers_slip();
     let fits = contact.half_space().grading() >= SOFT && carries(contact, schedule);
     on_rig && !conditions.holds_normal_force && !breaks_away && !schedule.resolves() && fits
-}
-
-/// The refusal of what is not followed beside friction that changes with the energy it dissipates.
-pub(super) fn besides_energy(what: &str, cure: &str) -> Error {
-    Error::Inconsistent {
-        what: "friction",
-        why: format!(
-            "changes with the energy that it dissipates, and so does the edge of stick; that is not followed beside {what}; {cure}"
-        ),
-    }
 }

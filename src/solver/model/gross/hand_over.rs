@@ -16,7 +16,6 @@ use super::Gross;
 use crate::contact::InitialContact;
 use crate::contact::stick_slip::Regime;
 use crate::error::Result;
-use crate::laws::loading::TangentialControl;
 use crate::solver::model::moving::{MovingStick, StickEdge};
 use crate::solver::model::schedule::Schedule;
 use crate::solver::model::whole::{SOFT, slides_on};
@@ -35,10 +34,8 @@ const CORE: f64 = 0.03;
 /// Whether the edge of springs that stick again is followed.
 fn is_followed(schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
-    let stays =
-        schedule.keeps_slipping_alike() && conditions.tangential_control == TangentialControl::Displacement;
     let local = conditions.wear.spreading().is_none() && !schedule.resolves();
-    stays && local && conditions.friction.coefficient().is_some()
+    schedule.is_steady() && local && conditions.friction.coefficient().is_some()
 }
 
 impl Gross {

@@ -8,7 +8,6 @@ use crate::laws::conditions::Conditions;
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
 use crate::solver::model::schedule::{CycleLoading, Schedule};
-use crate::solver::model::whole::besides_energy;
 
 /// Compressions that differ by less than this part are equal but for rounding.
 const SAME_COMPRESSION: f64 = 1e-9;
@@ -23,12 +22,9 @@ impl MovingStick {
         let conditions = schedule.conditions();
         let force = contact.normal_force();
         let follows = follows_held_force(schedule, contact)?;
+        check_friction(schedule, contact, follows)?;
         let by_energy = *schedule.friction_along_energy() != History::Constant;
-        if by_energy {
-            check_along_energy(schedule)?;
-        }
         let in_blocks = schedule.slips_otherwise_between_blocks();
-        check_memory(schedule, contact, follows)?;
         let [falls, rises] = schedule.friction_change().directions();
         let coulomb = conditions.friction.coefficient().is_some();
         let moving = match (conditions.holds_normal_force, conditions.tangential_control) {
@@ -159,9 +155,28 @@ fn check_rest(schedule: &Schedule, contact: &InitialContact) -> Result<()> {
     Err(Error::Inconsistent { what, why: format!("{in_the_end}; {cure}") })
 }
 
+/// Refuses where the law of friction does not let an edge of stick be followed.
+///
+/// # Arguments
+/// * `follows` -- see [`follows_held_force`]
+///
+/// # Errors
+/// [`Error::Inconsistent`] for what goes beside friction along the energy; those of [`check_memory`].
+pub(in crate::solver::model) fn check_friction(
+    schedule: &Schedule,
+    contact: &InitialContact,
+    follows: bool,
+) -> Result<()> {
+    check_along_energy(schedule)?;
+    check_memory(schedule, contact, follows)
+}
+
 /// Refuses what is not followed while friction changes with the energy that it dissipates.
 fn check_along_energy(schedule: &Schedule) -> Result<()> {
     let conditions = schedule.conditions();
+    if *schedule.friction_along_energy() == History::Constant {
+        return Ok(());
+    }
     let beside = [
         (conditions.friction_history != History::Constant, "friction.history", "leave it out"),
         (
@@ -177,6 +192,11 @@ fn check_along_energy(schedule: &Schedule) -> Result<()> {
     ];
     match beside.iter().find(|(is_there, ..)| *is_there) {
         None => Ok(()),
-        Some((_, what, cure)) => Err(besides_energy(what, cure)),
+        Some((_, what, cure)) => Err(Error::Inconsistent {
+            what: "friction",
+            why: format!(
+                "changes with the energy that it dissipates, and so does the edge of stick; that is not followed beside {what}; {cure}"
+            ),
+        }),
     }
 }
