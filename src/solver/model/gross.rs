@@ -22,7 +22,7 @@ use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
 use hand_over::BEGINS_BELOW;
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::whole::{LEAST_STICK, SOFT, carries, is_smooth, slides_on};
+use super::whole::{LEAST_STICK, LEAST_STICK_LATER, SOFT, carries, is_smooth, slides_on};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::transforms::Transforms;
@@ -158,7 +158,9 @@ impl Slides {
             false if schedule.is_uniform() => 0.0,
             false => LEAST_STICK,
         };
-        let nearly = contact.equivalent_profile().value(least * schedule.largest_first_radius(contact)?);
+        let radius = schedule.largest_first_radius(contact)?;
+        let nearly_at = |least: f64| contact.equivalent_profile().value(least * radius);
+        let (nearly, later) = (nearly_at(least), nearly_at(least.max(LEAST_STICK_LATER)));
         let slides = |loading: &CycleLoading, nearly: f64| match loading.control {
             AmplitudeControl::Displacement => Ok(loading.slip_compression(ratio) >= depth - nearly),
             AmplitudeControl::Force(_) => Ok(false),
@@ -176,6 +178,8 @@ impl Slides {
         if on_rig && !follows_held_force(schedule, contact)? {
             some = schedule.largest_slip_compression(contact)? >= depth - nearly;
         }
+        let grows = schedule.slips_otherwise_between_blocks() && !slides(&schedule.first_slip(), later)?;
+        let nearly = if grows { later } else { nearly };
         for loading in schedule.extremes() {
             some |= slides(&loading, nearly)?;
             all &= slides(&loading, 0.0)?;

@@ -14,6 +14,9 @@ pub(super) const SOFT: f64 = -0.5;
 /// Stick radius, over that of the contact, below which all of it slides, where cycles differ.
 pub(super) const LEAST_STICK: f64 = 1e-3;
 
+/// The same where the edge of stick comes in over unworn ground later: at 0.01 meshes that follow it come to no end below k = 0, or to estimates of 3e-2.
+pub(super) const LEAST_STICK_LATER: f64 = 0.02;
+
 /// Whether the mesh of gross slip carries what happens in a contact, once all of it slides.
 pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
     let along_energy = *schedule.friction_along_energy() != History::Constant;
