@@ -50,11 +50,11 @@ fn a_wear_law_has_the_slopes_of_its_values_and_scales_with_its_coefficient() {
         let name = entry.name;
         assert_eq!(law.entry().name, name);
         assert_eq!(law.values().len(), entry.keys.len(), "{name}");
-        let at = |pressure: f64, path: f64| Rubbing { pressure, path, mean_pressure: 1e8 };
+        let at = |pressure: f64| Rubbing { pressure, mean_pressure: 1e8 };
         let (pressure, path) = (2.3e8, 1.7e-6);
-        let rate = law.rate(&at(pressure, path));
-        close(name, rate.by_pressure, slope(|p| law.rate(&at(p, path)).depth, pressure));
-        let by_path = slope(|l| law.rate(&at(pressure, l)).depth, path) * path / rate.depth;
+        let rate = law.rate(&at(pressure));
+        close(name, rate.by_pressure, slope(|p| law.rate(&at(p)).depth, pressure));
+        let by_path = slope(|l| law.by_path(l), path) * path / law.by_path(path);
         assert!((law.path_exponent() - by_path).abs() < 1e-6, "{name}: {by_path}");
         if let Some([_, by_depth]) = law.of_cycle(3e3) {
             let worn = |depth: f64| law.of_cycle(depth).expect("at every depth")[0];

@@ -27,13 +27,25 @@ pub trait WearLaw: Debug + Send + Sync {
     /// The law and its numbers, as reports say it.
     fn words(&self) -> String;
 
-    /// Depth worn per slipped distance.
+    /// Depth worn per slipped distance, but for [what the path makes of it](WearLaw::by_path).
     fn rate(&self, at: &Rubbing) -> Rate;
 
-    /// Depth worn per slipped distance at many places, whose pressures, Pa, and paths of slip, m, are given.
-    fn rates(&self, pressures: &[f64], paths: &[f64], mean_pressure: f64, rates: &mut [Rate]) {
-        for (rate, (pressure, path)) in rates.iter_mut().zip(pressures.iter().zip(paths)) {
-            *rate = self.rate(&Rubbing { pressure: *pressure, path: *path, mean_pressure });
+    /// The same at many places, whose pressures, Pa, are given, times a factor at each, which is zero where nothing slips.
+    fn rates(&self, pressures: &[f64], factors: &[f64], mean_pressure: f64, rates: &mut [Rate]) {
+        for (rate, (pressure, factor)) in rates.iter_mut().zip(pressures.iter().zip(factors)) {
+            *rate = match *factor {
+                0.0 => Rate::default(),
+                factor => self.rate(&Rubbing { pressure: *pressure, mean_pressure }).times(factor),
+            };
+        }
+    }
+
+    /// The factor by which the depth per slipped distance goes with the slip path of the whole cycle, m: the power [`WearLaw::path_exponent`] of it.
+    fn by_path(&self, path: f64) -> f64 {
+        match self.path_exponent() {
+            0.0 => 1.0,
+            exponent if path > 0.0 => path.powf(exponent),
+            _ => 0.0,
         }
     }
 
@@ -106,8 +118,6 @@ pub trait WearLaw: Debug + Send + Sync {
 pub struct Rubbing {
     /// What presses, Pa: pressure, or the frictional traction for a law that takes it. Round-off may make it negative.
     pub pressure: f64,
-    /// Slip path of the whole cycle, m.
-    pub path: f64,
     /// Mean pressure of the unworn contact, Pa.
     pub mean_pressure: f64,
 }
@@ -119,6 +129,12 @@ pub struct Rate {
     pub depth: f64,
     /// Its derivative by the pressure, 1/Pa.
     pub by_pressure: f64,
+}
+
+impl Rate {
+    fn times(self, factor: f64) -> Self {
+        Self { depth: factor * self.depth, by_pressure: factor * self.by_pressure }
+    }
 }
 
 /// Natural pressure, slip path and friction of a contact.

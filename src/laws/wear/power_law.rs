@@ -57,9 +57,7 @@ impl WearLaw for PowerLaw {
     fn rate(&self, at: &Rubbing) -> Rate {
         let (power, slope) =
             eased_power(at.pressure, self.pressure_exponent, LEAST_PRESSURE * at.mean_pressure);
-        let lengthened = if at.path > 0.0 { at.path.powf(self.slip_exponent - 1.0) } else { 0.0 };
-        let coefficient = self.coefficient * lengthened;
-        Rate { depth: coefficient * power, by_pressure: coefficient * slope }
+        Rate { depth: self.coefficient * power, by_pressure: self.coefficient * slope }
     }
 
     /// The coefficient under which the time of one cycle is the natural one of this law. Numbers each allowed may give one too large or too

@@ -26,6 +26,9 @@ const SLOPES: usize = 3;
 /// Agreement of two amplitudes that are the same number by two ways.
 const SAME: f64 = 1e-13;
 
+/// Slip of a substep, over the path of the cycle, that is rounding: nothing slips there.
+const ROUND_OFF_OF_PATH: f64 = 1e-13;
+
 /// What one cycle does.
 #[derive(Debug, Clone, Default)]
 pub struct CycleFields {
@@ -316,13 +319,22 @@ impl Model {
         };
         let mean_pressure = self.contact.mean_pressure();
         let total = row_sums(&surface.path);
+        let by_path: Vec<f64> = total.iter().map(|path| law.by_path(*path)).collect();
+        let mut factors = by_path.clone();
         let different = surface.pressure.ncols();
         let mut rates = vec![Rate::default(); n];
         for m in 0..steps {
-            if m < different {
-                law.rates(surface.pressure.col_as_slice(m), &total, mean_pressure, &mut rates);
-            }
             let path = surface.path.col_as_slice(m);
+            if m < different {
+                if different > 1 {
+                    let slips = |(path, total): (&f64, &f64)| path.abs() > ROUND_OFF_OF_PATH * total;
+                    let slips = path.iter().zip(&total).map(slips);
+                    factors.clear();
+                    factors
+                        .extend(slips.zip(&by_path).map(|(slips, factor)| if slips { *factor } else { 0.0 }));
+                }
+                law.rates(surface.pressure.col_as_slice(m), &factors, mean_pressure, &mut rates);
+            }
             for (depth, (rate, path)) in worn.depth.iter_mut().zip(rates.iter().zip(path)) {
                 *depth += rate.depth * path;
             }
