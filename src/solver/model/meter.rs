@@ -8,9 +8,9 @@ use super::{Model, State};
 use crate::contact::spring::searched_stick_compression;
 use crate::laws::friction::FrictionLaw;
 
-/// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed, where a limit in proportion to the load holds it, another one, and where slip begins at a
-/// static one; of a column of slip at a spring, by what is done with it there, by the response of a table and by steps, and by each other spring that it is carried to; and of a column of loads there.
-const BY_SUBSTEP: [f64; 3] = [15.0, 35.0, 60.0];
+/// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed, where one limit holds it and where slip begins at a static one; of a column of
+/// slip at a spring, by what is done with it there, by the response of a table and by steps, and by each other spring that it is carried to; and of a column of loads there.
+const BY_SUBSTEP: [f64; 2] = [15.0, 60.0];
 const BY_COLUMN: [f64; 2] = [30.0, 45.0];
 const BY_PAIR: f64 = 0.05;
 const BY_LOAD: f64 = 15.0;
@@ -47,13 +47,7 @@ impl Model {
 
     /// Counts substeps through which springs were passed.
     pub(super) fn count_substeps(&self, substeps: usize, law: &dyn FrictionLaw) {
-        let [in_proportion, by_power, from_static] = BY_SUBSTEP;
-        let each = match law.coefficient() {
-            _ if law.static_factor() != 1.0 => from_static,
-            Some(_) => in_proportion,
-            None => by_power,
-        };
-        self.meter.add(each * substeps as f64);
+        self.meter.add(BY_SUBSTEP[usize::from(law.static_factor() != 1.0)] * substeps as f64);
     }
 
     /// Compression at the edge of stick in a cycle, m, as [`CycleLoading::slip_compression`]; counts the periods of the search for it.
