@@ -32,6 +32,9 @@ pub const FEWEST_SPRINGS: usize = 8;
 /// Most springs in gross slip: polynomials over the whole contact have no use for more.
 pub const MOST_IN_GROSS_SLIP: usize = 160;
 
+/// Grading below which polynomials over the whole contact are of an even number: others swing at the contact edge, from where the unworn profile is not met.
+const EVEN_BELOW: f64 = -0.9;
+
 impl Model {
     /// Puts a contact on springs under the laws, mode, blocks and control of its scene.
     ///
@@ -99,12 +102,14 @@ impl Model {
         )
     }
 
-    /// A contact on the mesh of gross slip, in it or [nearly](Gross::nearly_follows).
+    /// A contact on the mesh of gross slip, in it or [nearly](Gross::nearly_follows), on one spring less where an odd number does not serve.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] and [`Error::Inconsistent`] for too few and too many springs; those of the quadrature.
     pub fn in_gross_slip(contact: &InitialContact, schedule: Schedule, springs: usize) -> Result<Self> {
         check_springs(springs)?;
+        let parity = if contact.half_space().grading() < EVEN_BELOW { 2 } else { 1 };
+        let springs = springs - springs % parity;
         if springs > MOST_IN_GROSS_SLIP {
             let why = format!(
                 "{springs} springs are more than the {MOST_IN_GROSS_SLIP} that gross slip is followed with; 17 are its default"
