@@ -230,6 +230,29 @@ fn gross_slip_runs_for_every_indenter_grading_and_amplitude() {
 
 /// Laws other than Archard's have no balance between springs and surface; there are coarser springs.
 #[test]
+fn gross_slip_of_a_medium_that_is_stiff_at_its_top_alone_is_on_an_even_number_of_springs() {
+    // Odd numbers found no contact, or no end.
+    for (grading, load) in
+        [(-0.95, "indentation = 1e-6"), (-0.99, "indentation = 1e-6"), (-0.999, "normal_force = 1e5")]
+    {
+        let run = |springs: usize| {
+            let text = format!(
+                "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = {grading}\nnormal_stiffness = 2e8\nstiffness_ratio = 0.7\n\
+                 [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1.667e-13\n[loading]\n{load}\n\
+                 amplitude_ratio = 3.0\ntau = 1.0\n[numerics]\nsprings = {springs}\n"
+            );
+            let results = text.parse::<Scene>().unwrap().simulate().unwrap();
+            (results.springs(), results.last().wear_volume, results.error_estimate().unwrap())
+        };
+        let [odd, even, finer] = [13, 12, 16].map(run);
+        assert_eq!(odd, even);
+        let off = (even.1 / finer.1 - 1.0).abs();
+        println!("k = {grading}, {load}: {off:.1e}, estimate {:.1e}", even.2);
+        assert!(off < even.2 && off < 1e-3, "k = {grading}, {load}: {off:e}, estimate {:e}", even.2);
+    }
+}
+
+#[test]
 fn gross_slip_wears_by_any_local_law() {
     let contact = contact(2.0, 0.0, 3.0);
     for [pressure_exponent, slip_exponent] in [[1.0, 0.5], [1.5, 1.0], [0.5, 1.0]] {
