@@ -228,7 +228,6 @@ fn gross_slip_runs_for_every_indenter_grading_and_amplitude() {
     }
 }
 
-/// Laws other than Archard's have no balance between springs and surface; there are coarser springs.
 #[test]
 fn gross_slip_of_a_medium_that_is_stiff_at_its_top_alone_is_on_an_even_number_of_springs() {
     // Odd numbers found no contact, or no end.
@@ -252,6 +251,7 @@ fn gross_slip_of_a_medium_that_is_stiff_at_its_top_alone_is_on_an_even_number_of
     }
 }
 
+/// Laws other than Archard's have no balance between springs and surface; there are coarser springs.
 #[test]
 fn gross_slip_wears_by_any_local_law() {
     let contact = contact(2.0, 0.0, 3.0);

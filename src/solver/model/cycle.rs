@@ -327,11 +327,10 @@ impl Model {
             let path = surface.path.col_as_slice(m);
             if m < different {
                 if different > 1 {
-                    let slips = |(path, total): (&f64, &f64)| path.abs() > ROUND_OFF_OF_PATH * total;
-                    let slips = path.iter().zip(&total).map(slips);
-                    factors.clear();
-                    factors
-                        .extend(slips.zip(&by_path).map(|(slips, factor)| if slips { *factor } else { 0.0 }));
+                    for (i, factor) in factors.iter_mut().enumerate() {
+                        let slips = path[i].abs() > ROUND_OFF_OF_PATH * total[i];
+                        *factor = if slips { by_path[i] } else { 0.0 };
+                    }
                 }
                 law.rates(surface.pressure.col_as_slice(m), &factors, mean_pressure, &mut rates);
             }
