@@ -14,6 +14,7 @@ mod limit;
 mod memory;
 mod mesh;
 mod method;
+mod onlookers;
 mod parts;
 mod passes;
 mod plan;

@@ -251,6 +251,25 @@ fn gross_slip_of_a_medium_that_is_stiff_at_its_top_alone_is_on_an_even_number_of
     }
 }
 
+/// Tips sharper than `√r` are none of the polynomials, and the first step moves the contact edge by as much: steps of every length were rejected. Friction falls within a cycle, so that
+/// the volume is that of the energy.
+#[test]
+fn a_sharp_tip_slides_from_the_first_step_on() {
+    for exponent in [0.135, 0.18] {
+        let text = format!(
+            "[indenter.power-law]\ncoefficient = 1e-3\nexponent = {exponent}\n[half_space]\ngrading = 0\nnormal_stiffness = 1e9\nstiffness_ratio = 0.8\n\
+             [friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 0.8\ncycles = 1e-3\n[wear.archard]\ncoefficient = 1e-14\n\
+             [loading]\nindentation = 3e-4\namplitude_ratio = 1.5\ntau = 0.5\n[numerics]\naccuracy = 1e-3\n"
+        );
+        let results = text.parse::<Scene>().unwrap().simulate().unwrap();
+        let last = results.last();
+        let off = last.wear_volume / (1e-14 / 0.4 * last.dissipated_energy) - 1.0;
+        let estimate = results.error_estimate().expect("an estimate");
+        println!("n = {exponent}: V/αE - 1 = {off:.1e}, estimate {estimate:.1e}");
+        assert!(off.abs() < estimate.min(1e-2), "n = {exponent}: {off:e}, estimate {estimate:e}");
+    }
+}
+
 /// Laws other than Archard's have no balance between springs and surface; there are coarser springs.
 #[test]
 fn gross_slip_wears_by_any_local_law() {

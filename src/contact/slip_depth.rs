@@ -230,16 +230,23 @@ impl UnwornSlip {
                 return;
             }
         };
-        for (chunk, to) in to.chunks_mut(LANES).enumerate() {
-            // The last ones are found more than once where they are fewer.
-            let place = |i: usize| z(chunk * LANES + i.min(to.len() - 1));
-            let logarithms: [f64; LANES] = std::array::from_fn(|i| (place(i) / area).ln_1p());
+        in_lanes(area, z, to, |logarithms, to| {
             let (uniform, slip) = (self.uniform.values(&logarithms), self.slip.values(&logarithms));
             for (i, to) in to.iter_mut().enumerate() {
                 let rise = factor.map_or(slip[i], |factor| factor * slip[i]);
                 *to = self.values_with(logarithms[i], compression, rise, uniform[i]);
             }
-        }
+        });
+    }
+
+    /// As [`UnwornSlip::uniform_at_stick`], at many places.
+    pub fn fill_uniform_at_stick(&self, stick_area: f64, z: impl Fn(usize) -> f64, to: &mut [f64]) {
+        in_lanes(stick_area, z, to, |logarithms, to| {
+            let uniform = self.uniform.values(&logarithms);
+            for (i, to) in to.iter_mut().enumerate() {
+                *to = power(logarithms[i], self.mu) * uniform[i];
+            }
+        });
     }
 
     /// Whether a stick area is that for which the slip was tabulated.
@@ -399,4 +406,18 @@ impl<'a> Transform<'a> {
 /// `(expm1(y)/y)^(-ν)`.
 fn kernel(y: f64, nu: f64) -> f64 {
     if y > 1e-300 { power(y.exp_m1() / y, -nu) } else { 1.0 }
+}
+
+/// Fills what follows from `ln(1 + z/c²)` at places `z`, m², by their index, some of them side by side.
+fn in_lanes<T>(
+    stick_area: f64,
+    z: impl Fn(usize) -> f64,
+    to: &mut [T],
+    each: impl Fn([f64; LANES], &mut [T]),
+) {
+    for (chunk, to) in to.chunks_mut(LANES).enumerate() {
+        // The last ones are found more than once where they are fewer.
+        let place = |i: usize| z(chunk * LANES + i.min(to.len() - 1));
+        each(std::array::from_fn(|i| (place(i) / stick_area).ln_1p()), to);
+    }
 }

@@ -1,5 +1,6 @@
 //! The snapshots of a run while it goes on, and the file that they are saved to.
 
+use std::mem;
 #[cfg(feature = "hdf5")]
 use std::path::Path;
 
@@ -106,14 +107,16 @@ impl RunWriter {
         Self { file: None, header, snapshots: Vec::new() }
     }
 
-    /// Forgets the snapshots so far, for a run that is made anew; what was saved stays until the next save.
+    /// Begins again without snapshots, for a run that is made anew; what was saved stays until the next save.
+    ///
+    /// # Returns
+    /// Header and snapshots so far.
     ///
     /// # Panics
     /// As [`RunWriter::in_memory`].
-    pub fn restart(&mut self, header: RunHeader) {
+    pub fn restart(&mut self, header: RunHeader) -> (RunHeader, Vec<Snapshot>) {
         header.check();
-        self.header = header;
-        self.snapshots.clear();
+        (mem::replace(&mut self.header, header), mem::take(&mut self.snapshots))
     }
 
     /// Header and snapshots, when nothing more is to be written.

@@ -1,17 +1,20 @@
 //! A run that is made anew: on more springs where its error is larger than was asked for, in finer steps where those do not help, on fewer where it takes too long or finds no end.
 
+use std::mem;
+
 use super::attempt::{LAST_RESORT, REFINEMENTS, SPRINGS_OF_LAST_RESORT};
 use super::budget::{self, TIGHTER, UNKNOWN};
 use super::cost;
 use super::limit::header;
-use super::parts::Parts;
+use super::onlookers::Onlookers;
+use super::parts::{Known, Parts};
 use super::recorder::Recorder;
 use crate::contact::closed_form::LimitingShape;
-use crate::data::{Attempt, Checkpoint};
+use crate::data::{Attempt, Checkpoint, RunHeader, Snapshot};
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Stepper};
 use crate::solver::model::OperatorStore;
-use crate::solver::simulation::{Observer, Outcome, Simulation};
+use crate::solver::simulation::{Outcome, Simulation};
 
 /// A run, attempt by attempt; its recorder holds what the one under way counts as.
 pub(super) struct Attempts<'a> {
@@ -20,7 +23,21 @@ pub(super) struct Attempts<'a> {
     pub recorder: &'a mut Recorder,
     pub stepping: Simulation,
     pub limit: Option<LimitingShape>,
+    pub known: Known,
+    /// That which ended and may be taken after all, if it was made in this process.
+    pub ended: Option<Ended>,
 }
+
+/// An attempt that came to its end, while finer ones are made, and what it recorded.
+pub(super) struct Ended {
+    end: End,
+    recorded: Recorded,
+}
+
+type Recorded = (RunHeader, Vec<Snapshot>);
+
+/// An attempt at its start.
+type Begun = (Attempt, Simulation, Option<LimitingShape>);
 
 /// Where a run ended, and on which springs.
 pub(super) struct End {
@@ -40,7 +57,7 @@ struct Anew {
 
 impl Attempts<'_> {
     /// Runs until no other attempt follows.
-    pub(super) fn run(mut self, onlookers: &mut dyn Observer) -> End {
+    pub(super) fn run(mut self, onlookers: &mut Onlookers<'_, '_>) -> End {
         loop {
             let before = self.recorder.attempt.work;
             let limited = self.limit.is_some();
@@ -48,40 +65,78 @@ impl Attempts<'_> {
                 self.recorder.run(self.scene, self.store, &mut self.stepping, limited, onlookers);
             if self.recorder.would_take_too_long() {
                 let instead = self.instead_of_too_long(before + self.recorder.work_of_left());
-                if self.takes_up(instead) {
+                if self.takes_up(&instead) {
                     continue;
                 }
                 outcome = self.recorder.go_on(&mut self.stepping, onlookers);
             }
             let work = before + cost::work_of(&self.stepping);
             if self.recorder.takes_too_long() {
-                if self.takes_up(self.after_too_long(work)) {
+                if self.takes_up(&self.after_too_long(work)) {
                     continue;
                 }
                 outcome = Err(self.stepping.takes_too_long());
             }
             let checkpoint = self.recorder.checkpoint(&self.stepping);
-            if !self.takes_up(self.after(&outcome, &checkpoint, work)) {
+            let next = self.after(&outcome, &checkpoint, work);
+            let ends = outcome.is_ok() && next.iter().any(|it| self.is_end_of(&it.counted));
+            if let Some(again) = next.iter().find(|it| it.counted.ends_again())
+                && let Some(ended) = self.ended.take()
+            {
+                return self.end_with(ended, again.counted, onlookers);
+            }
+            let Some(begun) = self.first_of(&next) else {
                 let Self { stepping, limit, .. } = self;
                 return End { stepping, limit, outcome, checkpoint };
+            };
+            let (stepping, limit, recorded) = self.take_up(begun);
+            if ends {
+                self.ended = Some(Ended { end: End { stepping, limit, outcome, checkpoint }, recorded });
             }
         }
     }
 
     /// Takes up the first of some attempts that begins; whether there is one.
-    fn takes_up(&mut self, attempts: Vec<Anew>) -> bool {
-        let Some((counted, stepping, limit)) = attempts.iter().find_map(|it| self.begun(it)) else {
-            return false;
-        };
-        self.recorder.writer.restart(header(self.scene, stepping.model(), limit.as_ref()));
-        (self.recorder.attempt, self.stepping, self.limit) = (counted, stepping, limit);
-        true
+    fn takes_up(&mut self, attempts: &[Anew]) -> bool {
+        self.first_of(attempts).map(|begun| self.take_up(begun)).is_some()
     }
 
-    fn begun(&self, anew: &Anew) -> Option<(Attempt, Simulation, Option<LimitingShape>)> {
+    fn first_of(&self, attempts: &[Anew]) -> Option<Begun> {
+        attempts.iter().find_map(|it| self.begun(it))
+    }
+
+    /// Takes up an attempt; what the one before came to.
+    fn take_up(
+        &mut self,
+        (counted, stepping, limit): Begun,
+    ) -> (Simulation, Option<LimitingShape>, Recorded) {
+        self.recorder.attempt = counted;
+        let recorded = self.recorder.writer.restart(header(self.scene, stepping.model(), limit.as_ref()));
+        (mem::replace(&mut self.stepping, stepping), mem::replace(&mut self.limit, limit), recorded)
+    }
+
+    /// Whether the attempt under way is the one that ended, as another counts.
+    fn is_end_of(&self, counted: &Attempt) -> bool {
+        let now = (self.springs() as u64, self.recorder.attempt.tolerance);
+        (counted.ended_on, counted.ended_with) == now
+    }
+
+    /// What that would come to which repeats an attempt, from memory.
+    fn end_with(self, ended: Ended, counted: Attempt, onlookers: &mut Onlookers<'_, '_>) -> End {
+        let Ended { mut end, recorded: (header, snapshots) } = ended;
+        onlookers.again(&snapshots);
+        self.recorder.attempt = counted;
+        self.recorder.writer.restart(header);
+        snapshots.into_iter().for_each(|it| self.recorder.writer.push(it));
+        end.checkpoint =
+            Checkpoint { attempt: counted, wall_seconds: self.recorder.wall_seconds(), ..end.checkpoint };
+        end
+    }
+
+    fn begun(&self, anew: &Anew) -> Option<Begun> {
         let Anew { springs, on_fewer, counted } = *anew;
         // The last resort has substeps of its own.
-        let known = (!counted.is_last_resort()).then(|| self.stepping.model().schedule());
+        let known = (!counted.is_last_resort()).then_some(&self.known);
         let numerics = counted.numerics(self.scene);
         let mut parts = Parts::new(self.scene, &numerics, Some(springs), known, self.store).ok()?;
         let limit = parts.limit.take();
@@ -118,6 +173,7 @@ impl Attempts<'_> {
         }
         let counted = Attempt { refinements, work, ..Attempt::default() };
         let fewer = cost::fewer(self.springs());
+        let fewer = if far_too_long { fewer.map(|it| cost::fewer(it).unwrap_or(it)) } else { fewer };
         fewer.map(|springs| Anew { springs, on_fewer: true, counted }).into_iter().collect()
     }
 
@@ -145,13 +201,12 @@ impl Attempts<'_> {
         }
         match attempt.is_last_resort() {
             false => self.for_an_end(work),
-            true if self.recorder.takes_too_long() => vec![],
-            // Steps as coarse lead on from some places of the springs and not from others.
+            // Steps as coarse lead on from some places of the springs and not from others, or in far fewer.
             true => self.last_resort(work),
         }
     }
 
-    /// Finer ones do not end, or know nothing of their error: that which did, once more.
+    /// Finer ones do not end, or know nothing of their error: that which did, once more, if it is not in memory any more.
     fn end_again(&self, work: u64) -> Anew {
         let before = self.recorder.attempt;
         let counted = Attempt { refinements: REFINEMENTS + 1, tolerance: before.ended_with, work, ..before };
@@ -177,8 +232,7 @@ impl Attempts<'_> {
     /// Coarser ones may come to an end where this does not, and tell that nothing is known of the error.
     fn for_an_end(&self, work: u64) -> Vec<Anew> {
         let (begun, _) = self.stepping.first();
-        let known = Some(self.stepping.model().schedule());
-        let asked = Parts::new(self.scene, self.scene.numerics(), None, known, self.store).ok();
+        let asked = Parts::new(self.scene, self.scene.numerics(), None, Some(&self.known), self.store).ok();
         let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
         let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
         let counted = Attempt { refinements: REFINEMENTS + 1, work, ..Attempt::default() };

@@ -19,7 +19,7 @@ pub(super) const LAST_RESORT: u64 = REFINEMENTS + 2;
 /// Substeps of a period that is sampled in that attempt, and the springs that it tries one after the other until there is an end: in gross slip, and elsewhere,
 /// where a mesh from near the axis needs more.
 const COARSE_SUBSTEPS: usize = 48;
-pub(super) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96]];
+pub(super) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96, 60, 16]];
 
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
 const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];

@@ -1,6 +1,6 @@
 //! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 
 use super::budget::{
     self, FEWEST_CUBICS, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up, springs_to_stick_again,
@@ -20,10 +20,9 @@ use crate::solver::model::{
 use crate::solver::simulation::{Flow, HandOver, Observer, Outcome, Plan, Progress, Simulation};
 use crate::solver::stepper::{self, CycleJump, EveryCycle, GrossSdirk, Stepper};
 
-/// Springs, and fewer where those come to no end, and tolerance of the run that tells how far a contact in gross slip comes to reach, most steps that it may try,
-/// most work of all that resolve periods, over which others may take so many times as much, and what is added to that radius.
-const COARSE: ([usize; 2], f64) = ([12, FEWEST_SPRINGS], 1e-3);
-const MOST_COARSE_CUBICS: usize = 60;
+/// Springs, and others where those come to no end, of polynomials and of cubics, and tolerance of the run that tells how far a contact in gross slip comes to reach,
+/// most steps that it may try, most work of all that resolve periods, over which others may take so many times as much, and what is added to that radius.
+const COARSE: ([usize; 2], [usize; 2], f64) = ([12, FEWEST_SPRINGS], [FEWEST_CUBICS, 60], 1e-3);
 const MOST_TRIED: u64 = 8000;
 const MOST_WORK: f64 = 5e8;
 const OF_STEPS_ALONE: f64 = 8.0;
@@ -54,21 +53,29 @@ impl Parts {
     /// # Arguments
     /// * `numerics` -- those of the scene, or coarser ones
     /// * `wanted` -- springs where none are given by hand, instead of those for the accuracy
-    /// * `known` -- the schedule, where a run of the scene with the same substeps has made it
+    /// * `known` -- what another attempt at the run with the same substeps has found
     pub(super) fn new(
         scene: &Scene,
         numerics: &Numerics,
         wanted: Option<usize>,
-        known: Option<&Schedule>,
+        known: Option<&Known>,
         store: &OperatorStore,
     ) -> Result<Self> {
-        let mut parts = Self::on_any(scene, numerics, wanted, known, None, store)?;
+        let schedule = known.map(|it| &it.schedule);
+        let mut parts = Self::on_any(scene, numerics, wanted, schedule, None, store)?;
         check_sliding(&parts.model)?;
         parts.limit = limit(&parts.model)?;
         if parts.model.gross().is_some() {
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
-            let Reach { radius, sticks_again, worn } = Reach::of(&parts)?;
+            let Reach { radius, sticks_again, worn } = match known.and_then(|it| it.reach.get()) {
+                Some(reach) => *reach,
+                None => {
+                    let reach = Reach::of(&parts)?;
+                    known.inspect(|it| _ = it.reach.set(reach));
+                    reach
+                }
+            };
             // Errors of the compressions are relative to all of them, those of a short run to what it wears.
             if numerics.tolerance.is_none() && numerics.stepper == StepperChoice::Implicit && worn < SHORT {
                 parts.tolerance = (parts.tolerance * worn / SHORT).max(ROUND_OFF);
@@ -157,6 +164,7 @@ impl Parts {
     /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that is in gross slip, and without its limit.
     ///
     /// # Arguments
+    /// * `known` -- the schedule, where a run of the scene with the same substeps has made it
     /// * `averages` -- whether steps see the mean cycle of a pass, where that is decided
     pub(super) fn on_any(
         scene: &Scene,
@@ -224,7 +232,20 @@ fn limit(model: &Model) -> Result<Option<LimitingShape>> {
     if unlimited { Ok(None) } else { LimitingShape::under(model.contact(), conditions) }
 }
 
-/// Where gross slip leads to.
+/// What is the same in all attempts at a run with the same substeps.
+pub(super) struct Known {
+    schedule: Schedule,
+    reach: OnceCell<Reach>,
+}
+
+impl Known {
+    pub(super) fn of(model: &Model) -> Self {
+        Self { schedule: model.schedule().clone(), reach: OnceCell::new() }
+    }
+}
+
+/// Where gross slip leads to, whatever the springs of the run.
+#[derive(Clone, Copy)]
 struct Reach {
     /// Contact radius, m.
     radius: f64,
@@ -238,7 +259,7 @@ impl Reach {
     /// By a coarse run. Where that comes to no end after springs stick again, one in which they do not reaches farther; where none comes to an end, the
     /// radius is that which bounds it at an indentation that is held, beyond which the unworn profile is as high.
     fn of(parts: &Parts) -> Result<Self> {
-        let (springs, tolerance) = COARSE;
+        let (polynomials, cubics, tolerance) = COARSE;
         let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
         // At an indentation that is held another radius serves as well.
         let bounded = schedule.resolves() || !parts.model.wears_without_end();
@@ -263,12 +284,9 @@ impl Reach {
                 worn: depths.fold(0.0, f64::max) / contact.indentation(),
             }))
         };
-        let [first, fewer] = match Gross::is_smooth(contact, schedule) {
-            true => springs,
-            false => [parts.model.springs().min(MOST_COARSE_CUBICS), FEWEST_CUBICS],
-        };
+        let [first, then] = if Gross::is_smooth(contact, schedule) { polynomials } else { cubics };
         let (mut why, mut too_slow) = (None, None);
-        for (springs, follow) in [(first, true), (fewer, true), (first, false)] {
+        for (springs, follow) in [(first, true), (then, true), (first, false)] {
             if !follow && !sticks_again.get() {
                 break;
             }

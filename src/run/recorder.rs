@@ -157,8 +157,13 @@ impl Recorder {
 
     /// Whether the file is written where the run ends.
     pub(super) fn saves(&self, complete: bool, failed: bool) -> bool {
-        let long = self.wall_seconds_before + self.started.elapsed().as_secs_f64() > Self::WORTH_KEEPING;
+        let long = self.wall_seconds() > Self::WORTH_KEEPING;
         self.saves_result || (!complete && !failed && long)
+    }
+
+    /// Time that all attempts took so far, s, before an interruption too.
+    pub(super) fn wall_seconds(&self) -> f64 {
+        self.wall_seconds_before + self.started.elapsed().as_secs_f64()
     }
 
     /// Runs a simulation, and its coarser companions beside it where the program chose the springs. Until they have come to their ends, checkpoints tell that
@@ -211,14 +216,15 @@ impl Recorder {
     }
 
     /// By coarser runs where the program chose the springs, else by the balance of the worn volume, as before the first snapshot that a companion
-    /// on a smooth mesh saw.
+    /// on a smooth mesh saw. Where neither tells and an accuracy was asked for, nothing is known.
     fn error_estimate(&self, simulation: &Simulation) -> Option<f64> {
         let Some(companions) = &self.companions else { return balance_error(simulation) };
         if self.attempt.is_last_resort() {
             return Some(budget::UNKNOWN);
         }
         let balance = || if companions.is_smooth() { balance_error(simulation) } else { None };
-        self.shares(simulation).map(|shares| shares.error()).or_else(balance)
+        let found = self.shares(simulation).map(|shares| shares.error()).or_else(balance);
+        found.or(self.accuracy.map(|_| budget::UNKNOWN))
     }
 
     /// What the companions tell of the error; as [`Companions::shares`].
@@ -230,7 +236,7 @@ impl Recorder {
         Checkpoint {
             state: simulation.state().clone(),
             progress: *simulation.progress(),
-            wall_seconds: self.wall_seconds_before + self.started.elapsed().as_secs_f64(),
+            wall_seconds: self.wall_seconds(),
             error_estimate: self.error_estimate(simulation),
             accuracy: self.accuracy,
             attempt: self.attempt,

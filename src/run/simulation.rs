@@ -3,6 +3,8 @@
 use super::anew::{Attempts, End};
 use super::cost::{self, Expected};
 use super::limit::header;
+use super::onlookers::{Onlookers, Watcher};
+use super::parts::Known;
 use super::ready::Ready;
 use super::recorder::{Recorder, snapshot};
 use super::{Results, Shared, Stop};
@@ -10,7 +12,7 @@ use crate::contact::closed_form::LimitingShape;
 use crate::data::{Attempt, Checkpoint, LimitDistance, RunHeader, RunWriter, Snapshot, StopReason};
 use crate::error::Result;
 use crate::scene::{Scene, Stepper};
-use crate::solver::simulation::{self as stepping, Flow, Observer};
+use crate::solver::simulation::{self as stepping, Observer};
 
 /// A scene that is ready to be simulated, with whoever looks on.
 ///
@@ -42,9 +44,6 @@ pub struct Simulation<'a> {
     pub(super) attempt: Attempt,
     pub(super) watchers: Vec<Watcher<'a>>,
 }
-
-/// Called at each snapshot.
-type Watcher<'a> = Box<dyn FnMut(&Snapshot) + 'a>;
 
 impl Scene {
     /// Simulates the scene from its first cycle to its end, in memory.
@@ -169,8 +168,15 @@ impl<'a> Simulation<'a> {
         recorder.saves_result = saves_result;
         recorder.attempt = attempt;
         let mut onlookers = Onlookers { watchers, observer };
-        let attempts =
-            Attempts { scene: &scene, store: &shared.operators, recorder: &mut recorder, stepping, limit };
+        let attempts = Attempts {
+            scene: &scene,
+            store: &shared.operators,
+            recorder: &mut recorder,
+            known: Known::of(stepping.model()),
+            stepping,
+            limit,
+            ended: None,
+        };
         let End { stepping, limit, outcome, checkpoint } = attempts.run(&mut onlookers);
         let stop_reason = outcome.as_ref().map_or(StopReason::Interrupted, |outcome| (*outcome).into());
         let complete = stop_reason != StopReason::Interrupted;
@@ -200,24 +206,4 @@ fn results(
     let (header, snapshots) = writer.into_parts();
     let distance = header.limit.as_ref().map(|limit| LimitDistance::new(limit, &last));
     Results { header, snapshots, checkpoint, stop_reason, last, limit, distance, indenter }
-}
-
-/// Whoever looks on besides the recorder.
-struct Onlookers<'a, 'b> {
-    watchers: Vec<Watcher<'a>>,
-    observer: Option<&'b mut dyn Observer>,
-}
-
-impl Observer for Onlookers<'_, '_> {
-    fn output(&mut self, simulation: &stepping::Simulation) -> Result<()> {
-        if !self.watchers.is_empty() {
-            let shown = snapshot(simulation);
-            self.watchers.iter_mut().for_each(|watcher| watcher(&shown));
-        }
-        self.observer.as_mut().map_or(Ok(()), |observer| observer.output(simulation))
-    }
-
-    fn step(&mut self, simulation: &stepping::Simulation) -> Result<Flow> {
-        self.observer.as_mut().map_or(Ok(Flow::Continue), |observer| observer.step(simulation))
-    }
 }

@@ -27,14 +27,17 @@ const SHRINKS: f64 = 1e-2;
 
 impl Simulation {
     /// Whether a contact in gross slip has not become smaller. The equations on a mesh have another solution, in which the edge recedes and pressure in front of it
-    /// grows, and implicit steps that are too long to resolve how it grows may come to it. Below `k = 0`, where the first contact is none of the polynomials, the edge settles by some
-    /// 1e-6 in a first step of any length, and is not looked at.
+    /// grows, and implicit steps that are too long to resolve how it grows may come to it. Below `k = 0`, where the first contact and one that is handed over are none of the polynomials,
+    /// the edge settles by 1e-6 to 1e-4, and is not looked at.
     pub(super) fn has_not_shrunk(&self, gross: &Gross, state: &State) -> bool {
+        let now = &self.state;
         let settles = self.model.contact().half_space().grading() < 0.0;
         // Where little presses any more, errors of the compressions move the edge the farther.
         let error = self.tolerance * self.model.gross_error_scale(gross, &state.compression);
-        let loss = 1.0 - state.slip_area / self.state.slip_area;
-        settles || loss * largest_magnitude(&state.compression) <= SHRINKS * error
+        let most = SHRINKS * error / largest_magnitude(&state.compression);
+        let keeps = |area: f64| 1.0 - state.slip_area / area <= most;
+        // Where a first contact is none of them either, as at a sharp tip, a first step of any length brings it to where they have its edge.
+        settles || keeps(now.slip_area) || self.model.gross_area(gross, &now.compression).is_ok_and(keeps)
     }
 
     /// Whether compressions fall to zero at the contact edge. Where the ground wears there as well, the equations have another root: the edge stays or recedes, and

@@ -165,13 +165,14 @@ impl Model {
         places.dedup();
         let sign = if new > old { 1.0 } else { -1.0 };
         let raised: Vec<f64> = places.iter().map(|place| ground.raised(*place)).collect();
+        let stations: Vec<f64> = moving.stations().collect();
+        let mut uniform = vec![0.0; stations.len()];
         for (ends, heights) in places.windows(2).zip(raised.windows(2)) {
             let middle = 0.5 * (ends[0] + ends[1]);
             let rise = sign * (heights[1] - heights[0]);
             if rise != 0.0 {
-                for (value, squared) in left_behind.iter_mut().zip(moving.stations()) {
-                    *value -= rise * self.annulus().unworn.uniform_at_stick(middle, squared - middle);
-                }
+                self.annulus().unworn.fill_uniform_at_stick(middle, |i| stations[i] - middle, &mut uniform);
+                left_behind.iter_mut().zip(&uniform).for_each(|(value, uniform)| *value -= rise * uniform);
             }
             let borne = ground.compression(middle) * middle.powf(0.5 * (exponent - 2.0));
             load += sign * 0.5 * (ends[1] - ends[0]) * borne;

@@ -187,9 +187,12 @@ impl StickStage<'_> {
         let (area, q) = (at.stick_area, trial.stick_zone.slip_compression);
         let (mut left_behind, mut wear_depth) = (vec![], vec![]);
         if self.moving.leaves_ground() {
-            let uniform = |squared: f64| model.annulus().unworn.uniform_at_stick(area, squared - area);
-            let kept = |squared| -per_step * (passed.risen - passed.unworn_rise) * uniform(squared);
-            left_behind = self.moving.stations().map(kept).collect();
+            let stations: Vec<f64> = self.moving.stations().collect();
+            left_behind = vec![0.0; stations.len()];
+            let unworn = &model.annulus().unworn;
+            unworn.fill_uniform_at_stick(area, |i| stations[i] - area, &mut left_behind);
+            let risen = -per_step * (passed.risen - passed.unworn_rise);
+            left_behind.iter_mut().for_each(|value| *value *= risen);
             let growth = trial.cycle.growth.iter().zip(&trial.fields.log_slip);
             let worn: Vec<f64> = growth.map(|(growth, log_slip)| growth * log_slip.exp()).collect();
             let depth = |offset: &f64| {
