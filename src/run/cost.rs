@@ -50,9 +50,10 @@ const LEAST_PART: f64 = 0.05;
 /// Work of an attempt that is left: to begin it, over [`MOST_WORK`], and over that of its companion.
 const OF_LEFT: [f64; 2] = [0.05, 2.5];
 
-/// Least parts of [`MOST_WORK`] that the last resort may take and each that follows on other springs, and the part of [`MOST_WORK_OF_ALL`] beyond which it is what follows on
+/// Largest part of [`MOST_WORK`] that the last resort may take, the least ones of it and of each that follows on other springs, and the part of [`MOST_WORK_OF_ALL`] beyond which it is what follows on
 /// an attempt that takes too long.
-const OF_LAST_RESORT: [f64; 2] = [0.3, 0.08];
+const MOST_OF_LAST_RESORT: f64 = 0.82;
+const OF_LAST_RESORT: [f64; 2] = [0.25, 0.08];
 const NEARLY_ALL: f64 = 0.4;
 
 /// Springs of a run that takes too long when it is made anew over those before, and fewest with which it is.
@@ -164,7 +165,7 @@ pub(super) fn work_of_left(companion: u64) -> u64 {
 /// # Arguments
 /// * `follows` -- whether another on other springs has found no end
 pub(super) fn work_of_last_resort(work: u64, follows: bool) -> f64 {
-    let left = (MOST_WORK_OF_ALL - work as f64).min(MOST_WORK_OF_LAST);
+    let left = (MOST_WORK_OF_ALL - work as f64).min(MOST_OF_LAST_RESORT * MOST_WORK);
     left.max(OF_LAST_RESORT[usize::from(follows)] * MOST_WORK)
 }
 

@@ -25,6 +25,5 @@ fn limit_curves(model: &Model, limit: &LimitingShape) -> LimitCurves {
 
 /// Profile, m, with a depth worn away at the radii of the output.
 pub(super) fn worn_profile(model: &Model, wear_depth: &[f64]) -> Vec<f64> {
-    let indenter = model.contact().indenter();
-    model.radii().iter().zip(wear_depth).map(|(r, depth)| indenter.profile(*r) + depth).collect()
+    model.unworn_heights().iter().zip(wear_depth).map(|(height, depth)| height + depth).collect()
 }

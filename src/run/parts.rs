@@ -25,7 +25,7 @@ use crate::solver::stepper::{self, CycleJump, EveryCycle, GrossSdirk, Stepper};
 const COARSE: ([usize; 2], [usize; 2], f64) = ([12, FEWEST_SPRINGS], [FEWEST_CUBICS, 60], 1e-3);
 const MOST_TRIED: u64 = 8000;
 const MOST_WORK: f64 = 5e8;
-const OF_STEPS_ALONE: f64 = 8.0;
+const OF_STEPS_ALONE: f64 = 6.0;
 const MARGIN: f64 = 1.02;
 
 /// Depth worn in a run, over the indentation, below which it is short.

@@ -1,6 +1,7 @@
 //! What is reported of a contact: integrals over it, and its fields at fixed radii.
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use super::{CycleFields, Fields, HIDDEN, Model, State, StickEdge};
 use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
@@ -40,14 +41,21 @@ impl Model {
     /// The same contact on the same springs, with the radii of the output at `r² - c²`, m², increasing, instead of its own.
     pub(crate) fn shown_at(mut self, offsets: Vec<f64>) -> Self {
         if self.gross().is_some() {
-            self.output = OutputRadii { unworn: vec![], offsets };
+            self.output = OutputRadii { offsets, ..OutputRadii::default() };
             return self;
         }
         self.output = OutputRadii {
             unworn: offsets.iter().map(|offset| self.annulus().unworn.at(*offset)).collect(),
             offsets,
+            ..OutputRadii::default()
         };
         self
+    }
+
+    /// Height of the unworn profile at [`Model::radii`], m.
+    pub fn unworn_heights(&self) -> &[f64] {
+        let height = |r: f64| self.contact.indenter().profile(r);
+        self.output.heights.get_or_init(|| self.radii().into_iter().map(height).collect())
     }
 
     /// Worn volume `2π ∫ w r dr`, m³ [S, Eq. (4)].
@@ -376,6 +384,8 @@ pub(super) struct OutputRadii {
     offsets: Vec<f64>,
     /// The unworn slip there.
     unworn: Vec<UnwornValues>,
+    /// Heights of the unworn profile there, m, once they have been asked for.
+    heights: OnceLock<Vec<f64>>,
 }
 
 impl OutputRadii {
@@ -394,7 +404,8 @@ impl OutputRadii {
             springs.iter().skip(skipped).step_by(every).copied().collect()
         };
         let offsets: Vec<f64> = fractions.iter().map(|x| unworn.limit_slip_area() * x).collect();
-        Self { unworn: offsets.iter().map(|offset| unworn.at(*offset)).collect(), offsets }
+        let unworn = offsets.iter().map(|offset| unworn.at(*offset)).collect();
+        Self { unworn, offsets, heights: OnceLock::new() }
     }
 
     /// `r² - c²`, m², and the unworn slip there.
