@@ -251,6 +251,20 @@ fn gross_slip_of_a_medium_that_is_stiff_at_its_top_alone_is_on_an_even_number_of
     }
 }
 
+/// Near full sliding on a medium that is stiff at its top alone it is the springs, not the amplitude, by which nothing wears.
+#[test]
+fn springs_that_do_not_carry_the_first_pressure_of_gross_slip_are_named() {
+    let text = "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = -0.998\nnormal_stiffness = 2e8\nstiffness_ratio = 0.7\n\
+                [friction.coulomb]\ncoefficient = 0.5\n[friction.history]\nfinal_factor = 0.5\ntau = 1.0\n[wear.archard]\ncoefficient = 1.667e-13\n\
+                [loading]\nindentation = 1e-6\namplitude_ratio = 0.9\ntau = 2.0\n[numerics]\nsprings = 20\n";
+    let refused = text.parse::<Scene>().unwrap().simulate().unwrap_err().to_string();
+    assert!(refused.contains("numerics.springs: 20 springs over the whole contact"), "{refused}");
+    assert!(
+        refused.contains("half_space.grading = -0.998") && refused.contains("within 1e-301 of"),
+        "{refused}"
+    );
+}
+
 /// Tips sharper than `√r` are none of the polynomials, and the first step moves the contact edge by as much: steps of every length were rejected. Friction falls within a cycle, so that
 /// the volume is that of the energy.
 #[test]

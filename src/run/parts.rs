@@ -68,13 +68,9 @@ impl Parts {
         if parts.model.gross().is_some() {
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
-            let Reach { radius, sticks_again, worn } = match known.and_then(|it| it.reach.get()) {
-                Some(reach) => *reach,
-                None => {
-                    let reach = Reach::of(&parts)?;
-                    known.inspect(|it| _ = it.reach.set(reach));
-                    reach
-                }
+            let Reach { radius, sticks_again, worn } = match known {
+                Some(known) => known.reach(&parts)?,
+                None => Reach::of(&parts)?,
             };
             // Errors of the compressions are relative to all of them, those of a short run to what it wears.
             if numerics.tolerance.is_none() && numerics.stepper == StepperChoice::Implicit && worn < SHORT {
@@ -241,6 +237,16 @@ pub(super) struct Known {
 impl Known {
     pub(super) fn of(model: &Model) -> Self {
         Self { schedule: model.schedule().clone(), reach: OnceCell::new() }
+    }
+
+    /// # Errors
+    /// Those of [`Reach::of`].
+    fn reach(&self, parts: &Parts) -> Result<Reach> {
+        if let Some(reach) = self.reach.get() {
+            return Ok(*reach);
+        }
+        let reach = Reach::of(parts)?;
+        Ok(*self.reach.get_or_init(|| reach))
     }
 }
 

@@ -40,15 +40,11 @@ pub struct RadialFields {
 impl Model {
     /// The same contact on the same springs, with the radii of the output at `r² - c²`, m², increasing, instead of its own.
     pub(crate) fn shown_at(mut self, offsets: Vec<f64>) -> Self {
-        if self.gross().is_some() {
-            self.output = OutputRadii { offsets, ..OutputRadii::default() };
-            return self;
-        }
-        self.output = OutputRadii {
-            unworn: offsets.iter().map(|offset| self.annulus().unworn.at(*offset)).collect(),
-            offsets,
-            ..OutputRadii::default()
+        let unworn = match self.gross() {
+            Some(_) => vec![],
+            None => offsets.iter().map(|offset| self.annulus().unworn.at(*offset)).collect(),
         };
+        self.output = OutputRadii { unworn, offsets, heights: OnceLock::new() };
         self
     }
 

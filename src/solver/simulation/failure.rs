@@ -23,16 +23,15 @@ const OF_STEPS: f64 = 0.3;
 /// What most meshes of gross slip do not resolve in a medium that is stiff at its top alone: the pressure, `(a² - r²)^ν` at the contact edge, falls to nothing in a layer as thin as `2^(-1/ν)` of it.
 fn thin_layer(model: &Model) -> String {
     let grading = model.contact().half_space().grading();
-    let width = 0.5 * (-2.0 / (1.0 + grading)).exp2();
-    // Of numbers that may be too small for one.
-    let magnitude = ((-1.0 - 2.0 / (1.0 + grading)) * 2.0_f64.log10()).round();
+    // Of a number that may be too small for one.
+    let magnitude = (-1.0 - 2.0 / (1.0 + grading)) * 2.0_f64.log10();
     // Of which the layer is as thin as that.
     let widest = -1.0 - 2.0 / (2.0 * THIN).log2();
-    if model.gross().is_none() || width > THIN {
+    if model.gross().is_none() || magnitude > THIN.log10() {
         return String::new();
     }
     format!(
-        " (half_space.grading = {grading}: the pressure at the contact edge falls to half within 1e{magnitude} of the contact radius, where only few meshes lead on; \
+        " (half_space.grading = {grading}: the pressure at the contact edge falls to half within 1e{magnitude:.0} of the contact radius, where only few meshes lead on; \
          {widest:.2} leaves a layer of {THIN:.0e})"
     )
 }
@@ -57,20 +56,23 @@ pub(super) fn nothing_wears(model: &Model, finite: bool) -> Error {
         return Error::Inconsistent { what: "numerics.springs", why };
     }
     let by_law = model.schedule().conditions().wear.keeps_from_wearing(contact.mean_pressure());
-    let (what, why) = by_law.unwrap_or_else(|| {
-        if model.gross().is_some() {
+    let (what, why) = match by_law {
+        Some(by_law) => by_law,
+        None if model.gross().is_some() => {
             let (springs, layer) = (model.springs(), thin_layer(model));
             let why = format!(
                 "{springs} springs over the whole contact do not carry its first pressure, and by them nothing wears in the first cycles{layer}; ask for others"
             );
-            return ("numerics.springs", why);
+            ("numerics.springs", why)
         }
-        let why = format!(
-            "at an amplitude of {:e} m nothing wears in the first cycles; ask for a larger one",
-            contact.amplitude()
-        );
-        ("loading.amplitude", why)
-    });
+        None => {
+            let why = format!(
+                "at an amplitude of {:e} m nothing wears in the first cycles; ask for a larger one",
+                contact.amplitude()
+            );
+            ("loading.amplitude", why)
+        }
+    };
     Error::Inconsistent { what, why }
 }
 
