@@ -65,7 +65,7 @@ fn the_area_of_a_loop_is_the_energy_of_a_cycle_at_every_wear() {
             let energy = model.dissipation(&fields, &state.compression);
             let area = |half: usize| {
                 let u = displacements(&model, half);
-                let force = model.fretting_loop(&fields, &state.compression, &u);
+                let force = model.fretting_loop(&fields, &state.compression, &u[..=half]);
                 assert!(
                     (force[half] + force[0]).abs() < 1e-12 * force[0]
                         && (force[2 * half] - force[0]).abs() < 1e-12 * force[0]

@@ -194,6 +194,32 @@ fn snapshots_are_kept_where_asked_for() {
 }
 
 #[test]
+fn a_row_is_the_same_whether_its_snapshots_are_kept_or_not() {
+    // At an accuracy and on springs by hand; the last scene of each is in gross slip, and one of the others moves its edge of stick.
+    let chosen = BASE.replace("springs = 16", "accuracy = 1e-2").replace("tolerance = 1e-2", "");
+    for base in [BASE, &chosen] {
+        let control =
+            "[[axes]]\nkey = \"loading.tangential_control\"\nvalues = [\"displacement\", \"force\"]\n";
+        let amplitude = "[[axes]]\nkey = \"loading.amplitude\"\nvalues = [1e-7, 2e-7, 2e-6]\n";
+        let base = base.replace("stick_ratio = 0.7", "amplitude = 1e-7");
+        let study = format!("scene = \"base.toml\"\n{control}{amplitude}");
+        let places = ["", "[output]\nsnapshots = [0, 1, 2, 3, 4, 5]\n"].map(|kept| {
+            let place = Place::with_base(&base, &format!("{study}{kept}"));
+            place.sweep("out", &SweepOptions::default());
+            place.merged("out")
+        });
+        let [light, kept] = &places;
+        assert_eq!(
+            (light.runs.len(), kept.runs.len()),
+            (0, texts(kept, "status").iter().filter(|it| **it == "done").count())
+        );
+        assert!(bits(light) == bits(kept), "{:?} {:?}", bits(light), bits(kept));
+        let regimes = texts(light, "regime");
+        assert!(regimes.contains(&"partial-slip") && regimes.contains(&"full-sliding"), "{regimes:?}");
+    }
+}
+
+#[test]
 fn info_lists_the_columns_of_a_shard() {
     let place = Place::new(&format!("title = \"Some\"\n{}[output]\nsnapshots = [1]\n", study(4)));
     place.sweep("out", &SweepOptions::default());

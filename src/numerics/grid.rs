@@ -1,5 +1,6 @@
 //! Meshes of the slip annulus.
 
+use std::iter;
 use std::ops::Range;
 
 /// Most nodes of a local polynomial on a [`Mesh`].
@@ -23,7 +24,10 @@ const CUT_AT_STICK: f64 = 5e-9;
 const CUT_AT_CONTACT: f64 = 6e-5;
 
 /// Correction of a place, over its distance from the end of the mesh, that is the last one: Halley's method leaves its cube.
-const LAST: f64 = 1e-6;
+const LAST: f64 = 1e-5;
+
+/// Least value of the cubic in a cell, over its argument, with which that begins.
+const LEAST_OF_CUBIC: f64 = 0.01;
 
 /// How nodes cluster at the two ends of the slip annulus, and the degree of the polynomials between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,12 +126,17 @@ pub struct Mesh {
     /// `g` from either end as polynomials in the distance of `t` from it.
     rising: Polynomial,
     falling: Polynomial,
-    /// `dg/dt` over `t^a (1-t)^b`.
-    steepness: f64,
     ends: Vec<MeshPoint>,
     nodes: Vec<f64>,
-    /// `g`, `1 - g` and `dg/dy` at the nodes.
-    unstretched: Vec<[f64; 3]>,
+    /// [`Root`]s of the nodes up to the middle, from either end.
+    roots: [Vec<Root>; 2],
+}
+
+/// `v = g^(1/m)` of a node, with `m` the lowest power of `g` from the end of the mesh, and `dy/dv`: `y` is smooth in `v` up to that end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Root {
+    value: f64,
+    slope: f64,
 }
 
 /// A place on a [`Mesh`].
@@ -168,8 +177,7 @@ impl Mesh {
         let cut = clustering.cut(cells);
         let [rising, falling] =
             [Polynomial::incomplete_beta(low, high), Polynomial::incomplete_beta(high, low)];
-        let steepness = rising.coefficients[0] * f64::from(low + 1);
-        let whole = if cut == [0.0; 2] { 1.0 } else { rising.value(1.0 - cut[1]) - rising.value(cut[0]) };
+        let whole = if cut == [0.0; 2] { 1.0 } else { rising.at(1.0 - cut[1]).0 - rising.at(cut[0]).0 };
         let mut mesh = Self {
             clustering,
             stretch,
@@ -177,19 +185,18 @@ impl Mesh {
             fallen: (-stretch).exp_m1(),
             rising: rising.from(cut[0]).over(whole),
             falling: falling.from(cut[1]).over(whole),
-            steepness: steepness / whole,
             cut,
             ends: Vec::new(),
             nodes: vec![0.0; cells + 1],
-            unstretched: vec![],
+            roots: [vec![], vec![]],
         };
         mesh.ends = (0..=cells).map(|i| mesh.at(i as f64)).collect();
         mesh.nodes = mesh.ends.iter().map(|end| end.value).collect();
-        let unstretched = |i: usize| {
-            let (part, rest, slope) = mesh.without_stretch(i as f64);
-            [part, rest, slope]
-        };
-        mesh.unstretched = (0..=cells).map(unstretched).collect();
+        let middle = cells / 2;
+        mesh.roots = [
+            (0..=middle).map(|i| mesh.root(i, true)).collect(),
+            (0..=cells - middle).map(|i| mesh.root(cells - i, false)).collect(),
+        ];
         mesh
     }
 
@@ -236,20 +243,15 @@ impl Mesh {
     /// `g(y/n)`, `1 - g(y/n)` and `dg/dy`.
     fn without_stretch(&self, y: f64) -> (f64, f64, f64) {
         let cells = self.cells() as f64;
-        let (low, high) = self.clustering.exponents();
         let [at_stick, at_contact] = self.cut;
-        let span = 1.0 - at_stick - at_contact;
-        let (x, left) = (span * (y / cells), span * ((cells - y) / cells));
-        let (part, rest) = if y < 0.5 * cells {
-            let part = self.rising.value(x);
-            (part, 1.0 - part)
+        let span = (1.0 - at_stick - at_contact) / cells;
+        if y < 0.5 * cells {
+            let (part, slope) = self.rising.at(span * y);
+            (part, 1.0 - part, slope * span)
         } else {
-            let rest = self.falling.value(left);
-            (1.0 - rest, rest)
-        };
-        let steepness =
-            self.steepness * small_power(at_stick + x, low) * small_power(at_contact + left, high);
-        (part, rest, steepness * span / cells)
+            let (rest, slope) = self.falling.at(span * (cells - y));
+            (1.0 - rest, rest, slope * span)
+        }
     }
 
     /// The cell in which `ξ` in [0, 1) lies.
@@ -261,7 +263,6 @@ impl Mesh {
     pub fn place(&self, fraction: f64) -> f64 {
         let (cells, cell) = (self.cells() as f64, self.cell(fraction));
         let near_stick = cell < self.cells() / 2;
-        let [begin, end] = [cell, cell + 1].map(|node| self.unstretched[node][usize::from(!near_stick)]);
         let wanted = match (self.stretch < NO_STRETCH, near_stick) {
             (true, true) => fraction,
             (true, false) => 1.0 - fraction,
@@ -269,11 +270,8 @@ impl Mesh {
             (false, false) => -((1.0 - fraction) * self.fallen).ln_1p() / self.stretch,
         };
         let (mut low, mut high) = (cell as f64, cell as f64 + 1.0);
-        let part = (wanted - begin) / (end - begin);
-        if part <= 0.0 {
-            return low;
-        }
-        let mut y = low + self.within_cell(cell, part, (end - begin).abs()).clamp(0.01, 0.99);
+        let Some(part) = self.within_cell(cell, near_stick, wanted) else { return low };
+        let mut y = low + part;
         for _ in 0..60 {
             let (part, rest, slope) = self.without_stretch(y);
             let off = if near_stick { part - wanted } else { wanted - rest };
@@ -297,15 +295,47 @@ impl Mesh {
         y
     }
 
-    /// About where in a cell `g` has grown by a part of what it grows by over it: by the cubic with the slopes at its ends, and a straight line in
-    /// the cells at the ends of the mesh, where a slope is zero.
-    fn within_cell(&self, cell: usize, part: f64, growth: f64) -> f64 {
-        let [first, last] = [cell, cell + 1].map(|node| growth / self.unstretched[node][2]);
-        if !(first.is_finite() && last.is_finite()) {
-            return part;
-        }
+    /// About where in a cell `g` from the nearer end is `wanted`: by the cubic in its [`Root`] with the slopes at the ends of the cell. None if that is
+    /// not past the first of them.
+    fn within_cell(&self, cell: usize, near_stick: bool, wanted: f64) -> Option<f64> {
+        let [from_stick, from_contact] = &self.roots;
+        let [begin, end] = match near_stick {
+            true => [from_stick[cell], from_stick[cell + 1]],
+            false => [from_contact[self.cells() - cell], from_contact[self.cells() - cell - 1]],
+        };
+        let growth = end.value - begin.value;
+        let part = (root(wanted, self.lowest_power(near_stick)) - begin.value) / growth;
         let left = 1.0 - part;
-        part * (part * (3.0 - 2.0 * part) + left * (first * left - last * part))
+        let cubic = part * (3.0 - 2.0 * part) + left * growth * (begin.slope * left - end.slope * part);
+        (part > 0.0).then(|| (part * cubic.max(LEAST_OF_CUBIC)).min(1.0))
+    }
+
+    /// Lowest power of `g` from either end, without what is cut off there.
+    fn lowest_power(&self, near_stick: bool) -> i32 {
+        let (low, high) = self.clustering.exponents();
+        1 + if near_stick { low } else { high }
+    }
+
+    fn root(&self, node: usize, near_stick: bool) -> Root {
+        let (part, rest, slope) = self.without_stretch(node as f64);
+        let (power, grown, slope) = match near_stick {
+            true => (self.lowest_power(true), part, slope),
+            false => (self.lowest_power(false), rest, -slope),
+        };
+        let value = root(grown, power);
+        if value > 0.0 {
+            return Root { value, slope: f64::from(power) * value.powi(power - 1) / slope };
+        }
+        // At the end itself the lowest power is all there is; of a mesh that is cut there `g` is a straight line.
+        let grown = if near_stick { &self.rising } else { &self.falling };
+        let (lowest, coefficient) = grown.lowest();
+        let along = self.cells() as f64 / root(coefficient, power);
+        let slope = match lowest == power {
+            true if near_stick => along,
+            true => -along,
+            false => 0.0,
+        };
+        Root { value, slope }
     }
 
     /// Derivative of `ln(dg/dy)` by `y`.
@@ -407,60 +437,70 @@ pub struct Local {
 impl Local {
     /// Its value there for what is given at the nodes.
     pub fn sum(&self, values: &[f64]) -> f64 {
-        self.weights.iter().zip(self.stencil.clone()).map(|(weight, node)| weight * values[node - 1]).sum()
+        let there = &values[self.stencil.start - 1..self.stencil.end - 1];
+        self.weights.iter().zip(there).map(|(weight, value)| weight * value).sum()
     }
 }
 
-/// `x^n` for a small positive `n`, without a call.
-fn small_power(x: f64, exponent: i32) -> f64 {
-    (1..exponent).fold(x, |product, _| product * x)
+/// `x^(1/n)` for 2, 3 or 4.
+fn root(x: f64, n: i32) -> f64 {
+    match n {
+        2 => x.sqrt(),
+        3 => x.cbrt(),
+        _ => x.sqrt().sqrt(),
+    }
 }
 
-/// A polynomial without its lowest powers.
-#[derive(Debug, Clone, PartialEq)]
-struct Polynomial {
-    /// The lowest power.
-    lowest: i32,
-    /// From that power on.
-    coefficients: Vec<f64>,
-}
+/// Degree of a [`Polynomial`].
+const DEGREE: usize = 6;
+
+/// A polynomial without a constant: the coefficients of `x` to `x^6`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Polynomial([f64; DEGREE]);
 
 impl Polynomial {
-    /// `∫_0^x t^a (1-t)^b dt / B(a+1, b+1)`.
+    /// `∫_0^x t^a (1-t)^b dt / B(a+1, b+1)` for `a + b` up to five.
     fn incomplete_beta(a: i32, b: i32) -> Self {
         let beta = (1..=b).map(|j| f64::from(j) / f64::from(a + j)).product::<f64>() / f64::from(a + b + 1);
+        let mut coefficients = [0.0; DEGREE];
         let mut binomial = 1.0;
-        let coefficient = |j: i32| {
-            let found = binomial / f64::from(a + 1 + j) / beta;
+        for (j, coefficient) in (0..=b).zip(&mut coefficients[a as usize..]) {
+            *coefficient = binomial / f64::from(a + 1 + j) / beta;
             binomial *= -f64::from(b - j) / f64::from(j + 1);
-            found
-        };
-        Self { lowest: a + 1, coefficients: (0..=b).map(coefficient).collect() }
+        }
+        Self(coefficients)
     }
 
-    fn value(&self, x: f64) -> f64 {
-        small_power(x, self.lowest) * self.coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+    /// Value and slope.
+    fn at(&self, x: f64) -> (f64, f64) {
+        // Horner's rule for both.
+        let (sum, slope) =
+            self.0.iter().rev().fold((0.0, 0.0), |(sum, slope), c| (sum * x + c, slope * x + sum));
+        (sum * x, slope * x + sum)
+    }
+
+    /// The lowest power, and its coefficient.
+    fn lowest(&self) -> (i32, f64) {
+        let found = self.0.iter().zip(1..).find(|(c, _)| **c != 0.0);
+        found.map_or((0, 0.0), |(c, power)| (power, *c))
     }
 
     /// What it grows by from `start` on, as a polynomial in the distance.
     fn from(self, start: f64) -> Self {
-        if start == 0.0 {
-            return self;
-        }
-        let mut all = vec![0.0; self.lowest as usize];
-        all.extend(self.coefficients);
-        // Synthetic division again and again (Horner).
-        for first in 0..all.len() {
-            for j in (first..all.len() - 1).rev() {
-                all[j] += start * all[j + 1];
+        let mut all = self.0;
+        if start != 0.0 {
+            // Synthetic division again and again (Horner): the first one ends with the constant, which is left out.
+            for first in iter::once(0).chain(0..DEGREE) {
+                for j in (first..DEGREE - 1).rev() {
+                    all[j] += start * all[j + 1];
+                }
             }
         }
-        Self { lowest: 1, coefficients: all.split_off(1) }
+        Self(all)
     }
 
-    fn over(mut self, divisor: f64) -> Self {
-        self.coefficients.iter_mut().for_each(|c| *c /= divisor);
-        self
+    fn over(self, divisor: f64) -> Self {
+        Self(self.0.map(|c| c / divisor))
     }
 }
 
@@ -483,16 +523,29 @@ pub fn lagrange(nodes: &[f64], x: f64, values: &mut [f64]) {
 
 /// Lagrange polynomials on the nodes `0, 1, ... m - 1` at `x`: as [`lagrange`], with the products of differences formed once.
 fn lagrange_even(m: usize, x: f64) -> [f64; MOST_POINTS] {
+    match m {
+        4 => lagrange_on_first::<4>(x),
+        6 => lagrange_on_first::<6>(x),
+        _ => {
+            let (mut nodes, mut values) = ([0.0; MOST_POINTS], [0.0; MOST_POINTS]);
+            (0..m).for_each(|i| nodes[i] = i as f64);
+            lagrange(&nodes[..m], x, &mut values);
+            values
+        }
+    }
+}
+
+fn lagrange_on_first<const M: usize>(x: f64) -> [f64; MOST_POINTS] {
     let mut values = [0.0; MOST_POINTS];
     let mut before = 1.0;
-    for (a, value) in values.iter_mut().enumerate().take(m) {
+    for (a, value) in values.iter_mut().enumerate().take(M) {
         *value = before;
-        before *= (x - a as f64) / (a + 1) as f64;
+        before *= (x - a as f64) * (1.0 / (a + 1) as f64);
     }
     let mut behind = 1.0;
-    for a in (0..m).rev() {
+    for a in (0..M).rev() {
         values[a] *= behind;
-        behind *= (a as f64 - x) / (m - a) as f64;
+        behind *= (a as f64 - x) * (1.0 / (M - a) as f64);
     }
     values
 }
@@ -560,6 +613,29 @@ mod tests {
                         (back - y).abs() < 1e-9 * 20.0 / point.complement,
                         "{clustering:?}: {y} came back as {back}"
                     );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn places_come_back_up_to_both_ends() {
+        for clustering in ALL {
+            for (cells, stretch) in [(12, 12.0), (33, 0.0), (3000, 25.0)] {
+                let mesh = Mesh::new(cells, stretch, clustering);
+                let n = cells as f64;
+                // Both halves are of one map.
+                let [before, behind] = [0.5 * n * (1.0 - 1e-15), 0.5 * n].map(|y| mesh.without_stretch(y));
+                assert!((before.0 - behind.0).abs() < 1e-14, "{clustering:?}: {before:?}, {behind:?}");
+                assert!((before.2 / behind.2 - 1.0).abs() < 1e-13, "{clustering:?}: {before:?}, {behind:?}");
+                for part in [1e-7, 1e-4, 0.01, 0.3, 0.49, 0.5, 0.51, 0.7, 0.97] {
+                    let (y, at) = (part * n, mesh.at(part * n));
+                    // By so much `y` is known from `ξ`, of which the complement is taken next to the contact edge, and from `g`.
+                    let known_to = if part < 0.5 { at.value } else { 1.0 };
+                    let (grown, _, slope) = mesh.without_stretch(y);
+                    let digits = 4.0 * f64::EPSILON * (known_to / at.slope + grown / slope + n);
+                    let off = (mesh.place(at.value) - y).abs();
+                    assert!(off <= digits + 1e-13 * y, "{clustering:?}, {cells}: {off:e} of {y}, {digits:e}");
                 }
             }
         }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::parts::Parts;
+use super::recorder::Detail;
 use super::{Results, Shared, Simulation, Stop};
 use crate::data::{Checkpoint, LimitDistance, ResultPath, RunFile, RunWriter, scene_hash};
 use crate::error::{Error, Result};
@@ -97,6 +98,13 @@ impl Run {
 
     fn keeping_checkpoints_only(mut self) -> Self {
         self.0.saves_result = false;
+        self
+    }
+
+    /// The run for what it ends with: its results tell of the times before only what the error and the regimes are made of.
+    #[must_use]
+    pub(crate) fn for_its_end(mut self) -> Self {
+        self.0.detail = Detail::ForTheEnd;
         self
     }
 
@@ -210,6 +218,7 @@ impl Run {
             shared: shared.clone(),
             writer: writer(file)?,
             saves_result: true,
+            detail: Detail::Whole,
             wall_seconds_before: wall_seconds,
             attempt,
             watchers: vec![],

@@ -17,20 +17,28 @@ use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::Result;
 use crate::laws::loading::TangentialControl;
 use crate::scene::{Scene, Stepper};
-use crate::solver::model::{CycleFields, FrettingLoop, Gross, OperatorStore};
+use crate::solver::model::{CycleFields, FrettingLoop, Gross, OperatorStore, State};
 use crate::solver::simulation::{Flow, Observer, Outcome, Simulation};
 
 /// Steps along one fretting loop to and fro at constant indentation in the result file, even.
 const LOOP_STEPS: usize = 64;
 
+/// What is recorded at an output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// Everything.
+    Whole,
+    /// What the end of a run is told from: numbers without those of the fretting loop, and the wear depth where companions are compared. The rest is
+    /// not a number, and of the loop there is no point.
+    ForTheEnd,
+}
+
 /// The contact as it is now.
 pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
-    let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
-    let (contact, cycle) = (model.contact(), simulation.cycle_in_block());
-    let cycle = &*cycle;
+    let (model, state) = (simulation.model(), simulation.state());
+    let cycle = &*simulation.cycle_in_block();
     let radial = simulation.radial_fields();
-    let unworn = state.cycles == 0.0;
-    let wear_depth = if unworn { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
+    let wear_depth = if is_unworn(state) { vec![0.0; radial.wear_depth.len()] } else { radial.wear_depth };
     let fretting_loop = fretting_loop(simulation, cycle);
     let tangential_force = fretting_loop.largest_force();
     let share = model.schedule().loading_in_block(state.cycles, state.cycles).share;
@@ -41,17 +49,6 @@ pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
     let [loop_force, force_y] = fretting_loop.force;
     let [loop_displacement_y, loop_force_y] = [displacement_y, force_y].map(along_y);
     Snapshot {
-        cycles: state.cycles,
-        tau: state.cycles * contact.tau_per_cycle(),
-        regime: model.regime(state, cycle),
-        wear_volume: if unworn { 0.0 } else { model.worn_volume(state, fields) },
-        contact_radius: model.contact_radius(state),
-        stick_radius: model.without_core(cycle.stick_radius),
-        permanent_stick_radius: model.without_core(state.least_stick_radius.min(cycle.stick_radius)),
-        indentation: model.indentation(state),
-        normal_force: model.normal_force(fields),
-        dissipated_energy: state.dissipated_energy,
-        cycle_energy: cycle.dissipation,
         tangential_force,
         energy_ratio,
         sliding_ratio,
@@ -63,7 +60,51 @@ pub(super) fn snapshot(simulation: &Simulation) -> Snapshot {
         wear_depth,
         pressure: radial.pressure,
         slip: radial.slip,
+        ..numbers(simulation, cycle)
     }
+}
+
+/// The contact as [`Detail::ForTheEnd`] has it.
+///
+/// # Arguments
+/// * `every` -- one in so many radii is compared
+fn sketch(simulation: &Simulation, every: usize) -> Snapshot {
+    let (model, state) = (simulation.model(), simulation.state());
+    let unknown = vec![f64::NAN; model.offsets().len()];
+    let mut wear_depth = unknown.clone();
+    let compared = model.radial_wear_depth(state, simulation.fields(), every);
+    for (slot, depth) in wear_depth.iter_mut().step_by(every).zip(compared) {
+        *slot = if is_unworn(state) { 0.0 } else { depth };
+    }
+    let [profile, pressure, slip] = [unknown.clone(), unknown.clone(), unknown];
+    let numbers = numbers(simulation, &simulation.cycle_in_block());
+    Snapshot { profile, wear_depth, pressure, slip, ..numbers }
+}
+
+/// The numbers of a contact, without those of its loop.
+fn numbers(simulation: &Simulation, cycle: &CycleFields) -> Snapshot {
+    let (model, state, fields) = (simulation.model(), simulation.state(), simulation.fields());
+    Snapshot {
+        cycles: state.cycles,
+        tau: state.cycles * model.contact().tau_per_cycle(),
+        regime: model.regime(state, cycle),
+        wear_volume: if is_unworn(state) { 0.0 } else { model.worn_volume(state, fields) },
+        contact_radius: model.contact_radius(state),
+        stick_radius: model.without_core(cycle.stick_radius),
+        permanent_stick_radius: model.without_core(state.least_stick_radius.min(cycle.stick_radius)),
+        indentation: model.indentation(state),
+        normal_force: model.normal_force(fields),
+        dissipated_energy: state.dissipated_energy,
+        cycle_energy: cycle.dissipation,
+        tangential_force: f64::NAN,
+        energy_ratio: f64::NAN,
+        sliding_ratio: f64::NAN,
+        ..Snapshot::default()
+    }
+}
+
+fn is_unworn(state: &State) -> bool {
+    state.cycles == 0.0
 }
 
 /// The loop of the cycle that is under way, with as many points as every other of the run.
@@ -90,6 +131,8 @@ pub(super) struct Recorder {
     stop: Arc<AtomicBool>,
     /// Whether the result is written to a file; else only checkpoints are.
     pub(super) saves_result: bool,
+    /// What is recorded at its outputs.
+    pub(super) detail: Detail,
     /// Coarser runs, where the program chose the springs.
     companions: Option<Companions>,
     /// The accuracy asked for, where the program chooses the springs.
@@ -120,6 +163,7 @@ impl Recorder {
             wall_seconds_before,
             stop,
             saves_result: true,
+            detail: Detail::Whole,
             companions: None,
             accuracy: scene.numerics().accuracy_asked(),
             most_work: f64::INFINITY,
@@ -246,7 +290,10 @@ impl Recorder {
 
 impl Observer for Recorder {
     fn output(&mut self, simulation: &Simulation) -> Result<()> {
-        self.writer.push(snapshot(simulation));
+        self.writer.push(match self.detail {
+            Detail::Whole => snapshot(simulation),
+            Detail::ForTheEnd => sketch(simulation, self.companions.as_ref().map_or(1, Companions::every)),
+        });
         Ok(())
     }
 

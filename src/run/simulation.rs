@@ -6,7 +6,7 @@ use super::limit::header;
 use super::onlookers::{Onlookers, Watcher};
 use super::parts::Known;
 use super::ready::Ready;
-use super::recorder::{Recorder, snapshot};
+use super::recorder::{Detail, Recorder, snapshot};
 use super::{Results, Shared, Stop};
 use crate::contact::closed_form::LimitingShape;
 use crate::data::{Attempt, Checkpoint, LimitDistance, RunHeader, RunWriter, Snapshot, StopReason};
@@ -40,6 +40,8 @@ pub struct Simulation<'a> {
     pub(super) writer: RunWriter,
     /// Whether the file of the writer, if there is one, is to hold the result; else only checkpoints are written.
     pub(super) saves_result: bool,
+    /// What is recorded at the outputs.
+    pub(super) detail: Detail,
     pub(super) wall_seconds_before: f64,
     pub(super) attempt: Attempt,
     pub(super) watchers: Vec<Watcher<'a>>,
@@ -95,6 +97,7 @@ impl<'a> Simulation<'a> {
             scene: scene.clone(),
             shared: shared.clone(),
             saves_result: true,
+            detail: Detail::Whole,
             wall_seconds_before: 0.0,
             attempt: Attempt::default(),
             watchers: vec![],
@@ -159,13 +162,14 @@ impl<'a> Simulation<'a> {
             shared,
             writer,
             saves_result,
+            detail,
             wall_seconds_before,
             attempt,
             watchers,
             ..
         } = self;
         let mut recorder = Recorder::new(&scene, writer, wall_seconds_before, &shared);
-        recorder.saves_result = saves_result;
+        (recorder.saves_result, recorder.detail) = (saves_result, detail);
         recorder.attempt = attempt;
         let mut onlookers = Onlookers { watchers, observer };
         let attempts = Attempts {

@@ -298,7 +298,7 @@ impl Simulation {
 
     /// Wear depth at the radii of the output, m, shape `(node,)`.
     pub fn wear_depth(&self) -> Vec<f64> {
-        self.model.radial_wear_depth(&self.state, &self.fields)
+        self.model.radial_wear_depth(&self.state, &self.fields, 1)
     }
 
     /// The plan.

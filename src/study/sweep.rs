@@ -238,12 +238,14 @@ impl<'a> Sweep<'a> {
             Some(run) => run,
             None => Run::one_of_many(&scene, &own, shared)?,
         };
+        let keeps = self.study.snapshots().contain(number);
+        let run = if keeps { run } else { run.for_its_end() };
         let results = run.execute(None)?;
         if !results.is_complete() {
             return Ok(None);
         }
         let columns = readings::RUN.iter().map(|it| (it.of)(&results)).collect();
-        let kept = self.study.snapshots().contain(number).then(|| results.into_file());
+        let kept = keeps.then(|| results.into_file());
         Ok(Some((columns, kept)))
     }
 

@@ -270,6 +270,11 @@ impl Companions {
         (self.first, self.second) = (found.first.ok(), found.second);
     }
 
+    /// One in so many radii of the run is compared.
+    pub(in crate::run) fn every(&self) -> usize {
+        self.every
+    }
+
     /// Whether the order of convergence is known.
     pub(in crate::run) fn is_smooth(&self) -> bool {
         self.smooth

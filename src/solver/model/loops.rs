@@ -103,8 +103,8 @@ impl Model {
             && loading.amplitude == self.contact.amplitude();
         if unchanged && self.slip_per_depth(loading, fields).is_some() {
             let displacement = to_and_fro(self.contact.amplitude(), steps);
-            let mut force = self.fretting_loop(fields, compression, &displacement);
-            force[displacement.len() - 1] = force[0];
+            let mut force = self.fretting_loop(fields, compression, &displacement[..=steps / 2]);
+            force[steps] = force[0];
             let none = vec![0.0; displacement.len()];
             let moved = |displacement: f64| self.tangential_force(fields, compression, displacement);
             let (amplitude, largest) = (displacement[0], force[0]);
@@ -211,7 +211,8 @@ fn width(amplitude: f64, force: impl FnMut(f64) -> f64) -> f64 {
 /// Displacements, m, from the amplitude to its negative and back, denser next to the reversals.
 fn to_and_fro(amplitude: f64, steps: usize) -> Vec<f64> {
     let turn = steps / 2;
-    let way_down = |i: usize| amplitude * (PI * i as f64 / turn as f64).cos();
-    // Exactly the same displacements on the way back.
+    let first_half = |i: usize| amplitude * (PI * i as f64 / turn as f64).cos();
+    let way_down = |i: usize| if i <= turn - i { first_half(i) } else { -first_half(turn - i) };
+    // Exactly the same displacements on the way back, and the negative ones those of the positive.
     (0..=steps).map(|i| way_down(i.min(steps - i))).collect()
 }

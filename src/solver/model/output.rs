@@ -154,21 +154,28 @@ impl Model {
 
     /// Tangential force, N, along one steady fretting loop, at displacements, m, that go from `U` to `-U` and back.
     ///
-    /// After a reversal every spring repeats its first loading at twice the scale (Masing):
+    /// After a reversal every spring repeats its first loading at twice the scale (Masing), and the way back is the way down turned about the origin:
     ///
     /// ```text
-    /// F = F_x(U) - 2 F_x((U - u)/2)  on the way down,     F = 2 F_x((U + u)/2) - F_x(U)  on the way up
+    /// F = F_x(U) - 2 F_x((U - u)/2)  on the way down,     F(u) = -F(-u)  on the way up
     /// ```
+    ///
+    /// # Arguments
+    /// * `fields` -- of the state
+    /// * `compression` -- of the springs, m
+    /// * `displacements` -- on the way down, each with its negative, the largest first; shape `(m,)`
+    ///
+    /// # Returns
+    /// Forces on both ways, shape `(2m - 1,)`; the last is the first.
     pub fn fretting_loop(&self, fields: &Fields, compression: &[f64], displacements: &[f64]) -> Vec<f64> {
         let amplitude = self.contact.amplitude();
         let force = |displacement: f64| self.tangential_force(fields, compression, displacement);
         let largest = force(amplitude);
-        let turn = displacements.len() / 2;
-        let along = |(index, u): (usize, &f64)| match index <= turn {
-            true => largest - 2.0 * force(0.5 * (amplitude - u)),
-            false => 2.0 * force(0.5 * (amplitude + u)) - largest,
-        };
-        displacements.iter().enumerate().map(along).collect()
+        let mut forces: Vec<f64> =
+            displacements.iter().map(|u| largest - 2.0 * force(0.5 * (amplitude - u))).collect();
+        let way_up: Vec<f64> = forces.iter().skip(1).map(|force| -force).collect();
+        forces.extend(way_up);
+        forces
     }
 
     /// What a cycle does to the contact: stick if no spring slips, full sliding if the innermost one does and no stick zone bears the load.
@@ -208,7 +215,7 @@ impl Model {
             return vec![];
         }
         if state.stick.as_ref().is_some_and(|stick| !stick.wear_depth.is_empty()) {
-            return self.radial_wear_depth(state, fields);
+            return self.radial_wear_depth(state, fields, 1);
         }
         let annulus = Annulus::new(self, state, fields);
         let every = self.springs().div_ceil(MOST_JUDGED);
@@ -223,15 +230,15 @@ impl Model {
         springs.step_by(every).map(depth).collect()
     }
 
-    /// Wear depth at [`Model::radii`], m.
-    pub fn radial_wear_depth(&self, state: &State, fields: &Fields) -> Vec<f64> {
+    /// Wear depth at one in so many of [`Model::radii`], m.
+    pub fn radial_wear_depth(&self, state: &State, fields: &Fields, every: usize) -> Vec<f64> {
         if let Some(gross) = self.gross() {
-            return self.gross_radial_fields(gross, state).wear_depth;
+            return self.gross_radial_fields(gross, state).wear_depth.into_iter().step_by(every).collect();
         }
         let annulus = Annulus::new(self, state, fields);
         let depth =
             |(i, (offset, unworn))| annulus.wear_depth(i, offset, annulus.point(offset, unworn).as_ref());
-        self.output.iter().enumerate().map(depth).collect()
+        self.output.iter().enumerate().step_by(every).map(depth).collect()
     }
 
     /// The fields at [`Model::radii`], by the local polynomials between the springs.
