@@ -159,7 +159,7 @@ impl Observer for Dense {
             tau: state.cycles * model.contact().tau_per_cycle(),
             volume: model.worn_volume(state, fields),
             depth: if behind {
-                model.radial_wear_depth(state, fields)
+                model.radial_wear_depth(state, fields, 1)
             } else {
                 offsets.iter().map(depth).collect()
             },
