@@ -2,6 +2,7 @@
 
 mod cross;
 mod hodlr;
+mod wide;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
@@ -17,14 +18,19 @@ pub use hodlr::{Halves, HodlrFactors, LeafColumns, OffDiagonal, Split};
 /// `y = A x` for the leading columns of `A`, as many as `x` is long.
 pub fn multiply(matrix: MatRef<'_, f64>, x: &[f64], y: &mut [f64]) {
     let columns = matrix.subcols(0, x.len());
-    matmul(
-        ColMut::from_slice_mut(y).as_mat_mut(),
-        Accum::Replace,
-        columns,
-        ColRef::from_slice(x).as_mat(),
-        1.0,
-        Par::Seq,
-    );
+    product(ColMut::from_slice_mut(y).as_mat_mut(), columns, ColRef::from_slice(x).as_mat(), 1.0);
+}
+
+/// `to = scale · left · right`.
+pub fn product<T: ComplexField>(to: MatMut<'_, T>, left: MatRef<'_, T>, right: MatRef<'_, T>, scale: T) {
+    matmul(to, Accum::Replace, left, right, scale, Par::Seq);
+    wide::leave_registers();
+}
+
+/// `to = to + scale · left · right`.
+pub fn add_product<T: ComplexField>(to: MatMut<'_, T>, left: MatRef<'_, T>, right: MatRef<'_, T>, scale: T) {
+    matmul(to, Accum::Add, left, right, scale, Par::Seq);
+    wide::leave_registers();
 }
 
 /// Values of a vector that one task takes, in whole units, an even number of them.
@@ -74,6 +80,7 @@ impl<T: ComplexField> Factors<T> {
             MemStack::new(&mut MemBuffer::new(scratch)),
             Default::default(),
         );
+        wide::leave_registers();
         Self { lu: matrix, forward, inverse }
     }
 
@@ -89,6 +96,7 @@ impl<T: ComplexField> Factors<T> {
         let scratch = solve::solve_in_place_scratch::<usize, T>(lu.nrows(), rhs.ncols(), Par::Seq);
         let stack = &mut MemBuffer::new(scratch);
         solve::solve_in_place(lu, lu, permutation, rhs, Par::Seq, MemStack::new(stack));
+        wide::leave_registers();
     }
 
     /// Replaces the right-hand side by the solution with the transposed matrix.
@@ -98,6 +106,7 @@ impl<T: ComplexField> Factors<T> {
         let scratch = solve::solve_transpose_in_place_scratch::<usize, T>(lu.nrows(), 1, Par::Seq);
         let stack = &mut MemBuffer::new(scratch);
         solve::solve_transpose_in_place(lu, lu, permutation, rhs, Par::Seq, MemStack::new(stack));
+        wide::leave_registers();
     }
 
     fn parts(&self) -> (MatRef<'_, T>, PermRef<'_, usize>) {

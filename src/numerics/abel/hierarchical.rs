@@ -13,14 +13,13 @@
 
 use std::ops::Range;
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
 use super::Transform;
 use super::weights::{Assembly, Cell, Direction, Kernel};
 use crate::numerics::grid::{Clustering, MeshPoint};
-use crate::numerics::linear::in_parallel;
+use crate::numerics::linear::{add_product, in_parallel, product};
 
 /// Cells of a leaf.
 pub(super) const LEAF: usize = 32;
@@ -223,7 +222,7 @@ impl Hierarchical {
                 let data = Mat::from_fn(moments.matrix.ncols(), same.len(), value);
                 let (to, others) = rest.split_at_mut(TERMS * same.len());
                 let to = MatMut::from_column_major_slice_mut(to, TERMS, same.len());
-                matmul(to, Accum::Replace, &moments.matrix, &data, 1.0, Par::Seq);
+                product(to, moments.matrix.as_ref(), data.as_ref(), 1.0);
                 (leaf, rest) = (leaf + same.len(), others);
             }
         });
@@ -283,11 +282,11 @@ impl Hierarchical {
         let field = MatRef::from_column_major_slice(&field[TERMS * first..][..TERMS * leaves], TERMS, leaves);
         let (head, tail) = y.split_at_mut(others * LEAF);
         let to = MatMut::from_column_major_slice_mut(head, LEAF, others);
-        matmul(to, Accum::Replace, &self.at_nodes[0], field.subcols(0, others), 1.0, Par::Seq);
+        product(to, self.at_nodes[0].as_ref(), field.subcols(0, others), 1.0);
         if others < leaves {
             let count = tail.len();
             let to = MatMut::from_column_major_slice_mut(tail, count, 1);
-            matmul(to, Accum::Replace, &self.at_nodes[1], field.subcols(others, 1), 1.0, Par::Seq);
+            product(to, self.at_nodes[1].as_ref(), field.subcols(others, 1), 1.0);
         }
         for (near, y) in self.near[first..].iter().zip(y.chunks_mut(LEAF)) {
             near.add(x, y);
@@ -324,7 +323,7 @@ fn gather(at_halves: &Mat<f64>, from: &[f64], to: &mut [f64], count: usize) {
     }
     let from = MatRef::from_column_major_slice_with_stride(from, TERMS, count, 2 * TERMS);
     let to = MatMut::from_column_major_slice_mut(&mut to[..TERMS * count], TERMS, count);
-    matmul(to, Accum::Add, at_halves.transpose(), from, 1.0, Par::Seq);
+    add_product(to, at_halves.transpose(), from, 1.0);
 }
 
 /// Sets every second cluster `to` on to what it has from that of `count` clusters which it is a half of.
@@ -334,7 +333,7 @@ fn hand_down(at_halves: &Mat<f64>, from: &[f64], to: &mut [f64], count: usize) {
     }
     let from = MatRef::from_column_major_slice(&from[..TERMS * count], TERMS, count);
     let to = MatMut::from_column_major_slice_with_stride_mut(to, TERMS, count, 2 * TERMS);
-    matmul(to, Accum::Replace, at_halves, from, 1.0, Par::Seq);
+    product(to, at_halves.as_ref(), from, 1.0);
 }
 
 impl Near {

@@ -10,13 +10,12 @@
 
 use std::ops::Range;
 
-use faer::linalg::matmul::matmul;
 use faer::traits::RealField;
 use faer::traits::math_utils::{one, zero};
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
-use super::Factors;
+use super::{Factors, add_product, product};
 
 /// The halves of a matrix in between its leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -282,7 +281,7 @@ fn give<T: RealField + Copy>(right: [MatRef<'_, T>; 2], solutions: [MatRef<'_, T
     let mut given = Mat::zeros(upper + lower, top.ncols().max(bottom.ncols()));
     for (row, right, solution) in [(0, second, bottom), (upper, first, top)] {
         let to = given.as_mut().submatrix_mut(row, 0, right.ncols(), solution.ncols());
-        matmul(to, Accum::Replace, right.transpose(), solution, one(), Par::Seq);
+        product(to, right.transpose(), solution, one());
     }
     given
 }
@@ -297,7 +296,7 @@ impl<T: RealField + Copy> Coupling<T> {
         self.small.solve_columns(given.as_mut());
         let (to_top, to_bottom) = given.as_ref().split_at_row(self.terms[0]);
         for ((solution, left), given) in solutions.into_iter().zip(left).zip([to_top, to_bottom]) {
-            matmul(solution, Accum::Add, left, given, -one::<T>(), Par::Seq);
+            add_product(solution, left, given, -one::<T>());
         }
     }
 }

@@ -5,14 +5,13 @@
 
 use std::f64::consts::PI;
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par};
+use faer::{Mat, MatRef};
 
 use super::motion::{Energies, Motion};
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::{Fields, Model};
 use crate::laws::wear::Rate;
-use crate::numerics::linear::{dot, row_sums};
+use crate::numerics::linear::{add_product, dot, product, row_sums};
 
 /// Change of the edge, relative, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
@@ -272,7 +271,7 @@ impl Model {
             // Without compression, at the contact edge, springs are free.
             let slip_of = |j: usize, m: usize| if j < inner { motion.slip[(j, m)] } else { motion.free[m] };
             let moved = Mat::from_fn(n, columns, |j, m| (slip_of(j, m) - free[m]) * fields.density_factor[j]);
-            product(&mut slip, self.annulus().operators.abel.profile().as_ref(), moved.as_ref(), scale);
+            product(slip.as_mut(), self.annulus().operators.abel.profile().as_ref(), moved.as_ref(), scale);
             let uniform: Vec<f64> = (0..n).map(|i| self.uniform_slip(fields, i)).collect();
             for (m, free) in free.iter().enumerate() {
                 let to = slip.col_as_slice_mut(m).iter_mut().zip(&uniform);
@@ -458,13 +457,18 @@ impl Model {
         for columns in blocks(inner) {
             let (first, count) = (columns.start, columns.len());
             let mut by_slip = Mat::zeros(n, count);
-            product(&mut by_slip, along.as_ref(), motion.slip_slope.subrows(first, count).transpose(), 1.0);
+            product(
+                by_slip.as_mut(),
+                along.as_ref(),
+                motion.slip_slope.subrows(first, count).transpose(),
+                1.0,
+            );
             let mut by_pressure = Mat::zeros(n, count);
             if motion.load.ncols() == 1 {
                 by_pressure = Mat::from_fn(n, count, |i, j| total[i] * motion.load_slope[(first + j, 0)]);
             } else {
                 let slopes = motion.load_slope.subrows(first, count).transpose();
-                product(&mut by_pressure, worn.by_pressure.as_ref(), slopes, 1.0);
+                product(by_pressure.as_mut(), worn.by_pressure.as_ref(), slopes, 1.0);
             }
             for j in columns {
                 let (pressed, profile) = (pressed(j), profile.col_as_slice(j));
@@ -517,7 +521,7 @@ impl Model {
         let next = |j: usize, m: usize| if j + 1 < inner { load[(j + 1, m)] } else { 0.0 };
         let differences = Mat::from_fn(inner, load.ncols(), |j, m| next(j, m) - load[(j, m)]);
         let weights = self.annulus().operators.abel.pressure_by_differences().subcols(0, inner);
-        product(to, weights, differences.as_ref(), scale);
+        product(to.as_mut(), weights, differences.as_ref(), scale);
     }
 
     /// `c_N/π Z^(-μ)`, the factor of Eq. (21).
@@ -575,18 +579,13 @@ fn growth(loading: &CycleLoading, worn: &Worn, fields: &Fields) -> Vec<f64> {
     worn.depth.iter().zip(&fields.slip_depth).map(|(w, s)| per_cycle * w / s).collect()
 }
 
-/// `to = scale · left · right`.
-pub(super) fn product(to: &mut Mat<f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>, scale: f64) {
-    matmul(to.as_mut(), Accum::Replace, left, right, scale, Par::Seq);
-}
-
 /// `to = |left| right` for the leading columns of `left`, some at a time, so that no second matrix of that size is held.
 fn product_without_signs(to: &mut Mat<f64>, left: &Mat<f64>, right: MatRef<'_, f64>) {
     to.fill(0.0);
     for columns in blocks(right.nrows()) {
         let part = Mat::from_fn(left.nrows(), columns.len(), |i, j| left[(i, columns.start + j)].abs());
         let rows = right.subrows(columns.start, columns.len());
-        matmul(to.as_mut(), Accum::Add, part.as_ref(), rows, 1.0, Par::Seq);
+        add_product(to.as_mut(), part.as_ref(), rows, 1.0);
     }
 }
 

@@ -2,13 +2,12 @@
 
 use faer::Mat;
 
-use super::cycle::product;
 use super::edge_in_block::AtRest;
 use super::motion::Motion;
 use super::schedule::CycleLoading;
 use super::{Fields, Model};
 use crate::laws::wear::Spreading;
-use crate::numerics::linear::dot;
+use crate::numerics::linear::{dot, product};
 
 impl Model {
     /// How far debris fills the gap under a spring of some compression at the largest indentation, and the derivative; whole at the contact
@@ -48,7 +47,7 @@ impl Model {
         }
         let mut spread = Mat::zeros(n, inner);
         let averages = self.debris(loading, motion.at_rest, compression, fields).averages(spreading);
-        product(&mut spread, averages.as_ref(), touching.as_ref(), 1.0);
+        product(spread.as_mut(), averages.as_ref(), touching.as_ref(), 1.0);
         for i in 0..n {
             let (filled, _) = self.filled(loading, spreading, compression.get(i).copied());
             (0..inner).for_each(|j| spread[(i, j)] *= filled);
