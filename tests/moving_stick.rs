@@ -10,6 +10,7 @@ use fretwear::contact::InitialContact;
 use fretwear::contact::closed_form::LimitingShape;
 use fretwear::contact::half_space::HalfSpace;
 use fretwear::contact::indenter::Indenter;
+use fretwear::contact::slip_depth::UnwornSlip;
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::Coulomb;
 use fretwear::laws::history::History;
@@ -131,6 +132,44 @@ fn sphere(stick_ratio: f64) -> InitialContact {
         InitialContact::new(&indenter, &half_space, &Coulomb { coefficient: 1.0 }, &wear, &loading).unwrap()
     };
     contact(contact(1.0).tau_per_cycle().recip())
+}
+
+#[test]
+fn slip_of_a_sphere_at_another_edge_of_stick_is_that_tabulated_there() {
+    let (mut worst, mut compared) = ((0.0, String::new()), 0);
+    for grading in [-0.9, -0.3, 0.0, 0.6, 0.95] {
+        let profile = Indenter::sphere(1.0).unwrap().equivalent_profile(grading).unwrap();
+        for (first, radius) in [(1e-6, 2e-6), (1e-3, 0.1), (0.4, 0.6), (0.05, 0.7), (0.69, 0.7)] {
+            let at = |stick: f64| {
+                let area = (radius - stick) * (radius + stick);
+                UnwornSlip::new(&profile, stick, profile.rise(stick, area), area)
+            };
+            // At the largest gradings a deep sphere would wear beyond its equator.
+            let Ok(slip) = at(first) else { continue };
+            compared += 1;
+            for stick in [0.001, 0.1, 0.5, 0.9, 0.99].map(|part| first + part * (radius - first)) {
+                let there = at(stick).unwrap();
+                let compression = profile.rise(stick, (radius - stick) * (radius + stick));
+                let farthest = first * first + slip.largest_slip_area() - stick * stick;
+                for part in [1e-12, 1e-4, 0.03, 0.4, 0.999] {
+                    let z = part * farthest.min(there.largest_slip_area());
+                    let (found, exact) = (slip.at_stick(stick * stick, compression, z), there.at(z));
+                    let mut filled = [found; 1];
+                    slip.fill(Some([stick * stick, compression]), |_| z, &mut filled);
+                    assert_eq!(
+                        filled[0], found,
+                        "k = {grading}, {first} to {radius}, {stick}, {part} {exact:?} {farthest}"
+                    );
+                    let error = (found.slip / exact.slip - 1.0).abs();
+                    if error > worst.0 {
+                        worst = (error, format!("k = {grading}, {first} to {radius}, {stick}, {part}"));
+                    }
+                }
+            }
+        }
+    }
+    println!("{worst:?} of {compared}");
+    assert!(worst.0 < 1e-11 && compared > 20, "{worst:?} of {compared}");
 }
 
 #[test]

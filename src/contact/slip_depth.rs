@@ -9,12 +9,13 @@
 //!
 //! As wear changes nothing inside `c`, the depth worn away is the growth of the slip depth, `w = S - S_0`.
 
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use crate::contact::indenter::{EquivalentProfile, RiseTransform};
 use crate::error::{Error, Result};
 use crate::numerics::abel::profile_factor;
-use crate::numerics::chebyshev::{Chebyshev, LANES, PiecewiseChebyshev};
+use crate::numerics::chebyshev::{Chebyshev, ChebyshevPlane, LANES, PiecewiseChebyshev};
 use crate::numerics::power;
 use crate::numerics::quadrature::Rule;
 use crate::numerics::roots::bracketed;
@@ -23,7 +24,7 @@ use crate::numerics::roots::bracketed;
 /// own singularity at `ℓ v = 2πi`.
 const NODES: usize = 40;
 
-/// How far beyond the limiting contact edge the slip is tabulated, as a factor of `Z`.
+/// How far beyond the limiting contact edge the slip is tabulated, as a factor of `Z`; at most half of the way to where a sphere ends.
 const MARGIN: f64 = RiseTransform::MARGIN;
 
 /// Where slip next to the edge of stick is taken, over the logarithm at the end.
@@ -44,16 +45,47 @@ pub struct UnwornSlip {
     slip: SlipSeries,
     rule: Rule,
     table: Option<Arc<RiseTransform>>,
-    /// The slip of the terms of the profile where that is a series; found when the edge of stick has moved first.
-    terms: OnceLock<Option<Vec<Term>>>,
+    /// The slip at other edges of stick, where the profile is neither a power law nor a table and a series gives it; found when the edge has moved first.
+    elsewhere: OnceLock<Option<SlipElsewhere>>,
     limit_slip_area: f64,
+    largest_slip_area: f64,
 }
 
-/// `(F(x^(2j) - c^(2j)))/(c^(2j) ℓ^(1+μ))` of a term of a series, the same for every `c`, times its coefficient in the series.
+/// `(F(g_0 - g_0(c)))/ℓ^(1+μ)` for edges of stick from that of the tabulated slip outwards.
 #[derive(Debug, Clone)]
-struct Term {
-    coefficient: f64,
-    slip: SlipSeries,
+struct SlipElsewhere {
+    /// Of that times `e^(-λℓ - γu)`, over `u`, the logarithm of the stick area over that of the tabulated slip, and `ℓ` over its largest value.
+    plane: ChebyshevPlane,
+    /// The largest `u + ℓ`.
+    end: f64,
+    growth: f64,
+    growth_by_stick: f64,
+}
+
+/// The slip at an edge of stick.
+enum Slips<'a> {
+    Series { slip: Cow<'a, SlipSeries>, factor: f64 },
+    Table { transform: &'a RiseTransform, stick_area: f64, factor: f64 },
+    Quadrature(Transform<'a>),
+}
+
+impl Slips<'_> {
+    fn value(&self, logarithm: f64) -> f64 {
+        match self {
+            Self::Series { slip, factor } => factor * slip.value(logarithm),
+            Self::Table { transform, stick_area, factor } => {
+                factor * transform.mean_from(*stick_area, logarithm)
+            }
+            Self::Quadrature(transform) => transform.slip(logarithm),
+        }
+    }
+
+    fn values(&self, logarithms: &[f64; LANES]) -> [f64; LANES] {
+        match self {
+            Self::Series { slip, factor } => slip.values(logarithms).map(|slip| factor * slip),
+            _ => logarithms.map(|logarithm| self.value(logarithm)),
+        }
+    }
 }
 
 /// `(F(q_c - q_0))/ℓ^(1+μ)`.
@@ -179,7 +211,14 @@ impl UnwornSlip {
         }
         let logarithm = bracketed(depth_left, (low * 0.5).min(high), high, 0.0)?;
         let limit_slip_area = squared * logarithm.exp_m1();
-        let end = (MARGIN * limit_slip_area / squared).ln_1p();
+        let largest_slip_area = match profile.end_of_table() {
+            Some(_) => MARGIN * limit_slip_area,
+            None => {
+                let farthest = profile.largest_radius().powi(2) - squared;
+                (MARGIN * limit_slip_area).min(0.5 * (limit_slip_area + farthest))
+            }
+        };
+        let end = (largest_slip_area / squared).ln_1p();
         let slip = match &transform.table {
             Some(table) => SlipSeries::Table { series: table.series(logarithm)?, factor: transform.factor },
             None => SlipSeries::smooth(|l| transform.slip(l), end),
@@ -193,8 +232,9 @@ impl UnwornSlip {
             slip,
             rule: transform.rule,
             table: transform.table,
-            terms: OnceLock::new(),
+            elsewhere: OnceLock::new(),
             limit_slip_area,
+            largest_slip_area,
         })
     }
 
@@ -205,7 +245,7 @@ impl UnwornSlip {
 
     /// Largest `z`, m², for which [`UnwornSlip::at`] holds.
     pub fn largest_slip_area(&self) -> f64 {
-        MARGIN * self.limit_slip_area
+        self.largest_slip_area
     }
 
     /// Slip depths at `z = r² - c²`, m², in (0, [`UnwornSlip::largest_slip_area`]].
@@ -221,20 +261,11 @@ impl UnwornSlip {
     /// * `z` -- the places, m², by their index
     pub fn fill(&self, stick: Option<[f64; 2]>, z: impl Fn(usize) -> f64, to: &mut [UnwornValues]) {
         let [area, compression] = stick.unwrap_or([self.stick_radius_squared, self.slip_compression]);
-        let factor = match (stick, self.profile.exponent()) {
-            (None, _) => None,
-            (Some(_), _) if self.is_at(area) => None,
-            (Some(_), Some(exponent)) => Some(self.scaled(area, exponent)),
-            (Some(_), None) => {
-                to.iter_mut().enumerate().for_each(|(i, to)| *to = self.at_stick(area, compression, z(i)));
-                return;
-            }
-        };
+        let slips = self.slips(area);
         in_lanes(area, z, to, |logarithms, to| {
-            let (uniform, slip) = (self.uniform.values(&logarithms), self.slip.values(&logarithms));
+            let (uniform, slip) = (self.uniform.values(&logarithms), slips.values(&logarithms));
             for (i, to) in to.iter_mut().enumerate() {
-                let rise = factor.map_or(slip[i], |factor| factor * slip[i]);
-                *to = self.values_with(logarithms[i], compression, rise, uniform[i]);
+                *to = self.values_with(logarithms[i], compression, slip[i], uniform[i]);
             }
         });
     }
@@ -254,11 +285,6 @@ impl UnwornSlip {
         (stick_area / self.stick_radius_squared - 1.0).abs() < SAME_STICK
     }
 
-    /// Rise of a power law at another stick area over that for which the slip was tabulated.
-    fn scaled(&self, stick_area: f64, exponent: f64) -> f64 {
-        (stick_area / self.stick_radius_squared).powf(0.5 * exponent)
-    }
-
     /// With `(F(g_0 - g_0(c)))/ℓ^(1+μ)` as `rise`.
     fn values(&self, logarithm: f64, slip_compression: f64, rise: f64) -> UnwornValues {
         self.values_with(logarithm, slip_compression, rise, self.uniform.value(logarithm))
@@ -273,24 +299,32 @@ impl UnwornSlip {
 
     /// Slip depths at `z = r² - c²`, m², of the unworn contact with another stick radius `c` and compression `q_c` there.
     ///
-    /// A power law is the same at every scale, and so is every term of a sphere's profile; for other profiles the quadrature of `F` runs anew.
+    /// A power law is the same at every scale; for a sphere there is a series in the stick radius too, for tables the quadrature of `F` runs anew.
     ///
     /// # Arguments
     /// * `stick_area` -- `c²`, m², at least that for which the slip was tabulated
     /// * `slip_compression` -- `q_c`, m
     pub fn at_stick(&self, stick_area: f64, slip_compression: f64, z: f64) -> UnwornValues {
         let logarithm = (z / stick_area).ln_1p();
-        let slip = match self.profile.exponent() {
-            _ if self.is_at(stick_area) => self.slip.value(logarithm),
-            Some(exponent) => self.scaled(stick_area, exponent) * self.slip.value(logarithm),
-            None => match &self.table {
-                Some(table) => {
-                    profile_factor(1.0 - self.mu, self.mu) * table.mean_from(stick_area, logarithm)
-                }
-                None => self.slip_elsewhere(stick_area, logarithm),
-            },
-        };
-        self.values(logarithm, slip_compression, slip)
+        self.values(logarithm, slip_compression, self.slips(stick_area).value(logarithm))
+    }
+
+    fn slips(&self, stick_area: f64) -> Slips<'_> {
+        let scaled = |factor: f64| Slips::Series { slip: Cow::Borrowed(&self.slip), factor };
+        let ratio = stick_area / self.stick_radius_squared;
+        if self.is_at(stick_area) {
+            return scaled(1.0);
+        }
+        if let Some(exponent) = self.profile.exponent() {
+            return scaled(ratio.powf(0.5 * exponent));
+        }
+        if let Some(transform) = &self.table {
+            return Slips::Table { transform, stick_area, factor: profile_factor(1.0 - self.mu, self.mu) };
+        }
+        let elsewhere = self.elsewhere.get_or_init(|| self.slip_elsewhere()).as_ref();
+        elsewhere.and_then(|it| it.slips(ratio.ln())).unwrap_or_else(|| {
+            Slips::Quadrature(Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()))
+        })
     }
 
     /// `F 1` at `z = r² - c²`, m², with another stick area `c²`, m²: how far a rise of the ground within `c` by one raises that outside. The same for every profile.
@@ -310,30 +344,26 @@ impl UnwornSlip {
         profile_factor(nu, self.mu) * power(logarithm, self.mu) * mean
     }
 
-    fn slip_elsewhere(&self, stick_area: f64, logarithm: f64) -> f64 {
-        let Some(terms) = self.terms.get_or_init(|| self.of_terms()) else {
-            return Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()).slip(logarithm);
+    /// The slip at other edges of stick, as far out as the slip depth holds; none where a series takes too many terms, next to a sphere's equator.
+    fn slip_elsewhere(&self) -> Option<SlipElsewhere> {
+        let squared = self.stick_radius_squared;
+        let end = (self.largest_slip_area() / squared).ln_1p();
+        let growth = match &self.slip {
+            SlipSeries::Smooth { growth, .. } => *growth,
+            SlipSeries::Table { .. } => 0.0,
         };
-        let mut power = 1.0;
-        let slips = terms.iter().map(|term| {
-            power *= stick_area;
-            term.coefficient * power * term.slip.value(logarithm)
-        });
-        // The smallest first.
-        slips.collect::<Vec<_>>().into_iter().rev().sum()
-    }
-
-    /// The slip of the terms of the profile, as far out as the slip depth holds.
-    fn of_terms(&self) -> Option<Vec<Term>> {
-        let farthest = self.stick_radius_squared + self.largest_slip_area();
-        let coefficients = self.profile.series(farthest.sqrt())?;
-        let end = (self.largest_slip_area() / self.stick_radius_squared).ln_1p();
-        let transform = Transform::with_rule(&self.profile, 1.0, self.rule.clone());
-        let term = |(j, coefficient): (usize, f64)| Term {
-            coefficient,
-            slip: SlipSeries::smooth(|l| transform.slip_of_power(l, (j + 1) as f64), end),
+        let slip = |u: f64, logarithm: f64| {
+            let radius = (squared * u.exp()).sqrt();
+            Transform::with_rule(&self.profile, radius, self.rule.clone()).slip(logarithm)
         };
-        Some(coefficients.into_iter().enumerate().map(term).collect())
+        let at_stick = AT_STICK * end;
+        let growth_by_stick = 2.0 * (slip(0.5 * end, at_stick) / slip(0.0, at_stick)).ln() / end;
+        let slip = |u: f64, part: f64| {
+            let logarithm = part * (end - u);
+            slip(u, logarithm) * (-growth * logarithm - growth_by_stick * u).exp()
+        };
+        let plane = ChebyshevPlane::fit(slip, end)?;
+        Some(SlipElsewhere { plane, end, growth, growth_by_stick })
     }
 
     /// Derivatives of the slip depths where `values` belong to.
@@ -344,6 +374,18 @@ impl UnwornSlip {
         let of_uniform = uniform_slope / uniform + self.mu / logarithm;
         let of_rise = self.slip.log_slope(logarithm) + (1.0 + self.mu) / logarithm;
         UnwornSlopes { limit_slip: values.limit_slip * by_z * of_uniform, log_slip: by_z * of_rise }
+    }
+}
+
+impl SlipElsewhere {
+    /// The slip at the stick area that is `e^u` times that of the tabulated slip; none where no series reaches.
+    fn slips(&self, u: f64) -> Option<Slips<'_>> {
+        let length = self.end - u;
+        if !(u > 0.0 && length > 0.0) {
+            return None;
+        }
+        let slip = SlipSeries::Smooth { series: self.plane.along_y(u, length), growth: self.growth };
+        Some(Slips::Series { slip: Cow::Owned(slip), factor: (self.growth_by_stick * u).exp() })
     }
 }
 
@@ -384,15 +426,6 @@ impl<'a> Transform<'a> {
         let weighted = |(node, complement): (&f64, &f64)| {
             let rise = self.profile.rise(self.stick_radius, squared * (logarithm * complement).exp_m1());
             self.kernel(logarithm * node) * rise / logarithm
-        };
-        let terms = self.rule.nodes.iter().zip(&self.rule.complements).map(weighted);
-        self.factor * terms.zip(&self.rule.weights).map(|(term, weight)| term * weight).sum::<f64>()
-    }
-
-    /// The same of `(x/c)^(2j)` in the place of `g_0`.
-    fn slip_of_power(&self, logarithm: f64, power: f64) -> f64 {
-        let weighted = |(node, complement): (&f64, &f64)| {
-            self.kernel(logarithm * node) * (power * logarithm * complement).exp_m1() / logarithm
         };
         let terms = self.rule.nodes.iter().zip(&self.rule.complements).map(weighted);
         self.factor * terms.zip(&self.rule.weights).map(|(term, weight)| term * weight).sum::<f64>()

@@ -1,10 +1,12 @@
 //! Chebyshev series of a smooth function on an interval, and of others on pieces of it.
 
 mod piecewise;
+mod plane;
 
 use std::f64::consts::PI;
 
 pub use piecewise::PiecewiseChebyshev;
+pub use plane::ChebyshevPlane;
 
 /// Largest number of terms tried.
 const MOST_TERMS: usize = 256;
@@ -42,10 +44,22 @@ impl Chebyshev {
     }
 
     fn coefficients(function: &impl Fn(f64) -> f64, end: f64, terms: usize) -> Vec<f64> {
-        let angle = |i: usize| PI * (i as f64 + 0.5) / terms as f64;
-        let values: Vec<f64> = (0..terms).map(|i| function(end * (0.5 * angle(i)).cos().powi(2))).collect();
+        Self::project(&Self::nodes(end, terms).map(function).collect::<Vec<_>>())
+    }
+
+    /// Places on `[0, end]` at which as many terms are projected.
+    fn nodes(end: f64, terms: usize) -> impl Iterator<Item = f64> {
+        (0..terms).map(move |i| end * (0.25 * PI * (2 * i + 1) as f64 / terms as f64).cos().powi(2))
+    }
+
+    /// Coefficients of the interpolating polynomial through values at [`Chebyshev::nodes`].
+    fn project(values: &[f64]) -> Vec<f64> {
+        let terms = values.len();
+        // cos(π m/(2n)) of m up to 4n: arguments are reduced in whole numbers, which leaves no noise in the last coefficients.
+        let cosines: Vec<f64> = (0..4 * terms).map(|m| (0.5 * PI * m as f64 / terms as f64).cos()).collect();
         let projected = |j: usize| {
-            let sum: f64 = values.iter().enumerate().map(|(i, v)| v * (j as f64 * angle(i)).cos()).sum();
+            let cosine = |i: usize| cosines[j * (2 * i + 1) % (4 * terms)];
+            let sum: f64 = values.iter().enumerate().map(|(i, v)| v * cosine(i)).sum();
             sum * if j == 0 { 1.0 } else { 2.0 } / terms as f64
         };
         (0..terms).map(projected).collect()

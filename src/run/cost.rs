@@ -83,9 +83,6 @@ const OF_RESOLVED: f64 = 1.5;
 /// How much longer it takes where a profile is a table and the edge of stick moves: slip of the unworn contact is then by quadrature in each evaluation.
 const OF_TABLE: f64 = 12.0;
 
-/// How much longer an evaluation takes for a sphere, whose slip is by quadrature too. Steps that are found take a third of [`EVALUATIONS`], so that it counts for those that are not.
-const OF_SPHERE: f64 = 3.5;
-
 /// Work of a step that is tried, nanoseconds of one core, about, but for that of the periods that are resolved. The same on every machine, so that a run and one that
 /// was interrupted take the same way.
 fn work_of_step(model: &Model, springs: f64) -> f64 {
@@ -125,10 +122,7 @@ fn evaluations(model: &Model, springs: f64) -> f64 {
 /// Steps tried so far, or as many as their evaluations make: one that finds no contact takes the most.
 fn tries(progress: &Progress, model: &Model) -> f64 {
     let tried = (progress.steps + progress.rejected_steps) as f64;
-    let profile = model.contact().equivalent_profile();
-    let is_sphere = profile.exponent().is_none() && profile.end_of_table().is_none();
-    let longer = if is_sphere && model.moving().is_some() { OF_SPHERE } else { 1.0 };
-    tried.max(longer * progress.rate_evaluations as f64 / evaluations(model, model.springs() as f64))
+    tried.max(progress.rate_evaluations as f64 / evaluations(model, model.springs() as f64))
 }
 
 /// Work of a run so far without its companions, nanoseconds of one core, about, by what a step takes of the model that it began with.

@@ -50,11 +50,6 @@ pub trait Equivalent: Debug + Send + Sync {
         None
     }
 
-    /// `b_1, b_2 ...`, m^(1-2j), of `g(x) = Σ b_j x^(2j)`, all positive, up to round-off for `x <= radius`, m, where `g` is such a series of some terms.
-    fn series(&self, _radius: f64) -> Option<Vec<f64>> {
-        None
-    }
-
     /// The transform of the rise over the value at a radius, m, where `g` is that of a table.
     ///
     /// # Errors

@@ -11,9 +11,6 @@ use crate::laws::entry::Entry;
 use crate::numerics::roots;
 use crate::units::{Dimension, Key, Range, Scale};
 
-/// Most terms of a series that is shorter than the quadrature.
-const MOST_TERMS: usize = 24;
-
 /// `[indenter.sphere]`.
 pub static ENTRY: Entry<dyn Shape> = Entry::new("sphere", "f = R - √(R² - r²).", &[RADIUS], |values| {
     Ok(Arc::new(Sphere { radius: values.number(RADIUS.name) }))
@@ -93,22 +90,6 @@ impl Equivalent for SphereEquivalent {
     }
 
     /// `g = R/(1+k) Σ (1/2)_j/(1+ν)_j z^(j+1)`, `z = x²/R²`.
-    fn series(&self, radius: f64) -> Option<Vec<f64>> {
-        let squared = self.radius * self.radius;
-        let terms = (f64::EPSILON.ln() / (radius * radius / squared).ln()).ceil();
-        if terms.is_nan() || terms > MOST_TERMS as f64 {
-            return None;
-        }
-        let nu = 0.5 * (1.0 + self.grading);
-        let mut term = self.radius / (1.0 + self.grading) / squared;
-        let next = |j: usize| {
-            let now = term;
-            term *= (0.5 + j as f64) / (1.0 + nu + j as f64) / squared;
-            now
-        };
-        Some((0..(terms as usize).max(1)).map(next).collect())
-    }
-
     fn value(&self, x: f64) -> f64 {
         self.rise(0.0, x.min(2.0 * self.radius).powi(2))
     }
