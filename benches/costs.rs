@@ -185,6 +185,9 @@ fn resolved_cycles(criterion: &mut Criterion) {
             criterion.bench_function(&format!("cycle: {name}/{springs} springs"), |bench| {
                 bench.iter(|| model.cycle(&loading, black_box(&state.compression), &fields));
             });
+            let before = model.work_counted();
+            model.cycle(&loading, &state.compression, &fields);
+            println!("    counted as {} ns", model.work_counted() - before);
         };
         measure("closed form", &line, None);
         for substeps in [2, 16, 96] {

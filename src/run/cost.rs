@@ -68,14 +68,19 @@ const EVALUATIONS_BY_BACKWARD_DIFFERENTIATION: f64 = 3.0;
 const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
 /// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves, and in gross slip, where its sums are over the whole contact; by pair of springs over which wear
-/// spreads; of the factors, by triple of springs, without and with slopes that are products of matrices; and of a step in any case, in gross slip and elsewhere. Periods that are resolved are counted as they are passed.
+/// spreads. Periods that are resolved are counted as they are passed.
 const BY_SPRING: [f64; 2] = [150.0, 300.0];
 const BY_SPRING_IN_GROSS_SLIP: f64 = 200.0;
 const BY_SPREADING: f64 = 10.0;
+
 /// How much longer an evaluation in gross slip takes where springs stick and slip sets in with a jump, up to which its sums are integrated.
-const OF_JUMP: f64 = 6.0;
-const BY_TRIPLE: [f64; 2] = [0.05, 0.35];
+const OF_JUMP: f64 = 8.0;
+
+/// Nanoseconds of one core of a step in any case, in gross slip and elsewhere; of its slopes, by pair of springs, where they are found in each step by stages; and of its factors, by triple of springs,
+/// without and with slopes that are products of matrices.
 const OVERHEAD: [f64; 2] = [4e3, 4e4];
+const BY_SLOPE: f64 = 20.0;
+const BY_TRIPLE: [f64; 2] = [0.08, 0.35];
 
 /// Power of the springs with which the work of resolved periods grows.
 const OF_RESOLVED: f64 = 1.5;
@@ -101,10 +106,11 @@ fn work_of_step(model: &Model, springs: f64) -> f64 {
         Some(_) => BY_SPRING_IN_GROSS_SLIP,
         None => BY_SPRING[moves],
     };
-    let cycles = schedule.cycles_at_once() as f64;
-    overhead
-        + evaluations(model, springs) * springs * cycles * (table * once + spread)
-        + BY_TRIPLE[usize::from(multiplies)] * cycles * springs.powi(3)
+    let by_stages = model.gross().is_none() && !model.wears_steadily();
+    let slopes = if by_stages { BY_SLOPE * springs.powi(2) } else { 0.0 };
+    let factors = BY_TRIPLE[usize::from(multiplies)] * springs.powi(3);
+    let evaluations = evaluations(model, springs) * springs * (table * once + spread);
+    overhead + schedule.cycles_at_once() as f64 * (evaluations + slopes + factors)
 }
 
 /// Evaluations of a step on so many springs.

@@ -10,9 +10,9 @@ use crate::laws::friction::FrictionLaw;
 
 /// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed, where one limit holds it and where slip begins at a static one; of a column of
 /// slip at a spring, by what is done with it there, by the response of a table and by steps, and by each other spring that it is carried to; and of a column of loads there.
-const BY_SUBSTEP: [f64; 2] = [15.0, 60.0];
-const BY_COLUMN: [f64; 2] = [30.0, 45.0];
-const BY_PAIR: f64 = 0.05;
+const BY_SUBSTEP: [f64; 2] = [30.0, 45.0];
+const BY_COLUMN: [f64; 2] = [13.0, 45.0];
+const BY_PAIR: f64 = 0.03;
 const BY_LOAD: f64 = 15.0;
 
 /// Nanoseconds of one core that a jump of the edge of stick between two blocks takes, on a profile in closed form and on one that is a table: what the ground that
