@@ -29,6 +29,7 @@ mod past;
 mod schedule;
 mod spreading;
 mod stage;
+mod surface;
 mod whole;
 
 use std::f64::consts::PI;

@@ -14,11 +14,11 @@ use super::{Gross, Whole};
 use crate::laws::wear::Spreading;
 use crate::numerics::roots::bracketed;
 use crate::numerics::whole_contact::{Coordinate, WholeContact};
-use crate::solver::model::cycle::{Surface, clear_negative, directions};
 use crate::solver::model::motion::{Bearing, Energies, Motion};
 use crate::solver::model::moving::LAST_STICK;
 use crate::solver::model::schedule::{AmplitudeControl, CycleLoading};
 use crate::solver::model::spreading::Debris;
+use crate::solver::model::surface::{Surface, clear_negative, directions};
 use crate::solver::model::{CycleFields, Model};
 
 /// What the springs do in a period, as it is seen on the surface.
