@@ -7,6 +7,7 @@ use fretwear::numerics::abel::AbelOperators;
 use fretwear::numerics::grid::{Clustering, Mesh};
 use fretwear::numerics::linear::multiply;
 use fretwear::numerics::roots::bracketed;
+use fretwear::scene::Scene;
 use fretwear::solver::simulation::{End, Outcome, Plan};
 use fretwear::solver::stepper::Sdirk;
 use support::{Case, orders};
@@ -47,6 +48,29 @@ fn the_limiting_shape_is_reached_from_cone_to_quartic_over_all_gradings() {
     assert!(late.0 <= 6e-9, "the same at k = 0.9: {late:?}");
     assert!(volume.0 <= 9e-7, "largest relative error of the worn volume: {volume:?}");
     assert!(edge.0 <= 3e-13, "largest relative error of the contact edge: {edge:?}");
+}
+
+#[test]
+fn a_sphere_reaches_its_limit_next_to_the_equator() {
+    // The limit's radius over the sphere's: 0.974, 0.955 and 0.970.
+    for (grading, indentation) in [(0.0, 0.8), (-0.3, 0.78), (-0.3, 0.84)] {
+        let scene = Scene::from_toml(
+            &format!(
+                "[indenter.sphere]\nradius = 1\n[half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.7\n\
+                 [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1.667e-13\n\
+                 [loading]\nindentation = {indentation}\nstick_ratio = 0.07\nfrequency = 1\ntau = 1000\n[numerics]\naccuracy = 1e-4\n"
+            ),
+            "sphere.toml",
+        );
+        let results = scene.unwrap().simulate().unwrap();
+        let limit = results.limit().unwrap();
+        let worn = results.last().wear_volume / limit.wear_volume() - 1.0;
+        let edge = results.last().contact_radius / limit.contact_radius_limit() - 1.0;
+        let place = format!("k = {grading}, {} of the radius", limit.contact_radius_limit());
+        println!("{place}: volume {worn:e}, edge {edge:e}, {:?}", results.accuracy_met());
+        assert_eq!(results.accuracy_met(), Some(true), "{place}");
+        assert!(worn.abs() < 1e-4 && edge.abs() < 1e-4, "{place}: volume {worn:e}, edge {edge:e}");
+    }
 }
 
 /// Error of the limit, relative to its largest depth, with the initial compression interpolated between the nodes.

@@ -191,7 +191,7 @@ impl Model {
         for force in &mut force {
             force[0] = force[steps];
         }
-        self.count_substeps(substeps, &*loading.friction);
+        self.count_substeps(substeps, path, &*loading.friction);
         let found = FrettingLoop { displacement, force, work, width: f64::NAN };
         FrettingLoop { width: found.polygon_width(), ..found }
     }

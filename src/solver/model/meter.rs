@@ -7,10 +7,11 @@ use super::schedule::CycleLoading;
 use super::{Model, State};
 use crate::contact::spring::searched_stick_compression;
 use crate::laws::friction::FrictionLaw;
+use crate::laws::path::Path;
 
-/// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed, where one limit holds it and where slip begins at a static one; of a column of
+/// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed along a line, where it turns, and where slip begins at a static limit; of a column of
 /// slip at a spring, by what is done with it there, by the response of a table and by steps, and by each other spring that it is carried to; and of a column of loads there.
-const BY_SUBSTEP: [f64; 2] = [30.0, 45.0];
+const BY_SUBSTEP: [f64; 3] = [15.0, 30.0, 45.0];
 const BY_COLUMN: [f64; 2] = [13.0, 45.0];
 const BY_PAIR: f64 = 0.03;
 const BY_LOAD: f64 = 15.0;
@@ -45,9 +46,15 @@ impl Model {
         self.meter.read()
     }
 
-    /// Counts substeps through which springs were passed.
-    pub(super) fn count_substeps(&self, substeps: usize, law: &dyn FrictionLaw) {
-        self.meter.add(BY_SUBSTEP[usize::from(law.static_factor() != 1.0)] * substeps as f64);
+    /// Counts substeps of a path through which springs were passed.
+    pub(super) fn count_substeps(&self, substeps: usize, path: &Path, law: &dyn FrictionLaw) {
+        let [straight, turning, jumping] = BY_SUBSTEP;
+        let each = match law.static_factor() == 1.0 {
+            true if path.is_straight() => straight,
+            true => turning,
+            false => jumping,
+        };
+        self.meter.add(each * substeps as f64);
     }
 
     /// Compression at the edge of stick in a cycle, m, as [`CycleLoading::slip_compression`]; counts the periods of the search for it.
@@ -55,7 +62,7 @@ impl Model {
         let ratio = self.contact.half_space().stiffness_ratio();
         let Some(path) = &loading.path else { return loading.slip_compression(ratio) };
         let (compression, substeps) = searched_stick_compression(path, &*loading.friction, ratio);
-        self.count_substeps(substeps, &*loading.friction);
+        self.count_substeps(substeps, path, &*loading.friction);
         compression
     }
 

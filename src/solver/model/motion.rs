@@ -216,7 +216,7 @@ impl Model {
                 motion.slip_slope[(j, m)] = *value;
             }
         }
-        self.count_substeps(springs.passed, &*loading.friction);
+        self.count_substeps(springs.passed, path, &*loading.friction);
         let count = path.points.len();
         let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
         let bearing = Bearing::new(loading);
