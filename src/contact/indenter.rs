@@ -6,6 +6,7 @@ mod cubic;
 mod equivalent;
 pub mod paraboloid;
 pub mod power_law;
+mod rise_kernel;
 mod shape;
 mod smoothing;
 pub mod sphere;

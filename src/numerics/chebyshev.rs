@@ -65,6 +65,21 @@ impl Chebyshev {
         (0..terms).map(projected).collect()
     }
 
+    /// Coefficients of the powers of `2x - 1` of the polynomial that interpolates `function` on `[0, 1]`, for few terms.
+    pub fn powers<const TERMS: usize>(function: impl Fn(f64) -> f64) -> [f64; TERMS] {
+        let mut powers = [0.0; TERMS];
+        // T_(j+1) = 2x T_j - T_(j-1), in powers of x.
+        let (mut before, mut term) = ([0.0; TERMS], [0.0; TERMS]);
+        term[0] = 1.0;
+        for (j, c) in Self::coefficients(&function, 1.0, TERMS).into_iter().enumerate() {
+            powers.iter_mut().zip(&term).for_each(|(sum, power)| *sum += c * power);
+            let factor = if j == 0 { 1.0 } else { 2.0 };
+            let next = std::array::from_fn(|i| if i == 0 { 0.0 } else { factor * term[i - 1] } - before[i]);
+            (before, term) = (term, next);
+        }
+        powers
+    }
+
     /// Value at `x`, by Clenshaw's recurrence.
     pub fn value(&self, x: f64) -> f64 {
         let y = 2.0 * x / self.end - 1.0;

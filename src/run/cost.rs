@@ -44,7 +44,7 @@ pub(in crate::run) const OF_COMPANION: f64 = 0.2;
 const MOST_WORK_OF_LAST: f64 = 6e9;
 
 /// Most work of all attempts at a run together, their companions included, as [`work_so_far`], and the part of [`MOST_WORK`] that each may take in any case.
-const MOST_WORK_OF_ALL: f64 = 1.5e10;
+const MOST_WORK_OF_ALL: f64 = 1.6e10;
 const LEAST_PART: f64 = 0.05;
 
 /// Work of an attempt that is left: to begin it, over [`MOST_WORK`], and over that of its companion.
@@ -86,7 +86,7 @@ const BY_TRIPLE: [f64; 2] = [0.08, 0.35];
 const OF_RESOLVED: f64 = 1.5;
 
 /// How much longer it takes where a profile is a table and the edge of stick moves: slip of the unworn contact is then by quadrature in each evaluation.
-const OF_TABLE: f64 = 12.0;
+const OF_TABLE: f64 = 7.0;
 
 /// Work of a step that is tried, nanoseconds of one core, about, but for that of the periods that are resolved. The same on every machine, so that a run and one that
 /// was interrupted take the same way.

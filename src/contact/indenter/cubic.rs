@@ -83,12 +83,19 @@ impl Cubic {
     /// Difference between `√(start² + offset)` and `start`: to full relative accuracy within a piece and its neighbours, to the rounding
     /// of the values farther away.
     pub(super) fn rise(&self, start: f64, offset: f64) -> f64 {
+        self.rise_from(self.index(start), start, offset)
+    }
+
+    /// The same where the piece that holds the start is known.
+    pub(super) fn rise_from(&self, from: usize, start: f64, offset: f64) -> f64 {
         if offset == 0.0 {
             return 0.0;
         }
         let end = (start * start + offset).max(0.0).sqrt();
         let distance = offset / (start + end);
-        let (from, to) = (self.index(start), self.index(end));
+        // Most rises end within the piece.
+        let within = self.knots[from] <= end && self.knots.get(from + 1).is_none_or(|next| end < *next);
+        let to = if within { from } else { self.index(end) };
         if from == to {
             let t = start - self.knots[from];
             return distance * self.mean_slope(from, t, t + distance);

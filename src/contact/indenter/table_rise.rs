@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::cubic::Cubic;
+use super::rise_kernel::RiseKernel;
 use crate::error::{Error, Result};
 use crate::numerics::chebyshev::PiecewiseChebyshev;
 use crate::numerics::quadrature::Rule;
@@ -56,7 +57,10 @@ pub struct RiseTransform {
     /// Rise at the nodes of each piece.
     rises: Vec<[f64; NODES]>,
     rule: Rule,
+    kernel: RiseKernel,
     end_rule: Rule,
+    /// `v^ν` at the nodes of that rule.
+    end_powers: Vec<f64>,
     volume_rule: Rule,
     blocks: Vec<Block>,
     interpolation: Interpolation,
@@ -75,8 +79,11 @@ struct Block {
 
 /// Where a transform begins and for which radius it is, with the rise over the edge of stick that it begins at.
 struct Span {
-    /// Squared radius, m², and logarithm of the edge of stick, and what `g` has risen by there.
+    /// Squared radius, m², of the edge of stick, its radius, m, and the piece of `g` there.
     stick_area: f64,
+    radius: f64,
+    piece: usize,
+    /// Its logarithm, and what `g` has risen by there.
     start: f64,
     rise: f64,
     end: f64,
@@ -94,7 +101,7 @@ impl RiseTransform {
         }
         let end = knots[knots.len() - 1] + BEYOND;
         add_knot(&mut knots, end);
-        let rule = Rule::legendre(NODES)?;
+        let (rule, end_rule) = (Rule::legendre(NODES)?, Rule::jacobi(NODES + 2, 0.0, -nu)?);
         let area = radius * radius;
         let rise = |pair: &[f64]| {
             std::array::from_fn(|i| {
@@ -110,7 +117,9 @@ impl RiseTransform {
             nu,
             knots,
             rises,
-            end_rule: Rule::jacobi(NODES + 2, 0.0, -nu)?,
+            kernel: RiseKernel::new(nu),
+            end_powers: end_rule.nodes.iter().map(|v| v.powf(nu)).collect(),
+            end_rule,
             volume_rule: Rule::jacobi(NODES + 2, 0.0, mu)?,
             rule,
             blocks: Vec::new(),
@@ -128,10 +137,7 @@ impl RiseTransform {
 
     /// `F(g - g(c))/(φ ℓ^(1+μ))`, m, with `φ = sin(πν)/(πμ)` and `μ = (1-k)/2`, at `ℓ = ln(r²/c²)`.
     pub(crate) fn mean(&self, logarithm: f64) -> f64 {
-        self.mean_over(
-            logarithm,
-            &Span { stick_area: self.radius * self.radius, start: 0.0, rise: 0.0, end: logarithm },
-        )
+        self.mean_over(logarithm, &self.span(self.radius * self.radius, 0.0, 0.0, logarithm))
     }
 
     /// The same for another edge of stick, outside the radius `c`.
@@ -146,7 +152,12 @@ impl RiseTransform {
             return self.mean(logarithm);
         }
         let rise = self.curve.rise(self.radius, stick_area - area);
-        self.mean_over(logarithm, &Span { stick_area, start, rise, end: start + logarithm })
+        self.mean_over(logarithm, &self.span(stick_area, start, rise, start + logarithm))
+    }
+
+    fn span(&self, stick_area: f64, start: f64, rise: f64, end: f64) -> Span {
+        let radius = stick_area.sqrt();
+        Span { stick_area, radius, piece: self.curve.index(radius), start, rise, end }
     }
 
     fn mean_over(&self, logarithm: f64, span: &Span) -> f64 {
@@ -155,15 +166,16 @@ impl RiseTransform {
         if last > first && self.knots[last] >= span.end {
             last -= 1;
         }
-        let kernel = |y: f64| y.exp_m1().powf(-self.nu);
+        let kernel = |y: f64| self.kernel.value(y);
         let low = if last > first { (self.knots[last] - span.start).max(0.0) } else { 0.0 };
         let width = logarithm - low;
-        let own = self.end_rule.nodes.iter().zip(&self.end_rule.complements).zip(&self.end_rule.weights);
-        let own: f64 = own
-            .map(|((v, complement), weight)| {
-                weight * shed(width * v).powf(-self.nu) * self.rise(span, low + width * complement)
-            })
-            .sum();
+        // Of `(e^y - 1)^(-ν)` the rule has `v^(-ν)` as its weight.
+        let rule = &self.end_rule;
+        let own = (0..rule.len()).map(|i| {
+            let smooth = self.end_powers[i] * kernel(width * rule.nodes[i]);
+            rule.weights[i] * smooth * self.rise(span, low + width * rule.complements[i])
+        });
+        let own = width.powf(self.nu) * own.sum::<f64>();
         let mut others = 0.0;
         if last > first {
             let mut begin = first;
@@ -184,8 +196,7 @@ impl RiseTransform {
     /// (1+μ) ℓ^(-1-μ) ∫_0^ℓ (q_c - (g - g(c))) e^(u-ℓ) (e^(ℓ-u) - 1)^μ du
     /// ```
     pub(crate) fn volume_mean(&self, compression: f64, logarithm: f64) -> f64 {
-        let span =
-            Span { stick_area: self.radius * self.radius, start: 0.0, rise: compression, end: logarithm };
+        let span = self.span(self.radius * self.radius, 0.0, compression, logarithm);
         let last = self.piece(logarithm);
         let width = logarithm - self.knots[last];
         let rule = &self.volume_rule;
@@ -244,7 +255,7 @@ impl RiseTransform {
 
     /// Rise over the edge of stick at the distance `offset` from it in the logarithm; less `rise` where there is none of its own.
     fn rise(&self, span: &Span, offset: f64) -> f64 {
-        let rise = self.curve.rise(span.stick_area.sqrt(), span.stick_area * offset.exp_m1());
+        let rise = self.curve.rise_from(span.piece, span.radius, span.stick_area * offset.exp_m1());
         if span.start > 0.0 { rise } else { rise - span.rise }
     }
 

@@ -10,9 +10,9 @@ use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
 
 /// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed along a line, where it turns, and where slip begins at a static limit; of a column of
-/// slip at a spring, by what is done with it there, by the response of a table and by steps, and by each other spring that it is carried to; and of a column of loads there.
+/// slip at a spring, by what is done with it there, by the response of a table, by steps, and in gross slip, where springs are few, and by each other spring that it is carried to; and of a column of loads there.
 const BY_SUBSTEP: [f64; 3] = [15.0, 30.0, 45.0];
-const BY_COLUMN: [f64; 2] = [13.0, 45.0];
+const BY_COLUMN: [f64; 3] = [13.0, 45.0, 30.0];
 const BY_PAIR: f64 = 0.03;
 const BY_LOAD: f64 = 15.0;
 
@@ -81,7 +81,13 @@ impl Model {
         }
         let [springs, slips, loads] =
             [self.springs(), motion.free.len(), motion.load.ncols()].map(|it| it as f64);
-        let (at_spring, carried) = (BY_COLUMN[usize::from(loading.steps.is_some())], BY_PAIR * springs);
+        let [by_table, by_steps, in_gross_slip] = BY_COLUMN;
+        let at_spring = match loading.steps {
+            Some(_) => by_steps,
+            None if self.gross().is_some() => in_gross_slip,
+            None => by_table,
+        };
+        let carried = BY_PAIR * springs;
         self.meter
             .add(times as f64 * springs * (slips * (at_spring + carried) + loads * (BY_LOAD + carried)));
     }
