@@ -86,7 +86,7 @@ const BY_TRIPLE: [f64; 2] = [0.08, 0.35];
 const OF_RESOLVED: f64 = 1.5;
 
 /// How much longer it takes where a profile is a table and the edge of stick moves: slip of the unworn contact is then by quadrature in each evaluation.
-const OF_TABLE: f64 = 7.0;
+const OF_TABLE: f64 = 5.0;
 
 /// Work of a step that is tried, nanoseconds of one core, about, but for that of the periods that are resolved. The same on every machine, so that a run and one that
 /// was interrupted take the same way.

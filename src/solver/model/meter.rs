@@ -11,10 +11,10 @@ use crate::laws::path::Path;
 
 /// Nanoseconds of one core, as measured on two idle ones: of a substep through which a spring is passed along a line, where it turns, and where slip begins at a static limit; of a column of
 /// slip at a spring, by what is done with it there, by the response of a table, by steps, and in gross slip, where springs are few, and by each other spring that it is carried to; and of a column of loads there.
-const BY_SUBSTEP: [f64; 3] = [15.0, 30.0, 45.0];
+const BY_SUBSTEP: [f64; 3] = [15.0, 15.0, 45.0];
 const BY_COLUMN: [f64; 3] = [13.0, 45.0, 30.0];
 const BY_PAIR: f64 = 0.03;
-const BY_LOAD: f64 = 15.0;
+const BY_LOAD: f64 = 45.0;
 
 /// Nanoseconds of one core that a jump of the edge of stick between two blocks takes, on a profile in closed form and on one that is a table: what the ground that
 /// it passes has risen by is carried to wherever the contact edge can be.
