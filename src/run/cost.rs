@@ -79,8 +79,8 @@ const OF_JUMP: f64 = 8.0;
 /// Nanoseconds of one core of a step in any case, in gross slip and elsewhere; of its slopes, by pair of springs, where they are found in each step by stages; and of its factors, by triple of springs,
 /// without and with slopes that are products of matrices.
 const OVERHEAD: [f64; 2] = [4e3, 4e4];
-const BY_SLOPE: f64 = 20.0;
-const BY_TRIPLE: [f64; 2] = [0.08, 0.35];
+const BY_SLOPE: f64 = 3.0;
+const BY_TRIPLE: [f64; 2] = [0.06, 0.35];
 
 /// Power of the springs with which the work of resolved periods grows.
 const OF_RESOLVED: f64 = 1.5;
