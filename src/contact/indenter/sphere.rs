@@ -89,7 +89,6 @@ impl Equivalent for SphereEquivalent {
         Some(self.radius)
     }
 
-    /// `g = R/(1+k) Σ (1/2)_j/(1+ν)_j z^(j+1)`, `z = x²/R²`.
     fn value(&self, x: f64) -> f64 {
         self.rise(0.0, x.min(2.0 * self.radius).powi(2))
     }
