@@ -51,6 +51,8 @@ pub struct Coordinate {
 }
 
 impl Coordinate {
+    const AXIS: Self = Self { y: 0.0, h: 1.0 };
+
     fn inwards(from: Self, distance: f64) -> Self {
         Self { y: from.y - distance, h: from.h + distance }
     }
@@ -245,12 +247,21 @@ impl WholeContact {
 
     /// Outermost coordinate at which values inside exceed `level`, if they do on the axis or at a node.
     pub fn last_above(&self, inside: &[f64], level: f64) -> Option<Coordinate> {
-        let mut values = inside.to_vec();
-        values.push(0.0);
-        let axis = Coordinate { y: 0.0, h: 1.0 };
-        let above = (0..inside.len()).rev().find(|i| inside[*i] > level);
-        let low = above.map_or(axis, |i| self.nodes[i]);
-        let high = self.nodes[above.map_or(0, |i| i + 1)];
+        self.falls_below(inside, level, inside.iter().rposition(|value| *value > level))
+    }
+
+    /// Innermost coordinate at which values inside do not exceed `level`, if they do on the axis.
+    pub fn first_below(&self, inside: &[f64], level: f64) -> Option<Coordinate> {
+        let above = inside.iter().take_while(|value| **value > level).count().checked_sub(1);
+        let on_axis = self.value(&with_edge(inside), Coordinate::AXIS);
+        (on_axis > level).then(|| self.falls_below(inside, level, above)).flatten()
+    }
+
+    /// Where values inside fall to `level` behind a node at which they exceed it, or behind the axis if they do there.
+    fn falls_below(&self, inside: &[f64], level: f64, node: Option<usize>) -> Option<Coordinate> {
+        let values = with_edge(inside);
+        let low = node.map_or(Coordinate::AXIS, |i| self.nodes[i]);
+        let high = self.nodes[node.map_or(0, |i| i + 1)];
         let between =
             |part: f64| Coordinate { y: low.y + part * (high.y - low.y), h: low.h + part * (high.h - low.h) };
         let excess = |part: f64| self.value(&values, between(part)) - level;
@@ -265,8 +276,7 @@ impl WholeContact {
     /// # Errors
     /// Those of the quadrature.
     pub fn up_to(&self, end: Coordinate, inside: &[f64]) -> Result<Vec<[f64; 3]>> {
-        let mut values = inside.to_vec();
-        values.push(0.0);
+        let values = with_edge(inside);
         let places = self.places_from_axis(end, self.nu)?;
         Ok(places
             .into_iter()
@@ -584,6 +594,11 @@ fn power_at_edge(grading: f64) -> f64 {
 /// `y - y_other`, by the distances from the nearer end.
 fn difference(one: Coordinate, other: Coordinate) -> f64 {
     if one.y + other.y < 1.0 { one.y - other.y } else { other.h - one.h }
+}
+
+/// Values at all nodes, of which that at the edge is nothing.
+fn with_edge(inside: &[f64]) -> Vec<f64> {
+    inside.iter().copied().chain([0.0]).collect()
 }
 
 fn product(matrix: &Mat<f64>, values: &[f64]) -> Vec<f64> {

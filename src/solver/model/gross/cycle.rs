@@ -31,7 +31,7 @@ pub(super) struct Sliding {
     components: usize,
     /// In closed form at constant indentation.
     closed: Option<ClosedForm>,
-    /// `c²/a²` of the springs that stick.
+    /// `c²/a²` within which all springs stick.
     stuck: f64,
 }
 
@@ -48,13 +48,13 @@ struct ClosedForm {
     nu: f64,
 }
 
-/// Springs next to the axis that stick.
+/// Springs that stick: next to the axis, or in a ring where ground has worn more within. A place on the surface follows the springs within it, and sticks where all of these do.
 struct Stick {
-    /// `c²/a²`.
+    /// `c²/a²` within which all springs stick.
     fraction: f64,
     /// As how much they count: less than 1 where they are so few that a rig counts as moving all.
     part: f64,
-    /// `ξ`, weight of `∫ ξ^(ν-1) dξ`, and `b`; empty where the latter is that of the polynomials.
+    /// `ξ`, weight of `∫ ξ^(ν-1) dξ`, and `b` of the springs next to the axis; empty where what is borne is that of the polynomials through what each spring bears as it sticks.
     within: Vec<[f64; 3]>,
 }
 
@@ -205,11 +205,12 @@ impl Model {
         let exact = if gross.sticks() { friction.remembers_slip() } else { gross.holds_force() };
         let presses = exact && loading.control == AmplitudeControl::Displacement;
         let (amplitude, stick) = match presses {
-            true => (loading.amplitude, self.pressed_to_stick(gross, loading, compression, &borne)),
+            true => (loading.amplitude, self.pressed_to_stick(gross, loading, compression, &mut borne)),
             false => self.sticking(gross, loading, force, &mut borne),
         };
         let level = amplitude / per_depth;
-        let as_pressed = plain && (presses || stick.is_none());
+        let is_held = stick.as_ref().is_some_and(|stick| stick.within.is_empty());
+        let as_pressed = plain && !is_held;
         let carried = if as_pressed { whole.elastic.clone() } else { mesh.profile(&borne) };
         // Of the springs but for those that stick.
         let sum = |value: &dyn Fn(f64, f64) -> f64| -> f64 {
@@ -253,13 +254,19 @@ impl Model {
         gross: &Gross,
         loading: &CycleLoading,
         compression: &[f64],
-        borne: &[f64],
+        borne: &mut [f64],
     ) -> Option<Stick> {
-        let ratio = self.contact.half_space().stiffness_ratio();
+        let (mesh, ratio) = (&gross.mesh, self.contact.half_space().stiffness_ratio());
         let sticking = loading.friction.compression_at(ratio * loading.amplitude);
-        let end = gross.mesh.last_above(compression, sticking)?;
-        let within = gross.mesh.up_to(end, borne).ok()?;
-        Some(Stick { fraction: gross.mesh.fraction(end), part: 1.0, within })
+        let end = mesh.last_above(compression, sticking)?;
+        let disc = mesh.first_below(compression, sticking);
+        if disc == Some(end) {
+            let within = mesh.up_to(end, borne).ok()?;
+            return Some(Stick { fraction: mesh.fraction(end), part: 1.0, within });
+        }
+        let level = ratio / loading.friction.reference_coefficient() * loading.amplitude;
+        borne.iter_mut().zip(compression).filter(|(_, q)| **q > sticking).for_each(|(b, _)| *b = level);
+        Some(Stick { fraction: disc.map_or(0.0, |disc| mesh.fraction(disc)), part: 1.0, within: vec![] })
     }
 
     /// The amplitude, m, and the springs that stick under a balance of forces, or in a block that moves them less far: each bears `M U`, and so the polynomials
@@ -284,8 +291,8 @@ impl Model {
             return (sliding, None);
         }
         let stuck = |level: f64| {
-            let fraction = mesh.fraction(mesh.last_above(borne, level)?);
-            let part = smooth_step(fraction / LAST_STICK - 1.0);
+            let part = smooth_step(mesh.fraction(mesh.last_above(borne, level)?) / LAST_STICK - 1.0);
+            let fraction = mesh.first_below(borne, level).map_or(0.0, |disc| mesh.fraction(disc));
             Some(Stick { fraction, part, within: vec![] })
         };
         let held = |level: f64, stick: Option<&Stick>| -> Vec<f64> {
@@ -324,7 +331,7 @@ impl Model {
             slip
         };
         let sticks = |spring: &usize| (0..motion.free.len()).all(|m| motion.slip[(*spring, m)] == 0.0);
-        let last = (0..mesh.inner()).rev().find(sticks);
+        let last = (0..mesh.inner()).take_while(sticks).last();
         let slip: Vec<Vec<f64>> = (0..motion.free.len()).map(column).collect();
         // Along a line: what a kink in the slip of one step makes of that elsewhere cancels over the steps, by its sign.
         let direction = (components == 1).then(|| directions(motion, mesh.profile_weights(), &motion.slip));
