@@ -20,6 +20,7 @@ const NEARLY: f64 = 0.05;
 
 /// Over kinks: corrections before a step is given up; most by which what is left of the equations may grow in one; the part of itself to which it is shortened until it
 /// does not, and how often; what is left that counts as nothing, since rounding is of that size; and the most that the last correction may leave.
+const MIXED_CORRECTIONS: usize = 16;
 const KINKED_CORRECTIONS: usize = 24;
 const GROWN: f64 = 2.0;
 const SHORTENED: f64 = 0.25;
@@ -137,6 +138,8 @@ pub(super) struct Newton {
     pub contraction: f64,
     /// Whether corrections may be shortened where whole ones do not converge, as over kinks.
     pub by_parts: bool,
+    /// Whether whole corrections fell, but slowly, with a matrix of their own.
+    is_slow: bool,
 }
 
 impl Newton {
@@ -144,10 +147,44 @@ impl Newton {
     pub fn solve(&mut self, equations: &mut dyn Equations, at: &mut Unknowns, evaluations: &mut u64) -> bool {
         let start = self.by_parts.then(|| at.clone());
         self.by_whole_corrections(equations, at, evaluations)
+            || self.is_slow && self.by_mixed_corrections(equations, at, evaluations)
             || start.is_some_and(|start| {
                 *at = start;
                 self.by_parts_of_corrections(equations, at, evaluations)
             })
+    }
+
+    /// Corrections each by a matrix of its own, where whole ones fall slowly: at a root that is nearly a multiple one, those before tell how much of each to take.
+    fn by_mixed_corrections(
+        &mut self,
+        equations: &mut dyn Equations,
+        at: &mut Unknowns,
+        evaluations: &mut u64,
+    ) -> bool {
+        let mut mixing = Mixing::default();
+        let mut least = f64::INFINITY;
+        for _ in 0..MIXED_CORRECTIONS {
+            *evaluations += equations.evaluations_of_matrix() + 1;
+            self.factorise(equations, at);
+            let Some(factors) = &self.factors else { return false };
+            let mut change = factors.correction(equations);
+            let size = Correction::new(&change, at, equations.scale()).size();
+            if !(size < GROWN * least) {
+                break;
+            }
+            least = least.min(size);
+            at.correct(&mixed(&mut mixing, &mut change, at, equations.scale()));
+            if !equations.evaluate(at) {
+                return false;
+            }
+            let mut correction = Correction::new(&change, at, equations.scale());
+            correction.remaining = size;
+            if equations.is_last(&correction) {
+                return true;
+            }
+        }
+        self.outdate();
+        false
     }
 
     /// Corrections that are shortened where what is left of the equations would grow, each by a matrix of its own.
@@ -182,6 +219,7 @@ impl Newton {
         at: &mut Unknowns,
         evaluations: &mut u64,
     ) -> bool {
+        self.is_slow = false;
         if !equations.evaluate(at) {
             return false;
         }
@@ -232,6 +270,7 @@ impl Newton {
                     if equations.is_round_off() {
                         return true;
                     }
+                    self.is_slow = !free && fresh && size < before;
                     break;
                 }
                 if slow {
@@ -311,11 +350,14 @@ fn correct_by_part(
 /// A correction improved by those before.
 fn mixed(mixing: &mut Mixing, change: &mut [f64], at: &Unknowns, scale: f64) -> Vec<f64> {
     let inner = at.compression.len();
-    // The slip area counts as much as a compression.
-    let weight = scale / at.slip_area;
-    change[inner] *= weight;
+    // Areas count as much as a compression.
+    let weights = [scale / at.slip_area, scale / at.stick_area];
+    let weigh =
+        |of_areas: &mut [f64]| of_areas.iter_mut().zip(&weights).for_each(|(it, weight)| *it *= weight);
+    weigh(&mut change[inner..]);
     let mut taken = mixing.improved(change);
-    change[inner] /= weight;
-    taken[inner] /= weight;
+    for values in [change, &mut taken] {
+        values[inner..].iter_mut().zip(&weights).for_each(|(it, weight)| *it /= weight);
+    }
     taken
 }
