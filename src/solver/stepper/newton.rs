@@ -270,7 +270,7 @@ impl Newton {
                     if equations.is_round_off() {
                         return true;
                     }
-                    self.is_slow = !free && fresh && size < before;
+                    self.is_slow = !free && fresh && size < GROWN * before;
                     break;
                 }
                 if slow {
