@@ -11,7 +11,7 @@ use fretwear::contact::half_space::HalfSpace;
 use fretwear::contact::indenter::{Indenter, power_law_factor};
 use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::Coulomb;
-use fretwear::laws::loading::{Amplitude, Duration, Load, Loading};
+use fretwear::laws::loading::{Amplitude, Block, Duration, Load, Loading};
 use fretwear::laws::motion::NormalOscillation;
 use fretwear::laws::wear::{Archard, PowerLaw};
 use fretwear::numerics::grid::Clustering;
@@ -644,6 +644,36 @@ fn the_output_ends_where_the_profile_does() {
                 snapshot.tau
             );
         }
+    }
+}
+
+/// Springs of a ring may come to stick, pressed harder than those within it where ground has worn more. Places within the ring follow the springs within it, which go on to slide: as the ring comes to
+/// stick, in a block that moves it less far or under a held normal force, wear changes by no jump.
+#[test]
+fn wear_within_a_ring_of_springs_goes_on_as_the_ring_comes_to_stick() {
+    let contact = contact(2.0, 0.0, 2.0);
+    let block = |amplitude_factor: f64| Block { duration: 1.0, amplitude_factor, indentation_factor: 1.0 };
+    let in_blocks = Conditions { blocks: vec![block(1.0), block(0.3)], repeat: true, ..plain(&contact) };
+    let held = Conditions { holds_normal_force: true, ..plain(&contact) };
+    for (conditions, sticks) in [(in_blocks, true), (held, false)] {
+        let model = model(&contact, &conditions, 24).unwrap();
+        let gross = model.gross().unwrap();
+        assert_eq!(gross.sticks(), sticks);
+        let loading = model.schedule().loading(0.0, 0.0);
+        let first = model.initial_state().unwrap().compression;
+        let hollow: Vec<f64> = first.iter().map(|q| q * (first[0] / q).ln().min(1.0)).collect();
+        let most = hollow.iter().copied().fold(0.0, f64::max);
+        assert!(hollow[0] < 0.1 * most && *hollow.last().unwrap() < 0.5 * most);
+        let rates = |over: f64| {
+            let compression: Vec<f64> = hollow.iter().map(|q| q * over * loading.amplitude / most).collect();
+            model.gross_rates(gross, &loading, &compression).unwrap()
+        };
+        let [slides, sticks] = [rates(1.0 - 1e-9), rates(1.0 + 1e-9)];
+        let size = slides.compression.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+        let pairs = slides.compression.iter().zip(&sticks.compression);
+        let jump = pairs.fold(0.0, |most: f64, (one, other)| most.max((one - other).abs())) / size;
+        println!("rates {size:e}, their jump over that {jump:.1e}");
+        assert!(jump < 1e-6, "{jump:e}");
     }
 }
 
