@@ -13,7 +13,7 @@ use fretwear::laws::conditions::Conditions;
 use fretwear::laws::friction::Coulomb;
 use fretwear::laws::loading::{Amplitude, Block, Duration, Load, Loading};
 use fretwear::laws::motion::NormalOscillation;
-use fretwear::laws::wear::{Archard, PowerLaw};
+use fretwear::laws::wear::{Archard, NonLocal, PowerLaw};
 use fretwear::numerics::grid::Clustering;
 use fretwear::run::Results;
 use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
@@ -647,14 +647,18 @@ fn the_output_ends_where_the_profile_does() {
     }
 }
 
-/// Springs of a ring may come to stick, pressed harder than those within it where ground has worn more. Places within the ring follow the springs within it, which go on to slide: as the ring comes to
+/// Springs of a ring may come to stick, pressed harder than those within it where debris has worn more. Places within the ring follow the springs within it, which go on to slide: as the ring comes to
 /// stick, in a block that moves it less far or under a held normal force, wear changes by no jump.
 #[test]
 fn wear_within_a_ring_of_springs_goes_on_as_the_ring_comes_to_stick() {
     let contact = contact(2.0, 0.0, 2.0);
     let block = |amplitude_factor: f64| Block { duration: 1.0, amplitude_factor, indentation_factor: 1.0 };
-    let in_blocks = Conditions { blocks: vec![block(1.0), block(0.3)], repeat: true, ..plain(&contact) };
-    let held = Conditions { holds_normal_force: true, ..plain(&contact) };
+    let spread = || {
+        let wear = NonLocal { coefficient: contact.wear().coefficient, length: 0.2 };
+        Conditions { wear: Arc::new(wear), ..plain(&contact) }
+    };
+    let in_blocks = Conditions { blocks: vec![block(1.0), block(0.3)], repeat: true, ..spread() };
+    let held = Conditions { holds_normal_force: true, ..spread() };
     for (conditions, sticks) in [(in_blocks, true), (held, false)] {
         let model = model(&contact, &conditions, 24).unwrap();
         let gross = model.gross().unwrap();

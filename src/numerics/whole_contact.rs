@@ -150,6 +150,11 @@ impl WholeContact {
         Ok(it)
     }
 
+    /// Whether what is between nodes follows those next to a place alone, so that no kink makes it swing elsewhere.
+    pub fn is_local(&self) -> bool {
+        matches!(self.between, Between::Cubics)
+    }
+
     /// Nodes inside the edge.
     pub fn inner(&self) -> usize {
         self.nodes.len() - 1

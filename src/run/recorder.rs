@@ -344,7 +344,9 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
         return None;
     }
     let by_depth = model.wear_volume(simulation.fields());
-    let whole = if model.gross().is_some() { by_depth } else { model.limit_volume() };
+    // A coarse mesh may make less than nothing of a little wear.
+    let whole =
+        if model.gross().is_some() { by_depth.max(state.volume_by_rate) } else { model.limit_volume() };
     let by_rate = (state.volume_by_rate - by_depth).abs() / whole;
     let [of_volume, of_depth] = passes::left_out(model);
     let of_passes =

@@ -430,13 +430,18 @@ impl Simulation {
         told
     }
 
+    /// Cycles up to which wear is shown that has no end, where it is to end by its rate.
+    fn shown_until(&self) -> Option<f64> {
+        let unending = matches!(self.plan.end, End::Rate(_)) && self.model.wears_without_end();
+        unending.then(|| SHOWN_UNENDING / self.model.contact().tau_per_cycle())
+    }
+
     /// How it ended; none while it goes on or can be resumed.
     pub fn outcome(&self) -> Option<Outcome> {
         match self.plan.end {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
-            End::Rate(_) if self.model.wears_without_end() => {
-                let tau = self.state.cycles * self.model.contact().tau_per_cycle();
-                (tau >= SHOWN_UNENDING).then_some(Outcome::Unending)
+            End::Rate(_) if let Some(end) = self.shown_until() => {
+                (self.state.cycles >= end).then_some(Outcome::Unending)
             }
             End::Rate(fraction) => {
                 // After a step beyond the limit the rate is negative for a while.

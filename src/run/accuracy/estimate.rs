@@ -290,9 +290,15 @@ impl Companions {
     pub(in crate::run) fn shares(&self, simulation: &Simulation, snapshots: &[Snapshot]) -> Option<Shares> {
         let worn: Vec<Worn> = snapshots.iter().map(|it| Worn::shown(it, self.every)).collect();
         let own = |value: fn(&Worn) -> f64| worn.iter().map(value).fold(0.0, f64::max);
-        let scale = self.limit.unwrap_or_else(|| [own(|it| it.volume), own(Worn::deepest)]);
-        if !(self.smooth || scale[0] > 0.0 && scale[1] > 0.0) {
-            return None;
+        let mut scale = self.limit.unwrap_or_else(|| [own(|it| it.volume), own(Worn::deepest)]);
+        if scale[0] > 0.0 && scale[1] == 0.0 {
+            // The radii shown lie beyond a contact that wear has hardly let grow.
+            scale[1] = f64::INFINITY;
+        }
+        if !(self.smooth || scale[0] > 0.0) {
+            // A coarse mesh may make less than nothing of a little wear.
+            let wears = simulation.state().volume_by_rate > 0.0;
+            return wears.then(|| Shares { springs: UNKNOWN, ..Shares::default() });
         }
         // Nothing wears less than not at all.
         let below =
@@ -395,7 +401,7 @@ fn by_known_order(simulation: &Simulation, ratio: f64, difference: f64) -> Optio
 /// The error in gross slip: by the companion, or what energy and profile disagree by.
 ///
 /// Where springs came to stick again next to the axis, ever more springs do not help: the kink there is not resolved. That shows in a stick radius that
-/// falls, which under a held force it never does.
+/// falls, which under a held force it never does while every cycle is the same.
 fn in_gross_slip(
     simulation: &Simulation,
     snapshots: &[Snapshot],
@@ -411,7 +417,8 @@ fn in_gross_slip(
     let error = if tells && error.is_finite() { error } else { UNKNOWN };
     let shares = Shares { order: ORDER_IN_GROSS_SLIP, ..Shares::default() };
     let most = snapshots.iter().map(|it| it.stick_radius).fold(0.0, f64::max);
-    if most > 0.0 && model.gross().is_some_and(Gross::holds_force) {
+    if most > 0.0 && model.gross().is_some_and(Gross::holds_force) && model.schedule().keeps_slipping_alike()
+    {
         let lost = SHARE_OF_STICK * (1.0 - simulation.cycle().stick_radius / most).max(0.0);
         return Shares { left_out: (difference.max(balance) + lost).min(UNKNOWN), ..shares };
     }

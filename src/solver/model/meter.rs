@@ -17,6 +17,9 @@ const BY_COLUMN: [f64; 3] = [15.0, 10.0, 27.0];
 const BY_LOAD: [f64; 3] = [6.0, 10.0, 11.0];
 const BY_PAIR: f64 = 0.055;
 
+/// The same of a column of loads by each other spring to which debris spreads it.
+const BY_SPREAD: f64 = 0.55;
+
 /// Nanoseconds of one core that a jump of the edge of stick between two blocks takes, on a profile in closed form and on one that is a table: what the ground that
 /// it passes has risen by is carried to wherever the contact edge can be.
 const BY_JUMP: [f64; 2] = [2.3e6, 1e6];
@@ -89,7 +92,8 @@ impl Model {
         };
         let [at_spring, of_load] = [BY_COLUMN[kind], BY_LOAD[kind]];
         let carried = BY_PAIR * springs;
-        self.meter
-            .add(times as f64 * springs * (slips * (at_spring + carried) + loads * (of_load + carried)));
+        let spread = if loading.wear.spreading().is_some() { BY_SPREAD * springs } else { 0.0 };
+        let by_spring = slips * (at_spring + carried) + loads * (of_load + carried + spread);
+        self.meter.add(times as f64 * springs * by_spring);
     }
 }

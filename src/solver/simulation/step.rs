@@ -91,6 +91,8 @@ impl Simulation {
             (Some(kink), Some(output)) => Some(if has_come(output, kink) { output } else { kink }),
             (kink, output) => kink.or(output),
         };
+        // Companions are compared there.
+        let target = [target, self.shown_until()].into_iter().flatten().reduce(f64::min);
         let landing = |step: f64, at: Option<f64>| {
             let output = at.is_some() && at == output;
             Landing { step, at, output, rests: false }

@@ -138,16 +138,24 @@ pub(super) struct Newton {
     pub contraction: f64,
     /// Whether corrections may be shortened where whole ones do not converge, as over kinks.
     pub by_parts: bool,
+    /// Whether corrections are mixed where whole ones fall slowly.
+    mixes: bool,
     /// Whether whole corrections fell, but slowly, with a matrix of their own.
     is_slow: bool,
 }
 
 impl Newton {
+    /// # Arguments
+    /// * `mixes` -- whether corrections are mixed where whole ones fall slowly
+    pub fn mixing(mixes: bool) -> Self {
+        Self { mixes, ..Self::default() }
+    }
+
     /// Solves the equations of a stage, from and into `at`, and leaves them evaluated there; whether it converged to a contact.
     pub fn solve(&mut self, equations: &mut dyn Equations, at: &mut Unknowns, evaluations: &mut u64) -> bool {
         let start = self.by_parts.then(|| at.clone());
         self.by_whole_corrections(equations, at, evaluations)
-            || self.is_slow && self.by_mixed_corrections(equations, at, evaluations)
+            || self.mixes && self.is_slow && self.by_mixed_corrections(equations, at, evaluations)
             || start.is_some_and(|start| {
                 *at = start;
                 self.by_parts_of_corrections(equations, at, evaluations)

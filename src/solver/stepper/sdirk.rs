@@ -31,15 +31,15 @@ pub struct Sdirk {
 }
 
 impl Sdirk {
-    /// Tolerance of runs that only have to come to an end. From there on parts of corrections lead over kinks, which may end beside the way on which smaller steps would go
-    /// (docs/numerics.md).
+    /// Tolerance of runs that only have to come to an end. From there on parts of corrections lead over kinks, and corrections are mixed that fall slowly; both may end beside the way on which smaller
+    /// steps would go (docs/numerics.md).
     pub const COARSE: f64 = 1e-2;
 
     /// A stepper whose stages are solved well below the tolerance of the time stepping.
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
-            newton: Newton::default(),
+            newton: Newton::mixing(tolerance >= Self::COARSE),
             tried: Tried::default(),
             stick_trial: StickTrial::default(),
         }

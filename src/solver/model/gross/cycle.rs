@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 use faer::Mat;
 
 use super::{Gross, Whole};
+use crate::laws::friction::FrictionLaw;
 use crate::laws::wear::Spreading;
 use crate::numerics::roots::bracketed;
 use crate::numerics::whole_contact::{Coordinate, WholeContact};
@@ -62,6 +63,23 @@ struct Stick {
 fn smooth_step(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)
+}
+
+/// Whether a ring of springs that stick can be told from what the mesh makes of a kink or jump elsewhere: not on polynomials through all nodes, nor with a static limit, where what springs bear jumps as
+/// they begin to slip. Where not, all up to the outermost spring that sticks are taken to.
+fn tells_rings(mesh: &WholeContact, friction: &dyn FrictionLaw) -> bool {
+    mesh.is_local() && !friction.remembers_slip()
+}
+
+/// Where the disc ends in which all springs stick, if there is one: those stick that bear more than `level`, the outermost at `end`.
+fn disc_that_sticks(
+    mesh: &WholeContact,
+    friction: &dyn FrictionLaw,
+    borne: &[f64],
+    level: f64,
+    end: Coordinate,
+) -> Option<Coordinate> {
+    if tells_rings(mesh, friction) { mesh.first_below(borne, level) } else { Some(end) }
 }
 
 impl ClosedForm {
@@ -259,7 +277,7 @@ impl Model {
         let (mesh, ratio) = (&gross.mesh, self.contact.half_space().stiffness_ratio());
         let sticking = loading.friction.compression_at(ratio * loading.amplitude);
         let end = mesh.last_above(compression, sticking)?;
-        let disc = mesh.first_below(compression, sticking);
+        let disc = disc_that_sticks(mesh, &*loading.friction, compression, sticking, end);
         if disc == Some(end) {
             let within = mesh.up_to(end, borne).ok()?;
             return Some(Stick { fraction: mesh.fraction(end), part: 1.0, within });
@@ -291,8 +309,10 @@ impl Model {
             return (sliding, None);
         }
         let stuck = |level: f64| {
-            let part = smooth_step(mesh.fraction(mesh.last_above(borne, level)?) / LAST_STICK - 1.0);
-            let fraction = mesh.first_below(borne, level).map_or(0.0, |disc| mesh.fraction(disc));
+            let end = mesh.last_above(borne, level)?;
+            let part = smooth_step(mesh.fraction(end) / LAST_STICK - 1.0);
+            let disc = disc_that_sticks(mesh, &*loading.friction, borne, level, end);
+            let fraction = disc.map_or(0.0, |disc| mesh.fraction(disc));
             Some(Stick { fraction, part, within: vec![] })
         };
         let held = |level: f64, stick: Option<&Stick>| -> Vec<f64> {
@@ -331,7 +351,10 @@ impl Model {
             slip
         };
         let sticks = |spring: &usize| (0..motion.free.len()).all(|m| motion.slip[(*spring, m)] == 0.0);
-        let last = (0..mesh.inner()).take_while(sticks).last();
+        let last = match tells_rings(mesh, &*loading.friction) {
+            true => (0..mesh.inner()).take_while(sticks).last(),
+            false => (0..mesh.inner()).rev().find(sticks),
+        };
         let slip: Vec<Vec<f64>> = (0..motion.free.len()).map(column).collect();
         // Along a line: what a kink in the slip of one step makes of that elsewhere cancels over the steps, by its sign.
         let direction = (components == 1).then(|| directions(motion, mesh.profile_weights(), &motion.slip));
