@@ -355,10 +355,11 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
 }
 
 /// Whether the two volumes tell the error: where the edge of stick moves neither sees that of its place, nor that of an amplitude which follows from a balance
-/// of forces, nor that of the kink where springs begin to slip in gross slip.
+/// of forces, nor that of kinks in gross slip: where springs begin to slip, and of all that cubics carry.
 fn has_balance(simulation: &Simulation) -> bool {
     let (model, _) = simulation.first();
     let tangential = model.schedule().conditions().tangential_control != TangentialControl::Displacement;
-    let has_kink = model.gross().is_some_and(Gross::sticks);
+    let is_smooth = Gross::is_smooth(model.contact(), model.schedule());
+    let has_kink = model.gross().is_some_and(|gross| gross.sticks() || !is_smooth);
     !tangential && model.moving().is_none() && !has_kink
 }

@@ -212,9 +212,10 @@ fn is_smooth(scene: &Scene, model: &Model) -> bool {
     scene.numerics().stepper == Stepper::Implicit && model.wears_smoothly()
 }
 
-/// Whether no spring sticks in any cycle, as the unworn contact tells.
+/// Whether no spring sticks in any cycle, as the unworn contact tells, on polynomials: on cubics kinks may come up later, and what debris does not wear off.
 fn always_slides(model: &Model) -> bool {
-    model.gross().is_some_and(|gross| !gross.sticks())
+    let is_smooth = Gross::is_smooth(model.contact(), model.schedule());
+    is_smooth && model.gross().is_some_and(|gross| !gross.sticks())
 }
 
 /// One in so many radii of a run is compared.
@@ -417,8 +418,8 @@ fn in_gross_slip(
     let error = if tells && error.is_finite() { error } else { UNKNOWN };
     let shares = Shares { order: ORDER_IN_GROSS_SLIP, ..Shares::default() };
     let most = snapshots.iter().map(|it| it.stick_radius).fold(0.0, f64::max);
-    if most > 0.0 && model.gross().is_some_and(Gross::holds_force) && model.schedule().keeps_slipping_alike()
-    {
+    let holds_force = model.gross().is_some_and(Gross::holds_force);
+    if most > 0.0 && holds_force && model.schedule().keeps_slipping_alike() {
         let lost = SHARE_OF_STICK * (1.0 - simulation.cycle().stick_radius / most).max(0.0);
         return Shares { left_out: (difference.max(balance) + lost).min(UNKNOWN), ..shares };
     }
