@@ -682,12 +682,17 @@ fn wear_within_a_ring_of_springs_goes_on_as_the_ring_comes_to_stick() {
 }
 
 /// A paraboloid at more than full sliding, with the tables given.
-fn on_cubics(grading: f64, tables: &str, control: &str, accuracy: f64, by_hand: &str) -> Results {
-    let text = format!(
+fn on_cubics_text(grading: f64, tables: &str, control: &str, numerics: &str) -> String {
+    format!(
         "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = {grading}\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666667\n\
-         {tables}\n[loading]\n{control}\namplitude_ratio = 2.5\ntau = 1\n[numerics]\naccuracy = {accuracy}\n{by_hand}\n[output]\nsnapshots = 2\n"
-    );
-    text.parse::<Scene>().unwrap().simulate().unwrap()
+         {tables}\n[loading]\n{control}\namplitude_ratio = 2.5\n[numerics]\n{numerics}\n[output]\nsnapshots = 2\n"
+    )
+}
+
+/// The same to τ = 1.
+fn on_cubics(grading: f64, tables: &str, control: &str, accuracy: f64, by_hand: &str) -> Results {
+    let (control, numerics) = (format!("{control}\ntau = 1"), format!("accuracy = {accuracy}\n{by_hand}"));
+    on_cubics_text(grading, tables, &control, &numerics).parse::<Scene>().unwrap().simulate().unwrap()
 }
 
 /// Wear that spreads, traction that is not in proportion to the pressure, and springs that lose contact within a period have kinks along the contact, or wear nothing smoother: three
@@ -717,6 +722,25 @@ fn gross_slip_on_cubics_keeps_to_its_accuracy() {
                 assert!(off < 1e-3, "{off:e}");
             }
         }
+    }
+}
+
+/// Debris a sixtieth as wide as the contact comes to be, under a held normal force: first order is what is left of cubics, and their estimates tell. The rim that debris spares sticks in a ring at k = -0.3.
+#[test]
+fn debris_under_a_held_force_is_followed_to_several_radii_and_its_error_told() {
+    let spread = "[friction.coulomb]\ncoefficient = 0.5\n[wear.non-local]\ncoefficient = 1.667e-13\nlength = \"50 um\"";
+    for (grading, tau, springs) in [(0.0, 30.0, [60, 120]), (-0.3, 10.0, [60, 120])] {
+        let control = format!("normal_force = 266.6666666666667\ntau = {tau}\n");
+        let results = springs.map(|springs| {
+            let by_hand = format!("springs = {springs}\ntolerance = 1e-5");
+            let text = on_cubics_text(grading, spread, &control, &by_hand);
+            text.parse::<Scene>().unwrap().simulate().unwrap()
+        });
+        let [coarse, fine] = [&results[0], &results[1]].map(|it| it.last().wear_volume);
+        let (off, told) = ((coarse / fine - 1.0).abs(), results[0].error_estimate().unwrap());
+        let grown = results[1].last().contact_radius / results[1].snapshots()[0].contact_radius;
+        println!("k = {grading}: {grown:.2} times the radius, off by {off:.1e}, estimated {told:.1e}");
+        assert!(grown > 2.5 && off < 1e-2 && told > 0.2 * off, "{grown}, {off:e}, {told:e}");
     }
 }
 
