@@ -440,8 +440,8 @@ impl Simulation {
     pub fn outcome(&self) -> Option<Outcome> {
         match self.plan.end {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
-            End::Rate(_) if let Some(end) = self.shown_until() => {
-                (self.state.cycles >= end).then_some(Outcome::Unending)
+            End::Rate(_) if self.model.wears_without_end() => {
+                self.shown_until().filter(|end| self.state.cycles >= *end).map(|_| Outcome::Unending)
             }
             End::Rate(fraction) => {
                 // After a step beyond the limit the rate is negative for a while.

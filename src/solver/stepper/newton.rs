@@ -18,9 +18,11 @@ const RENEWED: f64 = 0.03;
 /// What a correction by factors of compressed matrices may leave of itself: measured 1e-4 to 0.04, the most at the contact edge.
 const NEARLY: f64 = 0.05;
 
+/// Mixed corrections before a step is given up.
+const MIXED_CORRECTIONS: usize = 16;
+
 /// Over kinks: corrections before a step is given up; most by which what is left of the equations may grow in one; the part of itself to which it is shortened until it
 /// does not, and how often; what is left that counts as nothing, since rounding is of that size; and the most that the last correction may leave.
-const MIXED_CORRECTIONS: usize = 16;
 const KINKED_CORRECTIONS: usize = 24;
 const GROWN: f64 = 2.0;
 const SHORTENED: f64 = 0.25;
