@@ -212,10 +212,10 @@ fn is_smooth(scene: &Scene, model: &Model) -> bool {
     scene.numerics().stepper == Stepper::Implicit && model.wears_smoothly()
 }
 
-/// Whether no spring sticks in any cycle, as the unworn contact tells, on polynomials: on cubics kinks may come up later, and what debris does not wear off.
+/// Whether no spring sticks in any cycle, as the unworn contact tells, and wear is local: a rim that debris spares may come to stick, and debris to be narrower than springs are apart.
 fn always_slides(model: &Model) -> bool {
-    let is_smooth = Gross::is_smooth(model.contact(), model.schedule());
-    is_smooth && model.gross().is_some_and(|gross| !gross.sticks())
+    let spreads = model.schedule().conditions().wear.spreading().is_some();
+    !spreads && model.gross().is_some_and(|gross| !gross.sticks())
 }
 
 /// One in so many radii of a run is compared.
