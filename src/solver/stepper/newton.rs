@@ -179,7 +179,7 @@ impl Newton {
             let Some(factors) = &self.factors else { return false };
             let mut change = factors.correction(equations);
             let size = Correction::new(&change, at, equations.scale()).size();
-            if !(size < GROWN * least) {
+            if size.is_nan() || size >= GROWN * least {
                 break;
             }
             least = least.min(size);
