@@ -216,8 +216,7 @@ fn wear_of_which_a_coarse_mesh_makes_less_than_nothing_is_found_on_a_finer_one()
              [wear.archard]\ncoefficient = 5.7e-13\n[loading]\nindentation = 3.3e-4\namplitude_ratio = 1.02\ntau = 1.5e-5\n[numerics]\n{numerics}\n[output]\nsnapshots = 4\n"
         ))
     };
-    let [chosen, fine, coarse] =
-        ["accuracy = 1e-3", "springs = 120", "springs = 8"].map(|numerics| scene(numerics));
+    let [chosen, fine, coarse] = ["accuracy = 1e-3", "springs = 120", "springs = 8"].map(scene);
     let off = (chosen.last().wear_volume / fine.last().wear_volume - 1.0).abs();
     let told = chosen.error_estimate().unwrap();
     println!("off by {off:.1e}, estimated {told:.1e}");
