@@ -252,24 +252,33 @@ impl WholeContact {
 
     /// Outermost coordinate at which values inside exceed `level`, if they do on the axis or at a node.
     pub fn last_above(&self, inside: &[f64], level: f64) -> Option<Coordinate> {
-        self.falls_below(inside, level, inside.iter().rposition(|value| *value > level))
+        self.falls_below(&with_edge(inside), level, inside.iter().rposition(|value| *value > level))
     }
 
     /// Innermost coordinate at which values inside do not exceed `level`, if they do on the axis.
-    pub fn first_below(&self, inside: &[f64], level: f64) -> Option<Coordinate> {
-        let above = inside.iter().take_while(|value| **value > level).count().checked_sub(1);
-        let on_axis = self.value(&with_edge(inside), Coordinate::AXIS);
-        (on_axis > level).then(|| self.falls_below(inside, level, above)).flatten()
+    ///
+    /// # Arguments
+    /// * `last` -- [the outermost at which they do](WholeContact::last_above)
+    pub fn first_below(&self, inside: &[f64], level: f64, last: Coordinate) -> Option<Coordinate> {
+        let values = with_edge(inside);
+        let is_above = |value: &f64| *value > level;
+        let node = inside.iter().take_while(|value| is_above(value)).count().checked_sub(1);
+        if !is_above(&self.value(&values, Coordinate::AXIS)) {
+            None
+        } else if node == inside.iter().rposition(is_above) {
+            Some(last)
+        } else {
+            self.falls_below(&values, level, node)
+        }
     }
 
-    /// Where values inside fall to `level` behind a node at which they exceed it, or behind the axis if they do there.
-    fn falls_below(&self, inside: &[f64], level: f64, node: Option<usize>) -> Option<Coordinate> {
-        let values = with_edge(inside);
+    /// Where values at all nodes fall to `level` behind a node at which they exceed it, or behind the axis if they do there.
+    fn falls_below(&self, values: &[f64], level: f64, node: Option<usize>) -> Option<Coordinate> {
         let low = node.map_or(Coordinate::AXIS, |i| self.nodes[i]);
         let high = self.nodes[node.map_or(0, |i| i + 1)];
         let between =
             |part: f64| Coordinate { y: low.y + part * (high.y - low.y), h: low.h + part * (high.h - low.h) };
-        let excess = |part: f64| self.value(&values, between(part)) - level;
+        let excess = |part: f64| self.value(values, between(part)) - level;
         if excess(0.0) <= 0.0 {
             return None;
         }

@@ -438,11 +438,11 @@ impl Simulation {
 
     /// How it ended; none while it goes on or can be resumed.
     pub fn outcome(&self) -> Option<Outcome> {
+        if let Some(end) = self.shown_until() {
+            return (self.state.cycles >= end).then_some(Outcome::Unending);
+        }
         match self.plan.end {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
-            End::Rate(_) if self.model.wears_without_end() => {
-                self.shown_until().filter(|end| self.state.cycles >= *end).map(|_| Outcome::Unending)
-            }
             End::Rate(fraction) => {
                 // After a step beyond the limit the rate is negative for a while.
                 let spent = self.cycle.volume >= 0.0

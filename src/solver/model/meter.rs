@@ -9,7 +9,7 @@ use crate::contact::spring::searched_stick_compression;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
 
-/// Nanoseconds of one core, as fitted to 42 runs of all kinds, that what they took was 0.8 to 1.2 of: of a substep through which a spring is passed along a line, where it turns, and where slip begins
+/// Nanoseconds of one core, as fitted to 42 runs of all kinds, which took 0.8 to 1.25 times as long: of a substep through which a spring is passed along a line, where it turns, and where slip begins
 /// at a static limit; of a column of slip at a spring and of one of loads, each by what is done with it there, by the response of a table, by steps, and in gross slip; and of either by each other spring
 /// that it is carried to.
 const BY_SUBSTEP: [f64; 3] = [11.0, 11.0, 29.0];

@@ -71,15 +71,16 @@ fn tells_rings(mesh: &WholeContact, friction: &dyn FrictionLaw) -> bool {
     mesh.is_local() && !friction.remembers_slip()
 }
 
-/// Where the disc ends in which all springs stick, if there is one: those stick that bear more than `level`, the outermost at `end`.
+/// `c²/a²` within which all springs stick: those stick that bear more than `level`, the outermost at `end`.
 fn disc_that_sticks(
     mesh: &WholeContact,
     friction: &dyn FrictionLaw,
     borne: &[f64],
     level: f64,
     end: Coordinate,
-) -> Option<Coordinate> {
-    if tells_rings(mesh, friction) { mesh.first_below(borne, level) } else { Some(end) }
+) -> f64 {
+    let disc = if tells_rings(mesh, friction) { mesh.first_below(borne, level, end) } else { Some(end) };
+    disc.map_or(0.0, |disc| mesh.fraction(disc))
 }
 
 impl ClosedForm {
@@ -223,7 +224,10 @@ impl Model {
         let exact = if gross.sticks() { friction.remembers_slip() } else { gross.holds_force() };
         let presses = exact && loading.control == AmplitudeControl::Displacement;
         let (amplitude, stick) = match presses {
-            true => (loading.amplitude, self.pressed_to_stick(gross, loading, compression, &mut borne)),
+            true => {
+                let level = loading.amplitude / per_depth;
+                (loading.amplitude, self.pressed_to_stick(gross, loading, compression, level, &mut borne))
+            }
             false => self.sticking(gross, loading, force, &mut borne),
         };
         let level = amplitude / per_depth;
@@ -267,24 +271,27 @@ impl Model {
     }
 
     /// The springs that are pressed so hard under a held normal force, as the ground around them wears, that they stick again, if there are any.
+    ///
+    /// # Arguments
+    /// * `level` -- `M U/μ`, m, which those that stick bear
+    /// * `borne` -- `b`, m; on return what springs of a ring bear as they stick
     fn pressed_to_stick(
         &self,
         gross: &Gross,
         loading: &CycleLoading,
         compression: &[f64],
+        level: f64,
         borne: &mut [f64],
     ) -> Option<Stick> {
         let (mesh, ratio) = (&gross.mesh, self.contact.half_space().stiffness_ratio());
         let sticking = loading.friction.compression_at(ratio * loading.amplitude);
         let end = mesh.last_above(compression, sticking)?;
-        let disc = disc_that_sticks(mesh, &*loading.friction, compression, sticking, end);
-        if disc == Some(end) {
-            let within = mesh.up_to(end, borne).ok()?;
-            return Some(Stick { fraction: mesh.fraction(end), part: 1.0, within });
+        let fraction = disc_that_sticks(mesh, &*loading.friction, compression, sticking, end);
+        if fraction == mesh.fraction(end) {
+            return Some(Stick { fraction, part: 1.0, within: mesh.up_to(end, borne).ok()? });
         }
-        let level = ratio / loading.friction.reference_coefficient() * loading.amplitude;
         borne.iter_mut().zip(compression).filter(|(_, q)| **q > sticking).for_each(|(b, _)| *b = level);
-        Some(Stick { fraction: disc.map_or(0.0, |disc| mesh.fraction(disc)), part: 1.0, within: vec![] })
+        Some(Stick { fraction, part: 1.0, within: vec![] })
     }
 
     /// The amplitude, m, and the springs that stick under a balance of forces, or in a block that moves them less far: each bears `M U`, and so the polynomials
@@ -311,8 +318,7 @@ impl Model {
         let stuck = |level: f64| {
             let end = mesh.last_above(borne, level)?;
             let part = smooth_step(mesh.fraction(end) / LAST_STICK - 1.0);
-            let disc = disc_that_sticks(mesh, &*loading.friction, borne, level, end);
-            let fraction = disc.map_or(0.0, |disc| mesh.fraction(disc));
+            let fraction = disc_that_sticks(mesh, &*loading.friction, borne, level, end);
             Some(Stick { fraction, part, within: vec![] })
         };
         let held = |level: f64, stick: Option<&Stick>| -> Vec<f64> {
