@@ -20,12 +20,13 @@ use fretwear::study::{
     sweep::SweepReport,
 };
 use fretwear::{Progress, Result as Outcome, Stop, SweepOptions, Watch};
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
 use errors::{of_input, raised};
 use results::Results;
 use scene::Scene;
-use wait::{Call, waited};
+use wait::{Call, to_the_end, waited};
 
 /// How far each of many scenes is.
 struct Parts(Mutex<Vec<f64>>);
@@ -115,12 +116,11 @@ fn sweep(
     let seen = || rows.0.lock().map_or((0.0, 0.0), |it| (it.1 as f64, it.0 as f64));
     let call = Call { callback: progress, value: &seen };
     let work = || fretwear::Sweep::new(&study, &folder, &options, &stop)?.execute(Some(&rows));
-    let (outcome, _) = waited(py, &stop, &call, work)?;
-    let outcome = outcome.map_err(|error| of_input(py, &error))?;
+    let outcome = to_the_end(waited(py, &stop, &call, work)?)?.map_err(|error| of_input(py, &error))?;
     Ok(report::json(&SweepReport::new(&options, &outcome)))
 }
 
-/// Finds keys of a scene from measurements, and writes what `fretwear calibrate` writes; its JSON, or none where the user stopped it.
+/// Finds keys of a scene from measurements, and writes what `fretwear calibrate` writes; its JSON.
 #[pyfunction]
 fn calibrate(
     py: Python,
@@ -129,7 +129,7 @@ fn calibrate(
     overwrite: bool,
     predict: Option<&Bound<PyAny>>,
     draws: usize,
-) -> PyResult<Option<String>> {
+) -> PyResult<String> {
     let foretold = predict.map(|it| scene::foretold(it, draws)).transpose()?;
     let options = calibration::Options { overwrite, foretold };
     let laws = scene::calibration(calibrated)?.models();
@@ -139,8 +139,8 @@ fn calibrate(
         let found = Comparison::new(&laws, &folder, &options, &stop)?.run(None)?;
         Ok(found.map(|it| report::json(&it.report())))
     };
-    let (outcome, _) = waited(py, &stop, &call, || on_threads(work).and_then(|it| it))?;
-    outcome.map_err(|error| raised(py, &error))
+    let found = to_the_end(waited(py, &stop, &call, || on_threads(work).and_then(|it| it))?)?;
+    found.map_err(|error| raised(py, &error))?.ok_or_else(|| PyKeyboardInterrupt::new_err(()))
 }
 
 /// Opens a result file of any kind.

@@ -57,6 +57,14 @@ pub fn waited<T: Send>(
     }
 }
 
+/// What has come of work that the user has not stopped.
+///
+/// # Errors
+/// `KeyboardInterrupt`, also where the work was done by the time that it would have stopped: a caller's loop is to stop as well.
+pub fn to_the_end<T>((outcome, stopped): (T, bool)) -> PyResult<T> {
+    if stopped { Err(PyKeyboardInterrupt::new_err(())) } else { Ok(outcome) }
+}
+
 impl Call<'_> {
     fn now(&self, py: Python) -> PyResult<()> {
         py.check_signals()?;

@@ -55,11 +55,21 @@ def test_ctrl_c_stops_many_runs_and_gives_those_that_were_begun():
 
 
 def test_ctrl_c_stops_a_sweep_that_then_goes_on(tmp_path):
-    study = {"scene": str(BALL), "axes": [{"key": "loading.amplitude_ratio", "from": 0.1, "to": 0.9, "count": 150}]}
+    study = {"scene": str(BALL), "axes": [{"key": "loading.amplitude_ratio", "from": 0.1, "to": 0.9, "count": 2000}]}
     with pytest.raises(KeyboardInterrupt):
         interrupted_after(0.3, lambda: fretwear.sweep(study, output=tmp_path))
     swept = fretwear.sweep(study, output=tmp_path)
-    assert len(swept["wear_volume"]) == 150
+    assert len(swept["wear_volume"]) == 2000
+
+
+def test_ctrl_c_is_never_lost_however_near_the_end_it_comes(tmp_path):
+    study = {"scene": str(BALL), "axes": [{"key": "loading.amplitude_ratio", "from": 0.1, "to": 0.9, "count": 100}]}
+    started = time.perf_counter()
+    fretwear.sweep(study, output=tmp_path / "whole")
+    took = time.perf_counter() - started
+    for number in range(20):
+        with pytest.raises(KeyboardInterrupt):
+            interrupted_after((0.5 + number / 20) * took, lambda: fretwear.sweep(study, output=tmp_path / str(number)))
 
 
 def test_other_threads_of_python_go_on_meanwhile():

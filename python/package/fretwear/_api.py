@@ -138,8 +138,6 @@ def sweep(
     place: AbstractContextManager[Any] = tempfile.TemporaryDirectory() if output is None else nullcontext(output)
     with place as folder, _bar(progress) as shown:
         report = json.loads(_native.sweep(study, folder, threads, checkpoint_interval, shown))
-        if report["output"] is None:
-            raise KeyboardInterrupt
         return opened(_native.open(report["output"], output is not None))
 
 
@@ -168,10 +166,7 @@ def calibrate(
     """
     place: AbstractContextManager[Any] = tempfile.TemporaryDirectory() if output is None else nullcontext(output)
     with place as folder:
-        report = _native.calibrate(calibration, folder, overwrite, predict, draws)
-        if report is None:
-            raise KeyboardInterrupt
-        found = json.loads(report)
+        found = json.loads(_native.calibrate(calibration, folder, overwrite, predict, draws))
         arrays = _native.open(found["files"][0], output is not None)
     if output is None:
         found["files"] = []
