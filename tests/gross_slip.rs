@@ -768,7 +768,7 @@ fn gross_slip_on_cubics_of_media_stiff_at_their_top_alone() {
     };
     for grading in [-0.55, -0.7] {
         let refused = runs(grading, spread, 1e6, "accuracy = 1e-3").unwrap_err();
-        assert_eq!(refused.key().as_deref(), Some("wear.non-local.length"), "{refused}");
+        assert_eq!(refused.key(), Some("wear.non-local.length"), "{refused}");
         let message = refused.to_string();
         let (_, end) = message.split_once("(loading.tau = ").expect("a moment");
         let tau: f64 = end.split_once(')').unwrap().0.parse().unwrap();
