@@ -8,6 +8,7 @@ use super::budget::{
 use super::cost::work_so_far;
 use super::mesh::{self, SPRINGS_TO_SLIDE};
 use super::passes::Averaging;
+use super::rim;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
@@ -66,6 +67,7 @@ impl Parts {
         check_sliding(&parts.model)?;
         parts.limit = limit(&parts.model)?;
         if parts.model.gross().is_some() {
+            rim::check_sliding(&parts.model, parts.plan.end)?;
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
             let Reach { radius, sticks_again, worn } = match known {

@@ -1,6 +1,7 @@
 //! Ground that debris spares at the contact edge, where the law of wear is not local.
 
 use crate::error::{Error, Result};
+use crate::solver::model::Model;
 use crate::solver::simulation::{End, Simulation};
 
 /// Grading up to which a rim makes the contact edge jump: the deeper a half-space is soft, the less does pressure reach beyond the ground that is pressed on.
@@ -16,6 +17,22 @@ const SURE: f64 = 0.95;
 /// Relative step of the slope.
 const STEP: f64 = 1e-6;
 
+/// Refuses runs of a contact that sticks somewhere in which its edge would jump.
+pub(super) fn check_stick(simulation: &Simulation) -> Result<()> {
+    let (model, contact) = (simulation.model(), simulation.model().contact());
+    if model.gross().is_some() {
+        return Ok(());
+    }
+    let depth = simulation.fields().slip_depth.last().copied().unwrap_or_default();
+    let slip = contact.friction().coefficient / contact.half_space().stiffness_ratio() * depth;
+    check(model, simulation.plan().end, slip)
+}
+
+/// The same of a contact all of which slides.
+pub(super) fn check_sliding(model: &Model, end: End) -> Result<()> {
+    check(model, end, model.contact().amplitude())
+}
+
 /// Refuses runs in which the contact edge would jump.
 ///
 /// Debris that leaves spares the ground next to the contact edge, and what stays wears the ground farther inside: the depth rises as `(a - r)/length` there.
@@ -27,27 +44,21 @@ const STEP: f64 = 1e-6;
 /// ```
 ///
 /// Where the whole contact slides the ground slips by the amplitude `A` for `(μ_f/M) S_0(a)`, and `q_c/d` counts as 1.
-pub(super) fn check(simulation: &Simulation) -> Result<()> {
-    let (model, contact) = (simulation.model(), simulation.model().contact());
-    let conditions = model.schedule().conditions();
+fn check(model: &Model, end: End, slip: f64) -> Result<()> {
+    let contact = model.contact();
     let grading = contact.half_space().grading();
-    let Some(spreading) = conditions.wear.spreading().filter(|_| grading <= SOFTEST_WITHOUT) else {
+    let Some(spreading) =
+        model.schedule().conditions().wear.spreading().filter(|_| grading <= SOFTEST_WITHOUT)
+    else {
         return Ok(());
     };
     let radius = contact.contact_radius();
     let height = |part: f64| contact.indenter().profile(part * radius);
     let slope = (height(1.0) - height(1.0 - STEP)) / (STEP * radius);
-    let slip = match model.gross() {
-        Some(_) => contact.amplitude(),
-        None => {
-            let depth = simulation.fields().slip_depth.last().copied().unwrap_or_default();
-            contact.friction().coefficient / contact.half_space().stiffness_ratio() * depth
-        }
-    };
     let rise = 4.0 * contact.wear().coefficient * contact.mean_pressure() * slip / spreading.length;
     let severity = (contact.slip_compression() / contact.indentation()).min(1.0);
     let cycles = RIM * severity * (1.0 + grading).powi(2) * slope / rise;
-    let end = match simulation.plan().end {
+    let end = match end {
         End::Cycles(cycles) => cycles,
         End::Rate(_) => f64::INFINITY,
     };
