@@ -689,24 +689,31 @@ fn on_cubics_text(grading: f64, tables: &str, control: &str, numerics: &str) -> 
     )
 }
 
+/// Wear that spreads.
+const SPREAD: &str =
+    "[friction.coulomb]\ncoefficient = 0.5\n[wear.non-local]\ncoefficient = 1.667e-13\nlength = \"50 um\"";
+
+/// Springs that lose contact within a period.
+const LIFTED: &str = "[friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1.667e-13\n\
+                      [loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1";
+
+/// The same, run.
+fn run_on_cubics(grading: f64, tables: &str, control: &str, numerics: &str) -> fretwear::Result<Results> {
+    on_cubics_text(grading, tables, control, numerics).parse::<Scene>().unwrap().simulate()
+}
+
 /// The same to τ = 1.
 fn on_cubics(grading: f64, tables: &str, control: &str, accuracy: f64, by_hand: &str) -> Results {
     let (control, numerics) = (format!("{control}\ntau = 1"), format!("accuracy = {accuracy}\n{by_hand}"));
-    on_cubics_text(grading, tables, &control, &numerics).parse::<Scene>().unwrap().simulate().unwrap()
+    run_on_cubics(grading, tables, &control, &numerics).unwrap()
 }
 
 /// Wear that spreads, traction that is not in proportion to the pressure, and springs that lose contact within a period have kinks along the contact, or wear nothing smoother: three
 /// gradings and both controls keep to the accuracy asked for, by a run on 72 springs.
 #[test]
 fn gross_slip_on_cubics_keeps_to_its_accuracy() {
-    let coulomb = "[friction.coulomb]\ncoefficient = 0.5";
-    let spread = format!("{coulomb}\n[wear.non-local]\ncoefficient = 1.667e-13\nlength = \"50 um\"");
     let by_energy = "[friction.load-dependent]\ncoefficient = 0.5\nexponent = -0.2\n[wear.dissipated-energy]\ncoefficient = 3.3e-13";
-    let archard = "[wear.archard]\ncoefficient = 1.667e-13";
-    let lifted = format!(
-        "{coulomb}\n{archard}\n[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1"
-    );
-    for (tables, may_hold_force) in [(spread.as_str(), true), (by_energy, true), (&lifted, false)] {
+    for (tables, may_hold_force) in [(SPREAD, true), (by_energy, true), (LIFTED, false)] {
         for grading in [-0.3, 0.0, 0.5] {
             let controls = ["indentation = 1e-6", "normal_force = 266.6666666666667"];
             for control in &controls[..if may_hold_force { 2 } else { 1 }] {
@@ -728,13 +735,11 @@ fn gross_slip_on_cubics_keeps_to_its_accuracy() {
 /// Debris a sixtieth as wide as the contact comes to be, under a held normal force: first order is what is left of cubics, and their estimates tell. The rim that debris spares sticks in a ring at k = -0.3.
 #[test]
 fn debris_under_a_held_force_is_followed_to_several_radii_and_its_error_told() {
-    let spread = "[friction.coulomb]\ncoefficient = 0.5\n[wear.non-local]\ncoefficient = 1.667e-13\nlength = \"50 um\"";
     for (grading, tau, springs) in [(0.0, 30.0, [60, 120]), (-0.3, 10.0, [60, 120])] {
         let control = format!("normal_force = 266.6666666666667\ntau = {tau}\n");
         let results = springs.map(|springs| {
             let by_hand = format!("springs = {springs}\ntolerance = 1e-5");
-            let text = on_cubics_text(grading, spread, &control, &by_hand);
-            text.parse::<Scene>().unwrap().simulate().unwrap()
+            run_on_cubics(grading, SPREAD, &control, &by_hand).unwrap()
         });
         let [coarse, fine] = [&results[0], &results[1]].map(|it| it.last().wear_volume);
         let (off, told) = ((coarse / fine - 1.0).abs(), results[0].error_estimate().unwrap());
@@ -761,31 +766,27 @@ fn gross_slip_on_cubics_wears_by_energy() {
 /// pressure does not fall in too thin a layer.
 #[test]
 fn gross_slip_on_cubics_of_media_stiff_at_their_top_alone() {
-    let spread = "[friction.coulomb]\ncoefficient = 0.5\n[wear.non-local]\ncoefficient = 1.667e-13\nlength = \"50 um\"";
     let runs = |grading: f64, tables: &str, tau: f64, numerics: &str| {
-        let control = format!("indentation = 1e-6\ntau = {tau}");
-        on_cubics_text(grading, tables, &control, numerics).parse::<Scene>().unwrap().simulate()
+        run_on_cubics(grading, tables, &format!("indentation = 1e-6\ntau = {tau}"), numerics)
     };
     for grading in [-0.55, -0.7] {
-        let refused = runs(grading, spread, 1e6, "accuracy = 1e-3").unwrap_err();
+        let refused = runs(grading, SPREAD, 1e6, "accuracy = 1e-3").unwrap_err();
         assert_eq!(refused.key(), Some("wear.non-local.length"), "{refused}");
         let message = refused.to_string();
         let (_, end) = message.split_once("(loading.tau = ").expect("a moment");
         let tau: f64 = end.split_once(')').unwrap().0.parse().unwrap();
         let results = ["accuracy = 1e-3", "springs = 60\ntolerance = 1e-5"]
-            .map(|numerics| runs(grading, spread, tau / 10.0, numerics).unwrap());
+            .map(|numerics| runs(grading, SPREAD, tau / 10.0, numerics).unwrap());
         let [asked, fine] = [&results[0], &results[1]].map(|it| it.last().wear_volume);
         let off = (asked / fine - 1.0).abs();
-        let last = runs(grading, spread, tau, "accuracy = 1e-2").unwrap().error_estimate();
+        let last = runs(grading, SPREAD, tau, "accuracy = 1e-2").unwrap().error_estimate();
         println!("debris, k = {grading}, a tenth of τ = {tau:e}: off by {off:.1e}; to it {last:?}");
         assert!(off < 1e-3 && off < 5.0 * results[0].error_estimate().unwrap(), "{off:e}");
         assert!(last.unwrap() < 1e-2, "{last:?}");
     }
-    let lifted = "[friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1.667e-13\n\
-                  [loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1";
     for grading in [-0.55, -0.7] {
         let results = ["accuracy = 1e-2", "springs = 60\ntolerance = 1e-4"]
-            .map(|numerics| runs(grading, lifted, 1e-3, numerics).unwrap());
+            .map(|numerics| runs(grading, LIFTED, 1e-3, numerics).unwrap());
         let [asked, fine] = [&results[0], &results[1]].map(|it| it.last().wear_volume);
         println!(
             "lifted, k = {grading}: off by {:.1e}, {:?}",
@@ -794,6 +795,6 @@ fn gross_slip_on_cubics_of_media_stiff_at_their_top_alone() {
         );
         assert!((asked / fine - 1.0).abs() < 1e-2);
     }
-    let refused = runs(-0.9, lifted, 1e-3, "accuracy = 1e-2").unwrap_err();
+    let refused = runs(-0.9, LIFTED, 1e-3, "accuracy = 1e-2").unwrap_err();
     assert!(refused.to_string().contains("no mesh resolves the layer"), "{refused}");
 }

@@ -19,6 +19,11 @@ from test_results import BALL, same
 ENDLESS = {"numerics.stepper": "every-cycle", "loading.cycles": 1e9, "numerics.springs": 24}
 
 
+def amplitudes(count):
+    """A study of as many scenes."""
+    return {"scene": str(BALL), "axes": [{"key": "loading.amplitude_ratio", "from": 0.1, "to": 0.9, "count": count}]}
+
+
 def interrupted_after(seconds, work):
     """What comes of work that Ctrl-C interrupts, and how long it went on."""
     sent = []
@@ -57,7 +62,7 @@ def test_ctrl_c_stops_many_runs_and_gives_those_that_were_begun():
 
 
 def test_ctrl_c_stops_a_sweep_that_then_goes_on(tmp_path):
-    study = {"scene": str(BALL), "axes": [{"key": "loading.amplitude_ratio", "from": 0.1, "to": 0.9, "count": 2000}]}
+    study = amplitudes(2000)
     with pytest.raises(KeyboardInterrupt):
         interrupted_after(0.3, lambda: fretwear.sweep(study, output=tmp_path))
     swept = fretwear.sweep(study, output=tmp_path)
@@ -65,7 +70,7 @@ def test_ctrl_c_stops_a_sweep_that_then_goes_on(tmp_path):
 
 
 def test_ctrl_c_is_never_lost_however_near_the_end_it_comes(tmp_path):
-    study = {"scene": str(BALL), "axes": [{"key": "loading.amplitude_ratio", "from": 0.1, "to": 0.9, "count": 100}]}
+    study = amplitudes(100)
     started = time.perf_counter()
     fretwear.sweep(study, output=tmp_path / "whole")
     took = time.perf_counter() - started

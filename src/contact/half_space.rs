@@ -163,6 +163,12 @@ impl HalfSpace {
         self.grading
     }
 
+    /// Whether ground that wear spares at the contact edge comes to stand out as a rim that takes the load, so that the edge jumps. The deeper a half-space is soft, the
+    /// less does pressure reach beyond the ground that is pressed on; from -0.5 down that was measured.
+    pub fn loads_rims(&self) -> bool {
+        self.grading <= -0.5
+    }
+
     /// Normal spring stiffness `c_N`, N/m^(2+k).
     pub fn normal_stiffness(&self) -> f64 {
         self.normal_stiffness

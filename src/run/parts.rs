@@ -67,7 +67,7 @@ impl Parts {
         check_sliding(&parts.model)?;
         parts.limit = limit(&parts.model)?;
         if parts.model.gross().is_some() {
-            rim::check_sliding(&parts.model, parts.plan.end)?;
+            rim::check_gross_slip(&parts.model, parts.plan.end)?;
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
             let Reach { radius, sticks_again, worn } = match known {

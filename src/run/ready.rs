@@ -40,7 +40,7 @@ impl Ready {
         let numerics = scene.numerics();
         cost::check(numerics.stepper, numerics.springs.is_some(), &mut simulation)?;
         check_width(&mut simulation)?;
-        rim::check_stick(&simulation)?;
+        rim::check_partial_slip(&simulation)?;
         check_energy(&simulation)?;
         Ok(Self { simulation, limit })
     }

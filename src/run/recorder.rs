@@ -17,7 +17,7 @@ use crate::data::{Attempt, Checkpoint, RunWriter, Snapshot, StopReason};
 use crate::error::Result;
 use crate::laws::loading::TangentialControl;
 use crate::scene::{Scene, Stepper};
-use crate::solver::model::{CycleFields, FrettingLoop, Gross, OperatorStore, State};
+use crate::solver::model::{CycleFields, FrettingLoop, OperatorStore, State};
 use crate::solver::simulation::{Flow, Observer, Outcome, Simulation};
 
 /// Steps along one fretting loop to and fro at constant indentation in the result file, even.
@@ -359,7 +359,6 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
 fn has_balance(simulation: &Simulation) -> bool {
     let (model, _) = simulation.first();
     let tangential = model.schedule().conditions().tangential_control != TangentialControl::Displacement;
-    let is_smooth = Gross::is_smooth(model.contact(), model.schedule());
-    let has_kink = model.gross().is_some_and(|gross| gross.sticks() || !is_smooth);
+    let has_kink = model.gross().is_some_and(|gross| gross.sticks() || gross.is_on_cubics());
     !tangential && model.moving().is_none() && !has_kink
 }

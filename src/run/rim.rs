@@ -4,9 +4,6 @@ use crate::error::{Error, Result};
 use crate::solver::model::Model;
 use crate::solver::simulation::{End, Simulation};
 
-/// Grading up to which a rim makes the contact edge jump: the deeper a half-space is soft, the less does pressure reach beyond the ground that is pressed on.
-const SOFTEST_WITHOUT: f64 = -0.5;
-
 /// What the wear next to the contact edge may take off the slope of the profile there, over that slope, the part `q_c/d` of the indentation, at most 1, and `(1+k)²`:
 /// of 252 runs in partial slip none below comes to no end, and above it one is done and thirteen are told (docs/extremes.md).
 const RIM: f64 = 60.0;
@@ -18,7 +15,7 @@ const SURE: f64 = 0.95;
 const STEP: f64 = 1e-6;
 
 /// Refuses runs of a contact that sticks somewhere in which its edge would jump.
-pub(super) fn check_stick(simulation: &Simulation) -> Result<()> {
+pub(super) fn check_partial_slip(simulation: &Simulation) -> Result<()> {
     let (model, contact) = (simulation.model(), simulation.model().contact());
     if model.gross().is_some() {
         return Ok(());
@@ -29,7 +26,7 @@ pub(super) fn check_stick(simulation: &Simulation) -> Result<()> {
 }
 
 /// The same of a contact all of which slides.
-pub(super) fn check_sliding(model: &Model, end: End) -> Result<()> {
+pub(super) fn check_gross_slip(model: &Model, end: End) -> Result<()> {
     check(model, end, model.contact().amplitude())
 }
 
@@ -47,9 +44,8 @@ pub(super) fn check_sliding(model: &Model, end: End) -> Result<()> {
 fn check(model: &Model, end: End, slip: f64) -> Result<()> {
     let contact = model.contact();
     let grading = contact.half_space().grading();
-    let Some(spreading) =
-        model.schedule().conditions().wear.spreading().filter(|_| grading <= SOFTEST_WITHOUT)
-    else {
+    let spreading = model.schedule().conditions().wear.spreading();
+    let Some(spreading) = spreading.filter(|_| contact.half_space().loads_rims()) else {
         return Ok(());
     };
     let radius = contact.contact_radius();

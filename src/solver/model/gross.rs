@@ -97,19 +97,18 @@ impl Gross {
         Ok(true)
     }
 
-    /// Whether polynomials over the whole contact carry what happens in it; else cubics do.
+    /// Whether polynomials over the whole contact carry what happens in it, before the mesh is made; else cubics do.
     pub fn is_smooth(contact: &InitialContact, schedule: &Schedule) -> bool {
         is_smooth(contact, schedule)
     }
 
     pub(super) fn new(contact: &InitialContact, schedule: &Schedule, springs: usize) -> Result<Self> {
         let grading = contact.half_space().grading();
-        let is_smooth = is_smooth(contact, schedule);
-        let mesh = match is_smooth {
+        let mesh = match is_smooth(contact, schedule) {
             true => WholeContact::new(grading, springs - 1)?,
             false => WholeContact::on_cubics(grading, springs - 1)?,
         };
-        let (radius, first) = unworn(contact, &mesh, is_smooth);
+        let (radius, first) = unworn(contact, &mesh);
         let first_load = radius.powf(1.0 + grading) * mesh.load(&first);
         let mut lifted = vec![1.0; mesh.inner()];
         mesh.solve_profile(&mut lifted);
@@ -120,6 +119,11 @@ impl Gross {
 
     pub(super) fn springs(&self) -> usize {
         self.mesh.inner() + 1
+    }
+
+    /// Whether cubics carry what happens in the contact; else polynomials over all of it do.
+    pub fn is_on_cubics(&self) -> bool {
+        self.mesh.is_local()
     }
 
     /// Whether springs stick in some cycles, as the unworn contact tells, so that there is a kink where they begin to slip.
@@ -197,9 +201,9 @@ impl Slides {
 
 /// Radius of the first contact, m, and `q_0 = g_0(a_0) - g_0` inside it, m, to full relative accuracy at its edge as well; on cubics those of which the surface is the unworn profile at
 /// all nodes, so that what wears at first is not less than what they are off by.
-fn unworn(contact: &InitialContact, mesh: &WholeContact, is_smooth: bool) -> (f64, Vec<f64>) {
+fn unworn(contact: &InitialContact, mesh: &WholeContact) -> (f64, Vec<f64>) {
     let (profile, edge) = (contact.equivalent_profile(), contact.contact_radius());
-    if is_smooth {
+    if !mesh.is_local() {
         return (
             edge,
             mesh.distances().map(|distance| -profile.rise(edge, -edge * edge * distance)).collect(),

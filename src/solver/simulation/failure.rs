@@ -22,9 +22,6 @@ const THIN: f64 = 1e-6;
 const NEXT_TO_EDGE: f64 = 1e-2;
 const SPARED: f64 = 0.06;
 
-/// Grading up to which that matters.
-const SOFTEST_WITH_SPARED_EDGE: f64 = -0.5;
-
 /// Part of the steps of a run that end with a block, from which on blocks are why they are many.
 const OF_STEPS: f64 = 0.3;
 
@@ -35,7 +32,7 @@ fn thin_layer(model: &Model) -> String {
     let magnitude = (-1.0 - 2.0 / (1.0 + grading)) * 2.0_f64.log10();
     // Of which the layer is as thin as that.
     let widest = -1.0 - 2.0 / (2.0 * THIN).log2();
-    if model.gross().is_none() || magnitude > THIN.log10() {
+    if magnitude > THIN.log10() {
         return String::new();
     }
     format!(
@@ -44,19 +41,22 @@ fn thin_layer(model: &Model) -> String {
     )
 }
 
-/// What makes the contact edge hard to follow in gross slip of a medium that is stiff at its top alone.
+/// Why the contact edge is hard to follow in gross slip, if it is.
 fn at_edge(model: &Model) -> String {
+    if model.gross().is_some() { spared_edge(model) + &thin_layer(model) } else { String::new() }
+}
+
+/// Friction that falls so steeply with the load that its traction hardly wears the contact edge, where that leaves a rim.
+fn spared_edge(model: &Model) -> String {
     let (contact, conditions) = (model.contact(), model.schedule().conditions());
-    let share = |part: f64| conditions.friction.kinetic_strength(part * contact.indentation());
-    let spared = conditions.wear.takes_traction() && share(NEXT_TO_EDGE) < SPARED * NEXT_TO_EDGE * share(1.0);
-    if model.gross().is_none() || contact.half_space().grading() > SOFTEST_WITH_SPARED_EDGE || !spared {
-        return thin_layer(model);
+    let strength = |part: f64| conditions.friction.kinetic_strength(part * contact.indentation());
+    let spared = strength(NEXT_TO_EDGE) < SPARED * NEXT_TO_EDGE * strength(1.0);
+    if !(spared && conditions.wear.takes_traction() && contact.half_space().loads_rims()) {
+        return String::new();
     }
-    format!(
-        " (friction: with the load it falls faster than the pressure towards the contact edge, so that wear spares the ground there, which takes the load; exponents up to 0.5 are followed at \
-         gradings down to -0.7){}",
-        thin_layer(model)
-    )
+    " (friction: with the load it falls faster than the pressure towards the contact edge, so that wear spares the ground there, which takes the load; exponents up to 0.5 are followed at \
+     gradings down to -0.7)"
+        .to_owned()
 }
 
 /// What cuts steps short where blocks follow one another as fast.
