@@ -22,14 +22,14 @@ use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
 use hand_over::BEGINS_BELOW;
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::whole::{LEAST_STICK, LEAST_STICK_LATER, SOFT, carries, is_smooth, slides_on};
+use super::whole::{LEAST_STICK, LEAST_STICK_LATER, SOFT, carries, is_smooth, lifts, slides_on};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::transforms::Transforms;
 use crate::error::{Error, Result};
 use crate::numerics::linear::{dot, largest_magnitude};
 use crate::numerics::roots::next_to;
-use crate::numerics::whole_contact::WholeContact;
+use crate::numerics::whole_contact::{Touching, WholeContact};
 
 /// Radii of the output within the first contact, evenly spaced, and beyond, in constant ratio.
 const SHOWN: [usize; 2] = [64, 128];
@@ -38,6 +38,8 @@ const SHOWN: [usize; 2] = [64, 128];
 #[derive(Debug, Clone)]
 pub struct Gross {
     mesh: WholeContact,
+    /// Where springs lose contact within a cycle.
+    touching: Option<Touching>,
     /// `A^ν ∫ ξ^(ν-1) q dξ`, m^(2+k), of the first contact, where the force is held.
     held_load: Option<f64>,
     /// The same of the first contact in any case.
@@ -114,7 +116,8 @@ impl Gross {
         mesh.solve_profile(&mut lifted);
         let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
         let sticks = Slides::of(contact, schedule)? == Slides::InSomeCycles;
-        Ok(Self { mesh, held_load, first_load, first: (radius * radius, first), lifted, sticks })
+        let touching = lifts(schedule).then(|| Touching::new(&mesh)).transpose()?;
+        Ok(Self { mesh, touching, held_load, first_load, first: (radius * radius, first), lifted, sticks })
     }
 
     pub(super) fn springs(&self) -> usize {

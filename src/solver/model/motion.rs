@@ -217,11 +217,9 @@ impl Model {
             }
         }
         self.count_substeps(springs.passed, path, &*loading.friction);
-        let count = path.points.len();
-        let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
         let bearing = Bearing::new(loading);
         let different = if path.is_level() { 1 } else { steps };
-        let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing.of(q, lift)).iter().sum::<f64>();
+        let mean = |q: f64, m: usize| path.lifts(m).map(|lift| 0.5 * bearing.of(q, lift)).iter().sum::<f64>();
         motion.load = Mat::from_fn(inner, different, |j, m| mean(compression[j], m));
         motion.load_slope = Mat::from_fn(if slopes { inner } else { 0 }, different, |j, m| {
             self.slope(|q| mean(q, m), compression[j])
@@ -387,6 +385,16 @@ impl Model {
     fn slope(&self, function: impl Fn(f64) -> f64, compression: f64) -> f64 {
         let difference = DIFFERENCE * self.contact.slip_compression();
         (function(compression + difference) - function(compression)) / difference
+    }
+
+    /// Mean derivative by the compression of what springs bear while they are lifted from one height to another, m.
+    ///
+    /// # Arguments
+    /// * `bears` -- what a spring bears, by its lift
+    pub(super) fn mean_slope(&self, bears: impl Fn(f64) -> f64, lifts: [f64; 2]) -> f64 {
+        let least = DIFFERENCE * self.contact.slip_compression();
+        let [low, high] = [lifts[0].min(lifts[1]), lifts[0].max(lifts[1]).max(lifts[0].min(lifts[1]) + least)];
+        (bears(low) - bears(high)) / (high - low)
     }
 }
 

@@ -50,7 +50,7 @@ pub(super) fn not_carried(contact: &InitialContact, schedule: &Schedule) -> Erro
 }
 
 /// Whether springs within the mesh lose contact in some cycle, where pressure has kinks.
-fn lifts(schedule: &Schedule) -> bool {
+pub(super) fn lifts(schedule: &Schedule) -> bool {
     schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0)
 }
 

@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use faer::Mat;
+use faer::{Mat, Scale};
 
 use super::{Gross, Whole};
 use crate::laws::friction::FrictionLaw;
@@ -144,7 +144,7 @@ impl Model {
             Some(path) => {
                 let motion = self.resolved_motion(loading, path, compression, false);
                 self.count_columns(loading, &motion, 1);
-                self.sliding_on_path(gross, loading, &motion, whole)
+                self.sliding_on_path(gross, loading, &motion, compression, whole)
             }
             None => self.sliding_to_and_fro(gross, loading, compression, whole),
         };
@@ -346,6 +346,7 @@ impl Model {
         gross: &Gross,
         loading: &CycleLoading,
         motion: &Motion,
+        compression: &[f64],
         whole: &Whole,
     ) -> Sliding {
         let (mesh, components) = (&gross.mesh, motion.components);
@@ -378,7 +379,17 @@ impl Model {
             }
         });
         clear_negative(&mut path);
-        let pressure = self.pressed(gross, whole, &motion.load);
+        let pressure = match (&gross.touching, &loading.path) {
+            (Some(touching), Some(path)) if !path.is_level() => {
+                let bearing = Bearing::new(loading);
+                let mut pressure = touching.pressure(compression, motion.steps(), |q, m| {
+                    self.mean_slope(|lift| bearing.of(q, lift), path.lifts(m))
+                });
+                pressure *= Scale(self.gross_pressure_scale(whole.area));
+                pressure
+            }
+            _ => self.pressed(gross, whole, &motion.load),
+        };
         let stiffness = self.contact.half_space().normal_stiffness() * whole.area.powf(1.0 - self.mu());
         let energy = |part: fn(&Energies) -> f64| -> f64 {
             let springs = motion.energies.iter().zip(mesh.load_weights());

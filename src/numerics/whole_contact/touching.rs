@@ -1,0 +1,126 @@
+//! Pressure of springs that touch and lift off within a cycle.
+//!
+//! The load of a spring, `B(q - lift)`, has a kink where it touches, and next to the contact edge it falls faster than cubics follow; its compression does neither. So
+//! the pressure is found by what the load changes with the compression:
+//!
+//! ```text
+//! p(t) = -(1/π) ∫_ξ^1 (η-ξ)^(ν-1) B'(q - lift) q'(η) dη
+//! ```
+//!
+//! over the cells between nodes, on Lobatto's points, at which `B' q'` is taken for a cubic. Where compressions fall outwards, no pressure is negative.
+
+use std::f64::consts::PI;
+
+use faer::Mat;
+
+use super::{Coordinate, LOCAL, WholeContact, difference};
+use crate::error::Result;
+use crate::numerics::quadrature::Rule;
+
+/// Points of Lobatto's rule in a cell, from 0 to 1.
+const POINTS: [f64; 4] = [0.0, 0.276_393_202_250_021_03, 0.723_606_797_749_979, 1.0];
+
+/// Nodes of the rules over a cell, next to the node from which it is seen as well.
+const RULE: usize = 20;
+
+/// A point of a cell, by the nodes next to it.
+#[derive(Debug, Clone)]
+struct Point {
+    /// The first of them.
+    first: usize,
+    /// What they count for in a value, and in its derivative by `y`.
+    value: [f64; LOCAL],
+    slope: [f64; LOCAL],
+}
+
+/// Operators from the points of all cells to the inner nodes.
+#[derive(Debug, Clone)]
+pub struct Touching {
+    points: Vec<Point>,
+    /// Shape `(inner nodes, points)`.
+    kernel: Mat<f64>,
+}
+
+impl Touching {
+    /// Of a mesh on cubics.
+    ///
+    /// # Errors
+    /// Those of the quadrature.
+    pub fn new(mesh: &WholeContact) -> Result<Self> {
+        let (inner, nu) = (mesh.inner(), mesh.nu);
+        let cells = mesh.nodes.windows(2).map(|ends| (ends[0], difference(ends[1], ends[0])));
+        let [plain, at_node] = [Rule::legendre(RULE)?, Rule::jacobi(RULE, 0.0, nu - 1.0)?];
+        let mut points = Vec::with_capacity(POINTS.len() * inner);
+        let mut kernel = Mat::zeros(inner, POINTS.len() * inner);
+        for (cell, (start, width)) in cells.enumerate() {
+            let at = |part: f64| Coordinate::inwards(start, -part * width);
+            let first = mesh.first_of_cubic(at(0.5), mesh.nodes.len());
+            points.extend(POINTS.map(|part| Point {
+                first,
+                value: mesh.cubics(at(part), first),
+                slope: mesh.cubic_slopes(at(part), first),
+            }));
+            for row in 0..=cell {
+                let node = mesh.nodes[row];
+                let starts_there = row == cell;
+                let rule = if starts_there { &at_node } else { &plain };
+                for (v, w) in rule.nodes.iter().zip(&rule.weights) {
+                    let distance = difference(at(*v), node);
+                    let rise = mesh.rise(at(*v), node, distance);
+                    let weight = if starts_there {
+                        width.powf(nu) / nu * w * (rise / distance).powf(nu - 1.0)
+                    } else {
+                        width * w * rise.powf(nu - 1.0)
+                    };
+                    for (i, cardinal) in cardinals(*v).into_iter().enumerate() {
+                        kernel[(row, POINTS.len() * cell + i)] -= weight * cardinal / PI;
+                    }
+                }
+            }
+        }
+        Ok(Self { points, kernel })
+    }
+
+    /// `-(1/π) ∫_ξ^1 (η-ξ)^(ν-1) B'(q) q'(η) dη` at the inner nodes in each step, shape `(inner nodes, steps)`.
+    ///
+    /// # Arguments
+    /// * `inside` -- `q`
+    /// * `slope` -- `B'`, by compression and step
+    pub fn pressure(&self, inside: &[f64], steps: usize, slope: impl Fn(f64, usize) -> f64) -> Mat<f64> {
+        let near = |first: usize, weights: &[f64; LOCAL]| -> f64 {
+            weights.iter().zip(&inside[first..]).map(|(weight, value)| weight * value).sum()
+        };
+        let places: Vec<[f64; 2]> =
+            self.points.iter().map(|it| [near(it.first, &it.value), near(it.first, &it.slope)]).collect();
+        let loads = Mat::from_fn(places.len(), steps, |i, m| {
+            let [compression, rise] = places[i];
+            rise * slope(compression, m)
+        });
+        &self.kernel * &loads
+    }
+}
+
+/// Lagrange's polynomials on the points of a cell.
+fn cardinals(at: f64) -> [f64; POINTS.len()] {
+    let factor = |i: usize, j: usize| (at - POINTS[j]) / (POINTS[i] - POINTS[j]);
+    std::array::from_fn(|i| (0..POINTS.len()).filter(|j| *j != i).map(|j| factor(i, j)).product())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Touching, WholeContact};
+
+    /// Of loads in proportion to the compressions it is the pressure of the mesh.
+    #[test]
+    fn touching_springs_that_stay_in_contact_press_as_all_do() {
+        for grading in [-0.7, -0.3, 0.0, 0.5, 0.9] {
+            let mesh = WholeContact::on_cubics(grading, 24).unwrap();
+            let inside: Vec<f64> = mesh.distances().map(|x| x.powf(0.7)).collect();
+            let there = Touching::new(&mesh).unwrap().pressure(&inside, 1, |_, _| 1.0);
+            for (i, pressure) in mesh.pressure(&inside).into_iter().enumerate() {
+                let off = there[(i, 0)] / pressure - 1.0;
+                assert!(off.abs() < 1e-4, "k = {grading}, node {i}: {off:e}");
+            }
+        }
+    }
+}
