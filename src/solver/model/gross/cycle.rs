@@ -382,7 +382,9 @@ impl Model {
         let pressure = match (&gross.touching, &loading.path) {
             (Some(touching), Some(path)) if !path.is_level() => {
                 let bearing = Bearing::new(loading);
+                let spreads = loading.wear.spreading().is_some();
                 let mut pressure = touching.pressure(compression, motion.steps(), |q, m| {
+                    let q = if spreads { q } else { q.abs() };
                     self.mean_slope(|lift| bearing.of(q, lift), path.lifts(m))
                 });
                 pressure *= Scale(self.gross_pressure_scale(whole.area));
