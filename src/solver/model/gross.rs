@@ -22,7 +22,7 @@ use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
 use hand_over::BEGINS_BELOW;
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::whole::{LEAST_STICK, LEAST_STICK_LATER, SOFT, carries, is_smooth, lifts, slides_on};
+use super::whole::{LEAST_STICK, LEAST_STICK_LATER, SOFT, carries, is_smooth, slides_on, spares_edge};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::transforms::Transforms;
@@ -38,7 +38,7 @@ const SHOWN: [usize; 2] = [64, 128];
 #[derive(Debug, Clone)]
 pub struct Gross {
     mesh: WholeContact,
-    /// Where springs lose contact within a cycle.
+    /// Where what wears goes to nothing at the contact edge faster than the compression of its springs does.
     touching: Option<Touching>,
     /// `A^ν ∫ ξ^(ν-1) q dξ`, m^(2+k), of the first contact, where the force is held.
     held_load: Option<f64>,
@@ -83,7 +83,7 @@ impl Gross {
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        if !carries(contact, schedule) || Slides::of(contact, schedule)? == Slides::Never {
+        if !carries(schedule) || Slides::of(contact, schedule)? == Slides::Never {
             return Ok(false);
         }
         if schedule.resolves() && schedule.conditions().mode.is_tangential() {
@@ -116,7 +116,7 @@ impl Gross {
         mesh.solve_profile(&mut lifted);
         let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
         let sticks = Slides::of(contact, schedule)? == Slides::InSomeCycles;
-        let touching = lifts(schedule).then(|| Touching::new(&mesh)).transpose()?;
+        let touching = spares_edge(contact, schedule).then(|| Touching::new(&mesh)).transpose()?;
         Ok(Self { mesh, touching, held_load, first_load, first: (radius * radius, first), lifted, sticks })
     }
 

@@ -11,10 +11,6 @@ const EVEN: f64 = 1e-12;
 /// Grading below which cubics over the whole contact do not follow an edge of stick.
 pub(super) const SOFT: f64 = -0.5;
 
-/// Grading below which no contact is followed whose edge comes in and goes out within each cycle: pressure falls to half within
-/// 5e-4 of the radius at -0.8, wherever the edge is.
-const SOFTEST_THAT_LIFTS: f64 = -0.8;
-
 /// Stick radius, over that of the contact, below which all of it slides, where cycles differ.
 pub(super) const LEAST_STICK: f64 = 1e-3;
 
@@ -22,35 +18,25 @@ pub(super) const LEAST_STICK: f64 = 1e-3;
 pub(super) const LEAST_STICK_LATER: f64 = 0.02;
 
 /// Whether the mesh of gross slip carries what happens in a contact, once all of it slides.
-pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
+pub(super) fn carries(schedule: &Schedule) -> bool {
     let along_energy = *schedule.friction_along_energy() != History::Constant;
-    let both = along_energy && schedule.conditions().friction_history != History::Constant;
-    !both && (contact.half_space().grading() >= SOFTEST_THAT_LIFTS || !lifts(schedule))
+    !(along_energy && schedule.conditions().friction_history != History::Constant)
 }
 
-/// Why a contact is refused that [is not carried](carries).
-pub(super) fn not_carried(contact: &InitialContact, schedule: &Schedule) -> Error {
-    let (amplitude, grading) = (contact.amplitude(), contact.half_space().grading());
-    if carries(contact, schedule) {
-        return Error::Inconsistent {
-            what: "loading.tangential_control",
-            why: format!(
-                "at an amplitude of {amplitude:e} m the tangential force that is held takes all stick away in the end, which is not followed beside blocks of other \
-                 indentations, or beside blocks under friction that falls as steeply with the load; reduce the amplitude, or hold it"
-            ),
-        };
-    }
+/// Why a contact is refused from which a held tangential force takes all stick away in the end, and that is not followed.
+pub(super) fn not_carried(contact: &InitialContact) -> Error {
     Error::Inconsistent {
-        what: "loading.amplitude",
+        what: "loading.tangential_control",
         why: format!(
-            "at an amplitude of {amplitude:e} m the whole contact slides while its edge comes in and goes out; at grading {grading}, below {SOFTEST_THAT_LIFTS}, \
-             no mesh resolves the layer in which pressure falls at such an edge; reduce the amplitude, or leave out the motion that lifts the indenter"
+            "at an amplitude of {:e} m the tangential force that is held takes all stick away in the end, which is not followed beside blocks of other \
+             indentations, or beside blocks under friction that falls as steeply with the load; reduce the amplitude, or hold it",
+            contact.amplitude()
         ),
     }
 }
 
 /// Whether springs within the mesh lose contact in some cycle, where pressure has kinks.
-pub(super) fn lifts(schedule: &Schedule) -> bool {
+fn lifts(schedule: &Schedule) -> bool {
     schedule.lifts() || schedule.extremes().any(|loading| loading.lift > 0.0)
 }
 
@@ -60,11 +46,23 @@ pub(super) fn is_smooth(contact: &InitialContact, schedule: &Schedule) -> bool {
     // What is finer than debris spreads is not worn off.
     let spreads = conditions.wear.spreading().is_some();
     // Traction that is not in proportion to the pressure does not follow it at the contact edge, where polynomials then swing.
-    let friction = &conditions.friction;
-    let depth = contact.indentation();
-    let even = friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth);
-    let uneven = conditions.wear.takes_traction() && (even - 1.0).abs() > EVEN;
+    let uneven = (worn_at_edge(contact, schedule) - 1.0).abs() > EVEN;
     !(lifts(schedule) || spreads || uneven)
+}
+
+/// Whether what wears goes to nothing at the contact edge faster than the compression of its springs does.
+pub(super) fn spares_edge(contact: &InitialContact, schedule: &Schedule) -> bool {
+    lifts(schedule) || worn_at_edge(contact, schedule) < 1.0 - EVEN
+}
+
+/// What resists slip for what presses at the contact edge, over the same at all of the indentation, where wear takes the traction; else 1.
+fn worn_at_edge(contact: &InitialContact, schedule: &Schedule) -> f64 {
+    let conditions = schedule.conditions();
+    if !conditions.wear.takes_traction() {
+        return 1.0;
+    }
+    let (friction, depth) = (&conditions.friction, contact.indentation());
+    friction.kinetic_strength_slope(0.0) * depth / friction.kinetic_strength(depth)
 }
 
 /// Whether a rig goes on to move a contact whose stick it has broken.
@@ -72,6 +70,6 @@ pub(super) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
     let on_rig = conditions.tangential_control.is_rig();
     let breaks_away = conditions.friction.remembers_slip();
-    let fits = contact.half_space().grading() >= SOFT && carries(contact, schedule);
+    let fits = contact.half_space().grading() >= SOFT && carries(schedule);
     on_rig && !conditions.holds_normal_force && !breaks_away && !schedule.resolves() && fits
 }

@@ -258,7 +258,7 @@ impl Model {
         } else {
             let bearing = Bearing::new(loading);
             let load = Mat::from_fn(mesh.inner(), 1, |i, _| bearing.of(compression[i], 0.0));
-            self.pressed(gross, whole, &load)
+            self.pressed(gross, loading, compression, whole, &load, |_| [0.0; 2])
         };
         Sliding {
             amplitude,
@@ -379,19 +379,8 @@ impl Model {
             }
         });
         clear_negative(&mut path);
-        let pressure = match (&gross.touching, &loading.path) {
-            (Some(touching), Some(path)) if !path.is_level() => {
-                let bearing = Bearing::new(loading);
-                let spreads = loading.wear.spreading().is_some();
-                let mut pressure = touching.pressure(compression, motion.steps(), |q, m| {
-                    let q = if spreads { q } else { q.abs() };
-                    self.mean_slope(|lift| bearing.of(q, lift), path.lifts(m))
-                });
-                pressure *= Scale(self.gross_pressure_scale(whole.area));
-                pressure
-            }
-            _ => self.pressed(gross, whole, &motion.load),
-        };
+        let lifts = |m: usize| loading.path.as_ref().map_or([0.0; 2], |path| path.lifts(m));
+        let pressure = self.pressed(gross, loading, compression, whole, &motion.load, lifts);
         let stiffness = self.contact.half_space().normal_stiffness() * whole.area.powf(1.0 - self.mu());
         let energy = |part: fn(&Energies) -> f64| -> f64 {
             let springs = motion.energies.iter().zip(mesh.load_weights());
@@ -411,11 +400,37 @@ impl Model {
         }
     }
 
-    /// Pressure, Pa, of loads on the springs, m, by column.
-    fn pressed(&self, gross: &Gross, whole: &Whole, load: &Mat<f64>) -> Mat<f64> {
-        let columns: Vec<Vec<f64>> =
-            (0..load.ncols()).map(|m| gross.mesh.pressure(load.col_as_slice(m))).collect();
-        let scale = self.gross_pressure_scale(whole.area);
-        Mat::from_fn(load.nrows(), load.ncols(), |i, m| scale * columns[m][i])
+    /// Pressure, Pa, of what the springs bear, by step.
+    ///
+    /// # Arguments
+    /// * `load` -- what they bear, m, by step
+    /// * `lifts` -- between which they are lifted in a step, m
+    fn pressed(
+        &self,
+        gross: &Gross,
+        loading: &CycleLoading,
+        compression: &[f64],
+        whole: &Whole,
+        load: &Mat<f64>,
+        lifts: impl Fn(usize) -> [f64; 2],
+    ) -> Mat<f64> {
+        let mut pressure = match &gross.touching {
+            Some(touching) => {
+                let bearing = Bearing::new(loading);
+                // Springs of local wear lose contact by what the mesh is off next to the edge only; so that they come back, they wear back.
+                let spreads = loading.wear.spreading().is_some();
+                touching.pressure(compression, load.ncols(), |q, m| {
+                    let q = if spreads { q } else { q.abs() };
+                    self.mean_slope(|lift| bearing.of(q, lift), lifts(m))
+                })
+            }
+            None => {
+                let columns: Vec<Vec<f64>> =
+                    (0..load.ncols()).map(|m| gross.mesh.pressure(load.col_as_slice(m))).collect();
+                Mat::from_fn(load.nrows(), load.ncols(), |i, m| columns[m][i])
+            }
+        };
+        pressure *= Scale(self.gross_pressure_scale(whole.area));
+        pressure
     }
 }
