@@ -752,20 +752,25 @@ fn debris_under_a_held_force_is_followed_to_several_radii_and_its_error_told() {
 /// `V = α ΣE` holds on cubics as well, where the law has it.
 #[test]
 fn gross_slip_on_cubics_wears_by_energy() {
-    let tables = "[friction.load-dependent]\ncoefficient = 0.5\nexponent = 0.3\n[wear.dissipated-energy]\ncoefficient = 3.3e-13";
-    for grading in [-0.99, -0.9, -0.7, -0.5, -0.3, 0.0, 0.5, 0.9] {
-        let results = on_cubics(grading, tables, "indentation = 1e-6", 1e-3, "");
-        let last = results.last();
-        let off = last.wear_volume / (3.3e-13 * last.dissipated_energy) - 1.0;
-        println!("k = {grading}: {off:.1e}");
-        assert!(off.abs() < 1e-3 && results.accuracy_met() == Some(true), "{off:e}");
+    let gradings = [-0.99, -0.9, -0.7, -0.5, -0.3, 0.0, 0.5, 0.9];
+    // Traction in proportion to nearly the square of the pressure comes to no end at -0.99.
+    for (exponent, gradings) in [(0.3, &gradings[..]), (0.9, &gradings[1..])] {
+        let tables = format!(
+            "[friction.load-dependent]\ncoefficient = 0.5\nexponent = {exponent}\n[wear.dissipated-energy]\ncoefficient = 3.3e-13"
+        );
+        for &grading in gradings {
+            let results = on_cubics(grading, &tables, "indentation = 1e-6", 1e-3, "");
+            let last = results.last();
+            let off = last.wear_volume / (3.3e-13 * last.dissipated_energy) - 1.0;
+            println!("k = {grading}, exponent {exponent}: {off:.1e}");
+            assert!(off.abs() < 1e-3 && results.accuracy_met() == Some(true), "{off:e}");
+        }
     }
 }
 
-/// In a medium that is stiff at its top alone debris is followed to the moment at which a rim takes the load, which a scene that goes on beyond it is told; and a contact that lifts where
-/// pressure does not fall in too thin a layer.
+/// In a medium that is stiff at its top alone debris is followed to the moment at which a rim takes the load, which a scene that goes on beyond it is told.
 #[test]
-fn gross_slip_on_cubics_of_media_stiff_at_their_top_alone() {
+fn debris_in_media_stiff_at_their_top_alone_is_followed_until_a_rim_takes_the_load() {
     let runs = |grading: f64, tables: &str, tau: f64, numerics: &str| {
         run_on_cubics(grading, tables, &format!("indentation = 1e-6\ntau = {tau}"), numerics)
     };
@@ -784,17 +789,24 @@ fn gross_slip_on_cubics_of_media_stiff_at_their_top_alone() {
         assert!(off < 1e-3 && off < 5.0 * results[0].error_estimate().unwrap(), "{off:e}");
         assert!(last.unwrap() < 1e-2, "{last:?}");
     }
-    for grading in [-0.55, -0.7] {
-        let results = ["accuracy = 1e-2", "springs = 60\ntolerance = 1e-4"]
-            .map(|numerics| runs(grading, LIFTED, 1e-3, numerics).unwrap());
-        let [asked, fine] = [&results[0], &results[1]].map(|it| it.last().wear_volume);
-        println!(
-            "lifted, k = {grading}: off by {:.1e}, {:?}",
-            asked / fine - 1.0,
-            results[0].error_estimate()
-        );
-        assert!((asked / fine - 1.0).abs() < 1e-2);
+}
+
+/// A contact that lifts within each period is followed at every grading: next to its edge nothing wears less than nothing, and `V = α ΣE` holds.
+#[test]
+fn contacts_in_gross_slip_that_lift_are_followed_at_every_grading() {
+    for grading in [-0.9, -0.7, -0.5, -0.3] {
+        for tables in [LIFTED.to_owned(), LIFTED.replace("0.1", "0.4").replace("phase = 1", "phase = 0")] {
+            let results = ["", "springs = 60\ntolerance = 1e-5"]
+                .map(|by_hand| on_cubics(grading, &tables, "indentation = 1e-6", 1e-3, by_hand));
+            let [asked, fine] = results.each_ref().map(Results::last);
+            let off = asked.wear_volume / fine.wear_volume - 1.0;
+            let by_energy = asked.wear_volume * 0.5 / (1.667e-13 * asked.dissipated_energy) - 1.0;
+            let estimate = results[0].error_estimate().unwrap();
+            println!(
+                "k = {grading}: off by {off:.1e}, by the energy {by_energy:.1e}, by its estimate {estimate:.1e}"
+            );
+            assert!(off.abs() < 1e-3 && by_energy.abs() < 1e-3 && estimate < 1e-3);
+            assert!(asked.pressure.iter().all(|pressure| *pressure >= 0.0));
+        }
     }
-    let refused = runs(-0.9, LIFTED, 1e-3, "accuracy = 1e-2").unwrap_err();
-    assert!(refused.to_string().contains("no mesh resolves the layer"), "{refused}");
 }

@@ -40,6 +40,8 @@ pub struct Gross {
     mesh: WholeContact,
     /// Where what wears goes to nothing at the contact edge faster than the compression of its springs does.
     touching: Option<Touching>,
+    /// Whether springs lose contact there by what the mesh is off only, and wear back.
+    wears_back: bool,
     /// `A^ν ∫ ξ^(ν-1) q dξ`, m^(2+k), of the first contact, where the force is held.
     held_load: Option<f64>,
     /// The same of the first contact in any case.
@@ -117,7 +119,17 @@ impl Gross {
         let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
         let sticks = Slides::of(contact, schedule)? == Slides::InSomeCycles;
         let touching = spares_edge(contact, schedule).then(|| Touching::new(&mesh)).transpose()?;
-        Ok(Self { mesh, touching, held_load, first_load, first: (radius * radius, first), lifted, sticks })
+        let wears_back = touching.is_some() && schedule.conditions().wear.spreading().is_none();
+        Ok(Self {
+            mesh,
+            touching,
+            wears_back,
+            held_load,
+            first_load,
+            first: (radius * radius, first),
+            lifted,
+            sticks,
+        })
     }
 
     pub(super) fn springs(&self) -> usize {
@@ -445,7 +457,8 @@ impl Model {
                 let coordinate = mesh.coordinate(squared / whole.area);
                 wear_depth[i] = mesh.value(&depth, coordinate).max(0.0);
                 let first = transforms.as_ref().and_then(|it| self.unworn_pressure(it, squared.sqrt()));
-                pressure[i] = first.unwrap_or_else(|| mesh.value_inside(&whole.pressure, coordinate));
+                let pressed = first.unwrap_or_else(|| mesh.value_inside(&whole.pressure, coordinate));
+                pressure[i] = if gross.wears_back { pressed.max(0.0) } else { pressed };
                 slip[i] = sliding.slip_at(mesh, &cycle, coordinate).max(0.0);
             }
         }

@@ -393,7 +393,8 @@ impl Model {
     /// * `bears` -- what a spring bears, by its lift
     pub(super) fn mean_slope(&self, bears: impl Fn(f64) -> f64, lifts: [f64; 2]) -> f64 {
         let least = DIFFERENCE * self.contact.slip_compression();
-        let [low, high] = [lifts[0].min(lifts[1]), lifts[0].max(lifts[1]).max(lifts[0].min(lifts[1]) + least)];
+        let [low, high] =
+            [lifts[0].min(lifts[1]), lifts[0].max(lifts[1]).max(lifts[0].min(lifts[1]) + least)];
         (bears(low) - bears(high)) / (high - low)
     }
 }

@@ -417,10 +417,8 @@ impl Model {
         let mut pressure = match &gross.touching {
             Some(touching) => {
                 let bearing = Bearing::new(loading);
-                // Springs of local wear lose contact by what the mesh is off next to the edge only; so that they come back, they wear back.
-                let spreads = loading.wear.spreading().is_some();
                 touching.pressure(compression, load.ncols(), |q, m| {
-                    let q = if spreads { q } else { q.abs() };
+                    let q = if gross.wears_back { q.abs() } else { q };
                     self.mean_slope(|lift| bearing.of(q, lift), lifts(m))
                 })
             }
