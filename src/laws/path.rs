@@ -34,11 +34,6 @@ impl Path {
         self.points.iter().all(|point| point.lift == self.points[0].lift)
     }
 
-    /// Lift at the ends of a substep, m.
-    pub fn lifts(&self, substep: usize) -> [f64; 2] {
-        [substep, (substep + 1) % self.points.len()].map(|m| self.points[m].lift)
-    }
-
     /// What of the period goes one way, by substep: springs slip one way only between reversals of a level path along a line, so those
     /// substeps are one; every other substep is by itself. Counted from 0 in the order in which they begin.
     ///

@@ -81,22 +81,84 @@ impl Touching {
         Ok(Self { points, kernel })
     }
 
+    /// Points at which loads are asked for, for every inner node.
+    pub const POINTS: usize = POINTS.len();
+
     /// `-(1/π) ∫_ξ^1 (η-ξ)^(ν-1) B'(q) q'(η) dη` at the inner nodes in each step, shape `(inner nodes, steps)`.
     ///
     /// # Arguments
     /// * `inside` -- `q`
-    /// * `slope` -- `B'`, by compression and step
-    pub fn pressure(&self, inside: &[f64], steps: usize, slope: impl Fn(f64, usize) -> f64) -> Mat<f64> {
-        let near = |first: usize, weights: &[f64; LOCAL]| -> f64 {
-            weights.iter().zip(&inside[first..]).map(|(weight, value)| weight * value).sum()
-        };
-        let places: Vec<[f64; 2]> =
-            self.points.iter().map(|it| [near(it.first, &it.value), near(it.first, &it.slope)]).collect();
-        let loads = Mat::from_fn(places.len(), steps, |i, m| {
-            let [compression, rise] = places[i];
-            rise * slope(compression, m)
-        });
+    /// * `slopes` -- from `q` the `B'` of all steps
+    pub fn pressure(
+        &self,
+        inside: &[f64],
+        steps: usize,
+        mut slopes: impl FnMut(f64, &mut [f64]),
+    ) -> Mat<f64> {
+        let mut loads = Mat::zeros(self.points.len(), steps);
+        let mut at_point = vec![0.0; steps];
+        for (i, point) in self.points.iter().enumerate() {
+            let [compression, rise] = point.of(inside);
+            slopes(compression, &mut at_point);
+            at_point.iter().enumerate().for_each(|(m, slope)| loads[(i, m)] = rise * slope);
+        }
         &self.kernel * &loads
+    }
+
+    /// The same of springs that bear in proportion to their compression, `B = (q - lift)₊`, and are lifted from one height to another in each step, over which `B'` is the mean.
+    ///
+    /// # Arguments
+    /// * `inside` -- `q`
+    /// * `reach` -- from `q` the lift from which on the spring there is out of contact
+    /// * `lifts` -- by step, the lower one first
+    pub fn pressure_in_proportion(
+        &self,
+        inside: &[f64],
+        reach: impl Fn(f64) -> f64,
+        lifts: impl ExactSizeIterator<Item = [f64; 2]>,
+    ) -> Mat<f64> {
+        let inner = self.kernel.nrows();
+        let mut parts: Vec<(f64, f64, usize)> = self
+            .points
+            .iter()
+            .enumerate()
+            .map(|(i, point)| {
+                let [compression, rise] = point.of(inside);
+                (reach(compression), rise, i)
+            })
+            .collect();
+        parts.sort_by(|one, other| other.0.total_cmp(&one.0));
+        // What the points with the farthest reach make, by their number.
+        let mut sums = Mat::zeros(inner, parts.len() + 1);
+        for (count, (_, rise, point)) in parts.iter().enumerate() {
+            for i in 0..inner {
+                sums[(i, count + 1)] = sums[(i, count)] + self.kernel[(i, *point)] * rise;
+            }
+        }
+        let mut pressure = Mat::zeros(inner, lifts.len());
+        for (m, [low, high]) in lifts.enumerate() {
+            let all = parts.partition_point(|it| it.0 >= high);
+            let some = parts.partition_point(|it| it.0 > low);
+            for i in 0..inner {
+                pressure[(i, m)] = sums[(i, all)];
+            }
+            for (reach, rise, point) in &parts[all..some] {
+                let part = rise * (reach - low) / (high - low);
+                for i in 0..inner {
+                    pressure[(i, m)] += part * self.kernel[(i, *point)];
+                }
+            }
+        }
+        pressure
+    }
+}
+
+impl Point {
+    /// A value and its derivative by `y`, of what is given at the inner nodes and nothing at the edge.
+    fn of(&self, inside: &[f64]) -> [f64; 2] {
+        [&self.value, &self.slope].map(|weights| {
+            weights.iter().zip(&inside[self.first..]).map(|(weight, value)| weight * value).sum()
+        })
     }
 }
 
@@ -116,10 +178,31 @@ mod tests {
         for grading in [-0.7, -0.3, 0.0, 0.5, 0.9] {
             let mesh = WholeContact::on_cubics(grading, 24).unwrap();
             let inside: Vec<f64> = mesh.distances().map(|x| x.powf(0.7)).collect();
-            let there = Touching::new(&mesh).unwrap().pressure(&inside, 1, |_, _| 1.0);
+            let there = Touching::new(&mesh).unwrap().pressure(&inside, 1, |_, slopes| slopes.fill(1.0));
             for (i, pressure) in mesh.pressure(&inside).into_iter().enumerate() {
                 let off = there[(i, 0)] / pressure - 1.0;
                 assert!(off.abs() < 1e-4, "k = {grading}, node {i}: {off:e}");
+            }
+        }
+    }
+
+    /// Springs that bear in proportion press as by their slopes, also where they touch within a step; none presses by less than nothing.
+    #[test]
+    fn touching_springs_press_in_proportion_as_by_their_slopes() {
+        let mesh = WholeContact::on_cubics(-0.3, 24).unwrap();
+        let touching = Touching::new(&mesh).unwrap();
+        let inside: Vec<f64> = mesh.distances().collect();
+        let lifts = [[0.0, 0.1], [0.1, 0.35], [0.35, 0.36], [1.0, 1.1]];
+        let in_proportion = touching.pressure_in_proportion(&inside, |q| q, lifts.into_iter());
+        let by_slopes = touching.pressure(&inside, lifts.len(), |q, slopes| {
+            for ([low, high], slope) in lifts.into_iter().zip(slopes) {
+                *slope = ((q - low) / (high - low)).clamp(0.0, 1.0);
+            }
+        });
+        for m in 0..lifts.len() {
+            for i in 0..mesh.inner() {
+                let off = in_proportion[(i, m)] - by_slopes[(i, m)];
+                assert!(off.abs() < 1e-14 && in_proportion[(i, m)] >= 0.0, "step {m}, node {i}: {off:e}");
             }
         }
     }

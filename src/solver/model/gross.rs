@@ -141,6 +141,11 @@ impl Gross {
         self.mesh.is_local()
     }
 
+    /// Whether loads are asked for between the nodes as well.
+    pub(super) fn asks_between_nodes(&self) -> bool {
+        self.touching.is_some()
+    }
+
     /// Whether springs stick in some cycles, as the unworn contact tells, so that there is a kink where they begin to slip.
     pub fn sticks(&self) -> bool {
         self.sticks

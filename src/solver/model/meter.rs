@@ -2,12 +2,13 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::motion::Motion;
+use super::motion::{Bearing, Motion};
 use super::schedule::CycleLoading;
 use super::{Model, State};
 use crate::contact::spring::searched_stick_compression;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
+use crate::numerics::whole_contact::Touching;
 
 /// Nanoseconds of one core, as fitted to 42 runs of all kinds, which took 0.8 to 1.25 times as long: of a substep through which a spring is passed along a line, where it turns, and where slip begins
 /// at a static limit; of a column of slip at a spring and of one of loads, each by what is done with it there, by the response of a table, by steps, and in gross slip; and of either by each other spring
@@ -16,6 +17,9 @@ const BY_SUBSTEP: [f64; 3] = [11.0, 11.0, 29.0];
 const BY_COLUMN: [f64; 3] = [15.0, 10.0, 27.0];
 const BY_LOAD: [f64; 3] = [6.0, 10.0, 11.0];
 const BY_PAIR: f64 = 0.055;
+
+/// The same of a column of loads at a point between nodes, in gross slip.
+const BY_POINT: f64 = 30.0;
 
 /// The same of a column of loads by each other spring to which debris spreads it.
 const BY_SPREAD: f64 = 0.55;
@@ -93,7 +97,11 @@ impl Model {
         let [at_spring, of_load] = [BY_COLUMN[kind], BY_LOAD[kind]];
         let carried = BY_PAIR * springs;
         let spread = if loading.wear.spreading().is_some() { BY_SPREAD * springs } else { 0.0 };
-        let by_spring = slips * (at_spring + carried) + loads * (of_load + carried + spread);
+        let by_slopes = self.gross().is_some_and(|it| it.asks_between_nodes())
+            && Bearing::new(loading).in_proportion().is_none();
+        let pressed =
+            if by_slopes { Touching::POINTS as f64 * (BY_POINT + carried) } else { of_load + carried };
+        let by_spring = slips * (at_spring + carried) + loads * (pressed + spread);
         self.meter.add(times as f64 * springs * by_spring);
     }
 }

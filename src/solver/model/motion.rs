@@ -217,9 +217,11 @@ impl Model {
             }
         }
         self.count_substeps(springs.passed, path, &*loading.friction);
+        let count = path.points.len();
+        let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
         let bearing = Bearing::new(loading);
         let different = if path.is_level() { 1 } else { steps };
-        let mean = |q: f64, m: usize| path.lifts(m).map(|lift| 0.5 * bearing.of(q, lift)).iter().sum::<f64>();
+        let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing.of(q, lift)).iter().sum::<f64>();
         motion.load = Mat::from_fn(inner, different, |j, m| mean(compression[j], m));
         motion.load_slope = Mat::from_fn(if slopes { inner } else { 0 }, different, |j, m| {
             self.slope(|q| mean(q, m), compression[j])
@@ -387,15 +389,29 @@ impl Model {
         (function(compression + difference) - function(compression)) / difference
     }
 
-    /// Mean derivative by the compression of what springs bear while they are lifted from one height to another, m.
+    /// Two heights, m, the lower one first, far enough apart for a slope between them.
+    pub(super) fn apart(&self, [one, other]: [f64; 2]) -> [f64; 2] {
+        let low = one.min(other);
+        [low, one.max(other).max(low + DIFFERENCE * self.contact.slip_compression())]
+    }
+
+    /// Mean derivatives by the compression of what a spring bears while it is lifted from each height to the next, m.
     ///
     /// # Arguments
-    /// * `bears` -- what a spring bears, by its lift
-    pub(super) fn mean_slope(&self, bears: impl Fn(f64) -> f64, lifts: [f64; 2]) -> f64 {
-        let least = DIFFERENCE * self.contact.slip_compression();
-        let [low, high] =
-            [lifts[0].min(lifts[1]), lifts[0].max(lifts[1]).max(lifts[0].min(lifts[1]) + least)];
-        (bears(low) - bears(high)) / (high - low)
+    /// * `bears` -- what it bears, by its lift
+    /// * `lifts` -- one more than there are derivatives
+    pub(super) fn mean_slopes(&self, bears: impl Fn(f64) -> f64, lifts: &[f64], slopes: &mut [f64]) {
+        let mut before = bears(lifts[0]);
+        for (ends, slope) in lifts.windows(2).zip(slopes) {
+            let after = bears(ends[1]);
+            let rise = ends[1] - ends[0];
+            let [low, high] = self.apart([ends[0], ends[1]]);
+            *slope = match rise.abs() == high - low {
+                true => (before - after) / rise,
+                false => (bears(low) - bears(high)) / (high - low),
+            };
+            before = after;
+        }
     }
 }
 
@@ -512,6 +528,13 @@ impl<'a> Bearing<'a> {
     pub(super) fn new(loading: &'a CycleLoading) -> Self {
         let traction = loading.wear.takes_traction().then_some(&*loading.friction);
         Self { traction, spreads: loading.wear.spreading().is_some() }
+    }
+
+    /// What is taken for each compression, where all springs that are loaded bear in proportion to theirs.
+    pub(super) fn in_proportion(&self) -> Option<f64> {
+        let Some(law) = self.traction else { return Some(1.0) };
+        let factor = law.kinetic_strength(1.0);
+        (law.kinetic_strength_slope(0.0) == factor).then_some(factor)
     }
 
     /// Of a spring of this compression at the largest indentation, lifted by `lift`, m: its compression, or what resists its slip.

@@ -258,7 +258,7 @@ impl Model {
         } else {
             let bearing = Bearing::new(loading);
             let load = Mat::from_fn(mesh.inner(), 1, |i, _| bearing.of(compression[i], 0.0));
-            self.pressed(gross, loading, compression, whole, &load, |_| [0.0; 2])
+            self.pressed(gross, loading, compression, whole, &load)
         };
         Sliding {
             amplitude,
@@ -379,8 +379,7 @@ impl Model {
             }
         });
         clear_negative(&mut path);
-        let lifts = |m: usize| loading.path.as_ref().map_or([0.0; 2], |path| path.lifts(m));
-        let pressure = self.pressed(gross, loading, compression, whole, &motion.load, lifts);
+        let pressure = self.pressed(gross, loading, compression, whole, &motion.load);
         let stiffness = self.contact.half_space().normal_stiffness() * whole.area.powf(1.0 - self.mu());
         let energy = |part: fn(&Energies) -> f64| -> f64 {
             let springs = motion.energies.iter().zip(mesh.load_weights());
@@ -404,7 +403,6 @@ impl Model {
     ///
     /// # Arguments
     /// * `load` -- what they bear, m, by step
-    /// * `lifts` -- between which they are lifted in a step, m
     fn pressed(
         &self,
         gross: &Gross,
@@ -412,20 +410,31 @@ impl Model {
         compression: &[f64],
         whole: &Whole,
         load: &Mat<f64>,
-        lifts: impl Fn(usize) -> [f64; 2],
     ) -> Mat<f64> {
+        let steps = load.ncols();
         let mut pressure = match &gross.touching {
             Some(touching) => {
                 let bearing = Bearing::new(loading);
-                touching.pressure(compression, load.ncols(), |q, m| {
-                    let q = if gross.wears_back { q.abs() } else { q };
-                    self.mean_slope(|lift| bearing.of(q, lift), lifts(m))
-                })
+                let lifts: Vec<f64> = match &loading.path {
+                    Some(path) => (0..=steps).map(|m| path.points[m % path.points.len()].lift).collect(),
+                    None => vec![0.0; steps + 1],
+                };
+                let reach = |q: f64| if gross.wears_back { q.abs() } else { q };
+                match bearing.in_proportion() {
+                    Some(factor) => {
+                        let ends = lifts.windows(2).map(|ends| self.apart([ends[0], ends[1]]));
+                        let pressure = touching.pressure_in_proportion(compression, reach, ends);
+                        pressure * Scale(factor)
+                    }
+                    None => touching.pressure(compression, steps, |q, slopes| {
+                        self.mean_slopes(|lift| bearing.of(reach(q), lift), &lifts, slopes);
+                    }),
+                }
             }
             None => {
                 let columns: Vec<Vec<f64>> =
-                    (0..load.ncols()).map(|m| gross.mesh.pressure(load.col_as_slice(m))).collect();
-                Mat::from_fn(load.nrows(), load.ncols(), |i, m| columns[m][i])
+                    (0..steps).map(|m| gross.mesh.pressure(load.col_as_slice(m))).collect();
+                Mat::from_fn(load.nrows(), steps, |i, m| columns[m][i])
             }
         };
         pressure *= Scale(self.gross_pressure_scale(whole.area));
