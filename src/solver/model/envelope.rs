@@ -61,7 +61,7 @@ impl Schedule {
         }
         if !follows {
             check_friction(self, contact, follows)?;
-            return Err(not_carried(contact));
+            return Err(not_carried(contact, self));
         }
         Ok(Envelope { contact: contact.with_core(depth, LAST_CORE * radius)?, slides })
     }

@@ -38,10 +38,8 @@ const SHOWN: [usize; 2] = [64, 128];
 #[derive(Debug, Clone)]
 pub struct Gross {
     mesh: WholeContact,
-    /// Where what wears goes to nothing at the contact edge faster than the compression of its springs does.
+    /// Where what wears goes to nothing at the contact edge faster than the compression of its springs does. Springs that the mesh takes out of contact there wear back.
     touching: Option<Touching>,
-    /// Whether springs lose contact there by what the mesh is off only, and wear back.
-    wears_back: bool,
     /// `A^ν ∫ ξ^(ν-1) q dξ`, m^(2+k), of the first contact, where the force is held.
     held_load: Option<f64>,
     /// The same of the first contact in any case.
@@ -85,7 +83,7 @@ impl Gross {
     /// # Errors
     /// [`Error::Inconsistent`] if cycles to and fro are resolved, where each spring slips by a formula; those of the force of the first cycle.
     pub fn follows(contact: &InitialContact, schedule: &Schedule) -> Result<bool> {
-        if !carries(schedule) || Slides::of(contact, schedule)? == Slides::Never {
+        if !carries(contact, schedule) || Slides::of(contact, schedule)? == Slides::Never {
             return Ok(false);
         }
         if schedule.resolves() && schedule.conditions().mode.is_tangential() {
@@ -119,17 +117,7 @@ impl Gross {
         let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
         let sticks = Slides::of(contact, schedule)? == Slides::InSomeCycles;
         let touching = spares_edge(contact, schedule).then(|| Touching::new(&mesh)).transpose()?;
-        let wears_back = touching.is_some() && schedule.conditions().wear.spreading().is_none();
-        Ok(Self {
-            mesh,
-            touching,
-            wears_back,
-            held_load,
-            first_load,
-            first: (radius * radius, first),
-            lifted,
-            sticks,
-        })
+        Ok(Self { mesh, touching, held_load, first_load, first: (radius * radius, first), lifted, sticks })
     }
 
     pub(super) fn springs(&self) -> usize {
@@ -463,7 +451,8 @@ impl Model {
                 wear_depth[i] = mesh.value(&depth, coordinate).max(0.0);
                 let first = transforms.as_ref().and_then(|it| self.unworn_pressure(it, squared.sqrt()));
                 let pressed = first.unwrap_or_else(|| mesh.value_inside(&whole.pressure, coordinate));
-                pressure[i] = if gross.wears_back { pressed.max(0.0) } else { pressed };
+                // What the mesh takes out of contact is so by its error only.
+                pressure[i] = if gross.touching.is_some() { pressed.max(0.0) } else { pressed };
                 slip[i] = sliding.slip_at(mesh, &cycle, coordinate).max(0.0);
             }
         }

@@ -17,20 +17,33 @@ pub(super) const LEAST_STICK: f64 = 1e-3;
 /// The same where the edge of stick comes in over unworn ground later: at 0.01 meshes that follow it come to no end below k = 0, or to estimates of 3e-2.
 pub(super) const LEAST_STICK_LATER: f64 = 0.02;
 
+/// Grading below which no contact is followed whose edge comes in and goes out within each cycle, which few meshes there resolve.
+const SOFTEST_THAT_LIFTS: f64 = -0.998;
+
 /// Whether the mesh of gross slip carries what happens in a contact, once all of it slides.
-pub(super) fn carries(schedule: &Schedule) -> bool {
+pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
     let along_energy = *schedule.friction_along_energy() != History::Constant;
-    !(along_energy && schedule.conditions().friction_history != History::Constant)
+    let both = along_energy && schedule.conditions().friction_history != History::Constant;
+    !both && (contact.half_space().grading() >= SOFTEST_THAT_LIFTS || !lifts(schedule))
 }
 
-/// Why a contact is refused from which a held tangential force takes all stick away in the end, and that is not followed.
-pub(super) fn not_carried(contact: &InitialContact) -> Error {
+/// Why a contact is refused that [is not carried](carries).
+pub(super) fn not_carried(contact: &InitialContact, schedule: &Schedule) -> Error {
+    let (amplitude, grading) = (contact.amplitude(), contact.half_space().grading());
+    if carries(contact, schedule) {
+        return Error::Inconsistent {
+            what: "loading.tangential_control",
+            why: format!(
+                "at an amplitude of {amplitude:e} m the tangential force that is held takes all stick away in the end, which is not followed beside blocks of other \
+                 indentations, or beside blocks under friction that falls as steeply with the load; reduce the amplitude, or hold it"
+            ),
+        };
+    }
     Error::Inconsistent {
-        what: "loading.tangential_control",
+        what: "loading.amplitude",
         why: format!(
-            "at an amplitude of {:e} m the tangential force that is held takes all stick away in the end, which is not followed beside blocks of other \
-             indentations, or beside blocks under friction that falls as steeply with the load; reduce the amplitude, or hold it",
-            contact.amplitude()
+            "at an amplitude of {amplitude:e} m the whole contact slides while its edge comes in and goes out; at grading {grading}, below {SOFTEST_THAT_LIFTS}, \
+             pressure at such an edge falls in a layer that most meshes do not resolve; reduce the amplitude, or leave out the motion that lifts the indenter"
         ),
     }
 }
@@ -52,7 +65,8 @@ pub(super) fn is_smooth(contact: &InitialContact, schedule: &Schedule) -> bool {
 
 /// Whether what wears goes to nothing at the contact edge faster than the compression of its springs does.
 pub(super) fn spares_edge(contact: &InitialContact, schedule: &Schedule) -> bool {
-    lifts(schedule) || worn_at_edge(contact, schedule) < 1.0 - EVEN
+    let spreads = schedule.conditions().wear.spreading().is_some();
+    !spreads && (schedule.lifts() || worn_at_edge(contact, schedule) < 1.0 - EVEN)
 }
 
 /// What resists slip for what presses at the contact edge, over the same at all of the indentation, where wear takes the traction; else 1.
@@ -70,6 +84,6 @@ pub(super) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
     let on_rig = conditions.tangential_control.is_rig();
     let breaks_away = conditions.friction.remembers_slip();
-    let fits = contact.half_space().grading() >= SOFT && carries(schedule);
+    let fits = contact.half_space().grading() >= SOFT && carries(contact, schedule);
     on_rig && !conditions.holds_normal_force && !breaks_away && !schedule.resolves() && fits
 }

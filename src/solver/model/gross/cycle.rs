@@ -412,26 +412,27 @@ impl Model {
         load: &Mat<f64>,
     ) -> Mat<f64> {
         let steps = load.ncols();
+        // On a level path springs touch nowhere within a step, and a kink stays where it is.
+        let changes = loading.path.as_ref().is_none_or(|path| !path.is_level());
         let mut pressure = match &gross.touching {
-            Some(touching) => {
+            Some(touching) if changes => {
                 let bearing = Bearing::new(loading);
                 let lifts: Vec<f64> = match &loading.path {
                     Some(path) => (0..=steps).map(|m| path.points[m % path.points.len()].lift).collect(),
                     None => vec![0.0; steps + 1],
                 };
-                let reach = |q: f64| if gross.wears_back { q.abs() } else { q };
                 match bearing.in_proportion() {
                     Some(factor) => {
                         let ends = lifts.windows(2).map(|ends| self.apart([ends[0], ends[1]]));
-                        let pressure = touching.pressure_in_proportion(compression, reach, ends);
+                        let pressure = touching.pressure_in_proportion(compression, f64::abs, ends);
                         pressure * Scale(factor)
                     }
                     None => touching.pressure(compression, steps, |q, slopes| {
-                        self.mean_slopes(|lift| bearing.of(reach(q), lift), &lifts, slopes);
+                        self.mean_slopes(|lift| bearing.of(q.abs(), lift), &lifts, slopes);
                     }),
                 }
             }
-            None => {
+            _ => {
                 let columns: Vec<Vec<f64>> =
                     (0..steps).map(|m| gross.mesh.pressure(load.col_as_slice(m))).collect();
                 Mat::from_fn(load.nrows(), steps, |i, m| columns[m][i])
