@@ -17,8 +17,9 @@ pub(super) const LEAST_STICK: f64 = 1e-3;
 /// The same where the edge of stick comes in over unworn ground later: at 0.01 meshes that follow it come to no end below k = 0, or to estimates of 3e-2.
 pub(super) const LEAST_STICK_LATER: f64 = 0.02;
 
-/// Grading below which no contact is followed whose edge comes in and goes out within each cycle, which few meshes there resolve.
-const SOFTEST_THAT_LIFTS: f64 = -0.998;
+/// Grading below which no contact is followed whose edge comes in and goes out within each cycle: paraboloids are, down to -0.99, but of eleven random scenes four come to an end, two of them within
+/// their accuracy.
+const SOFTEST_THAT_LIFTS: f64 = -0.96;
 
 /// Whether the mesh of gross slip carries what happens in a contact, once all of it slides.
 pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
