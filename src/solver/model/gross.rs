@@ -116,7 +116,7 @@ impl Gross {
         mesh.solve_profile(&mut lifted);
         let held_load = schedule.conditions().holds_normal_force.then_some(first_load);
         let sticks = Slides::of(contact, schedule)? == Slides::InSomeCycles;
-        let touching = spares_edge(contact, schedule).then(|| Touching::new(&mesh)).transpose()?;
+        let touching = spares_edge(contact, schedule, sticks).then(|| Touching::new(&mesh)).transpose()?;
         Ok(Self { mesh, touching, held_load, first_load, first: (radius * radius, first), lifted, sticks })
     }
 
