@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::numerics::quadrature::Rule;
 
 /// Points of Lobatto's rule in a cell, from 0 to 1.
-const POINTS: [f64; 4] = [0.0, 0.276_393_202_250_021_03, 0.723_606_797_749_979, 1.0];
+const POINTS: [f64; 4] = [0.0, 0.276_393_202_250_021, 0.723_606_797_749_979, 1.0];
 
 /// Nodes of the rules over a cell, next to the node from which it is seen as well.
 const RULE: usize = 20;
