@@ -362,7 +362,7 @@ impl WholeContact {
     fn cubics(&self, coordinate: Coordinate, first: usize) -> [f64; LOCAL] {
         let nodes = &self.nodes[first..first + LOCAL];
         let factor = |i: usize, j: usize| difference(coordinate, nodes[j]) / difference(nodes[i], nodes[j]);
-        std::array::from_fn(|i| (0..LOCAL).filter(|j| *j != i).map(|j| factor(i, j)).product())
+        lagrange(factor)
     }
 
     /// Derivatives of these by `y`.
@@ -612,6 +612,14 @@ fn power_at_edge(grading: f64) -> f64 {
 /// `y - y_other`, by the distances from the nearer end.
 fn difference(one: Coordinate, other: Coordinate) -> f64 {
     if one.y + other.y < 1.0 { one.y - other.y } else { other.h - one.h }
+}
+
+/// Lagrange's polynomials at a place.
+///
+/// # Arguments
+/// * `factor` -- what the place lies away from a node `j`, over what a node `i` does
+fn lagrange(factor: impl Fn(usize, usize) -> f64) -> [f64; LOCAL] {
+    std::array::from_fn(|i| (0..LOCAL).filter(|j| *j != i).map(|j| factor(i, j)).product())
 }
 
 /// Values at all nodes, of which that at the edge is nothing.

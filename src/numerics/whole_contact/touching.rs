@@ -7,18 +7,19 @@
 //! p(t) = -(1/π) ∫_ξ^1 (η-ξ)^(ν-1) B'(q - lift) q'(η) dη
 //! ```
 //!
-//! over the cells between nodes, on Lobatto's points, at which `B' q'` is taken for a cubic. Where compressions fall outwards, no pressure is negative.
+//! over the cells between nodes, on Lobatto's points, at which `B' q'` is taken for a cubic. Where compressions fall outwards, no pressure is negative. Springs that the mesh takes out of contact next to
+//! the edge, where `q < 0`, count by the size of `q`, so that they wear back.
 
 use std::f64::consts::PI;
 
 use faer::Mat;
 
-use super::{Coordinate, LOCAL, WholeContact, difference};
+use super::{Coordinate, LOCAL, WholeContact, difference, lagrange};
 use crate::error::Result;
 use crate::numerics::quadrature::Rule;
 
 /// Points of Lobatto's rule in a cell, from 0 to 1.
-const POINTS: [f64; 4] = [0.0, 0.276_393_202_250_021, 0.723_606_797_749_979, 1.0];
+const POINTS: [f64; LOCAL] = [0.0, 0.276_393_202_250_021, 0.723_606_797_749_979, 1.0];
 
 /// Nodes of the rules over a cell, next to the node from which it is seen as well.
 const RULE: usize = 20;
@@ -88,7 +89,7 @@ impl Touching {
     ///
     /// # Arguments
     /// * `inside` -- `q`
-    /// * `slopes` -- from `q` the `B'` of all steps
+    /// * `slopes` -- from `|q|` the `B'` of all steps
     pub fn pressure(
         &self,
         inside: &[f64],
@@ -98,8 +99,8 @@ impl Touching {
         let mut loads = Mat::zeros(self.points.len(), steps);
         let mut at_point = vec![0.0; steps];
         for (i, point) in self.points.iter().enumerate() {
-            let [compression, rise] = point.of(inside);
-            slopes(compression, &mut at_point);
+            let [size, rise] = point.of(inside);
+            slopes(size, &mut at_point);
             at_point.iter().enumerate().for_each(|(m, slope)| loads[(i, m)] = rise * slope);
         }
         &self.kernel * &loads
@@ -109,12 +110,10 @@ impl Touching {
     ///
     /// # Arguments
     /// * `inside` -- `q`
-    /// * `reach` -- from `q` the lift from which on the spring there is out of contact
     /// * `lifts` -- by step, the lower one first
     pub fn pressure_in_proportion(
         &self,
         inside: &[f64],
-        reach: impl Fn(f64) -> f64,
         lifts: impl ExactSizeIterator<Item = [f64; 2]>,
     ) -> Mat<f64> {
         let inner = self.kernel.nrows();
@@ -123,12 +122,12 @@ impl Touching {
             .iter()
             .enumerate()
             .map(|(i, point)| {
-                let [compression, rise] = point.of(inside);
-                (reach(compression), rise, i)
+                let [size, rise] = point.of(inside);
+                (size, rise, i)
             })
             .collect();
         parts.sort_by(|one, other| other.0.total_cmp(&one.0));
-        // What the points with the farthest reach make, by their number.
+        // What the points with the largest compressions make, by their number.
         let mut sums = Mat::zeros(inner, parts.len() + 1);
         for (count, (_, rise, point)) in parts.iter().enumerate() {
             for i in 0..inner {
@@ -142,8 +141,8 @@ impl Touching {
             for i in 0..inner {
                 pressure[(i, m)] = sums[(i, all)];
             }
-            for (reach, rise, point) in &parts[all..some] {
-                let part = rise * (reach - low) / (high - low);
+            for (size, rise, point) in &parts[all..some] {
+                let part = rise * (size - low) / (high - low);
                 for i in 0..inner {
                     pressure[(i, m)] += part * self.kernel[(i, *point)];
                 }
@@ -154,18 +153,18 @@ impl Touching {
 }
 
 impl Point {
-    /// A value and its derivative by `y`, of what is given at the inner nodes and nothing at the edge.
+    /// The size of a compression and its derivative by `y`, of those at the inner nodes, with none at the edge.
     fn of(&self, inside: &[f64]) -> [f64; 2] {
-        [&self.value, &self.slope].map(|weights| {
+        let [compression, rise] = [&self.value, &self.slope].map(|weights| -> f64 {
             weights.iter().zip(&inside[self.first..]).map(|(weight, value)| weight * value).sum()
-        })
+        });
+        [compression.abs(), rise]
     }
 }
 
 /// Lagrange's polynomials on the points of a cell.
-fn cardinals(at: f64) -> [f64; POINTS.len()] {
-    let factor = |i: usize, j: usize| (at - POINTS[j]) / (POINTS[i] - POINTS[j]);
-    std::array::from_fn(|i| (0..POINTS.len()).filter(|j| *j != i).map(|j| factor(i, j)).product())
+fn cardinals(at: f64) -> [f64; LOCAL] {
+    lagrange(|i, j| (at - POINTS[j]) / (POINTS[i] - POINTS[j]))
 }
 
 #[cfg(test)]
@@ -193,7 +192,7 @@ mod tests {
         let touching = Touching::new(&mesh).unwrap();
         let inside: Vec<f64> = mesh.distances().collect();
         let lifts = [[0.0, 0.1], [0.1, 0.35], [0.35, 0.36], [1.0, 1.1]];
-        let in_proportion = touching.pressure_in_proportion(&inside, |q| q, lifts.into_iter());
+        let in_proportion = touching.pressure_in_proportion(&inside, lifts.into_iter());
         let by_slopes = touching.pressure(&inside, lifts.len(), |q, slopes| {
             for ([low, high], slope) in lifts.into_iter().zip(slopes) {
                 *slope = ((q - low) / (high - low)).clamp(0.0, 1.0);

@@ -18,7 +18,7 @@ const AHEAD: f64 = 1.02;
 const THIN: f64 = 1e-6;
 
 /// Compression next to the contact edge, over the indentation, and strength of friction there, over that part of the strength at the indentation, from which on wear by the traction
-/// spares the edge: below k = -0.5 exponents of the load up to 0.6 come to their ends, of 0.75 and more to none, or to one that is told.
+/// spares the edge: exponents of the load of 0.9 come to their ends down to k = -0.9 under a paraboloid, of 0.75 down to -0.7 under a cone, which comes to none at -0.9.
 const NEXT_TO_EDGE: f64 = 1e-2;
 const SPARED: f64 = 0.06;
 
@@ -54,8 +54,8 @@ fn spared_edge(model: &Model) -> String {
     if !(spared && conditions.wear.takes_traction() && contact.half_space().loads_rims()) {
         return String::new();
     }
-    " (friction: with the load it falls faster than the pressure towards the contact edge, so that wear spares the ground there, which takes the load; exponents up to 0.5 are followed at \
-     gradings down to -0.7)"
+    " (friction: with the load it falls faster than the pressure towards the contact edge, so that wear spares the ground there, which takes the load; exponents up to 0.9 are followed at \
+     gradings down to -0.9 under a paraboloid, up to 0.75 and down to -0.7 under a cone)"
         .to_owned()
 }
 

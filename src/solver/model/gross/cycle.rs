@@ -424,11 +424,11 @@ impl Model {
                 match bearing.in_proportion() {
                     Some(factor) => {
                         let ends = lifts.windows(2).map(|ends| self.apart([ends[0], ends[1]]));
-                        let pressure = touching.pressure_in_proportion(compression, f64::abs, ends);
+                        let pressure = touching.pressure_in_proportion(compression, ends);
                         pressure * Scale(factor)
                     }
                     None => touching.pressure(compression, steps, |q, slopes| {
-                        self.mean_slopes(|lift| bearing.of(q.abs(), lift), &lifts, slopes);
+                        self.mean_slopes(|lift| bearing.of(q, lift), &lifts, slopes);
                     }),
                 }
             }
