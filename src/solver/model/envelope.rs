@@ -1,7 +1,8 @@
 //! The envelope of all cycles of a run: the largest indentation and the smallest stick radius bound where wear can come.
 
 use super::moving::{
-    LAST_CORE, check_friction, first_slip_compression, follows_held_force, held_stick_radius, slides_at_once,
+    LAST_CORE, check_friction, first_slip_compression, follows_held_force, held_stick_radius, jumps_steeply,
+    slides_at_once,
 };
 use super::schedule::{CycleLoading, Envelope, Schedule};
 use super::whole::{LEAST_STICK, not_carried};
@@ -16,7 +17,7 @@ const SEARCH: usize = 400;
 impl Schedule {
     /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
     ///
-    /// Where a balance of forces takes all stick away in the end, with the [core](LAST_CORE) up to which that is followed.
+    /// Where a balance of forces takes all stick away in the end, with the [core](LAST_CORE) up to which that is followed, or without following the edge of stick.
     ///
     /// # Errors
     /// [`Error::Inconsistent`](crate::Error::Inconsistent) if the whole contact slides in some cycle, which is not stepped on this mesh; those of [`InitialContact::at`].
@@ -40,6 +41,7 @@ impl Schedule {
         let radius = self.largest_first_radius(contact)?;
         let largest = depth - contact.equivalent_profile().value(LEAST_STICK * radius);
         let slides = compression > largest;
+        let first = conditions.tangential_control == TangentialControl::Displacement;
         let accelerates = match conditions.tangential_control {
             TangentialControl::Force if conditions.holds_both_forces() => slides,
             TangentialControl::Force => slides_at_once(self, contact)?,
@@ -61,7 +63,9 @@ impl Schedule {
         }
         if !follows {
             check_friction(self, contact, follows)?;
-            return Err(not_carried(contact, self));
+            if first || jumps_steeply(self, contact) || slides_at_once(self, contact)? {
+                return Err(not_carried(contact, self));
+            }
         }
         Ok(Envelope { contact: contact.with_core(depth, LAST_CORE * radius)?, slides })
     }

@@ -22,7 +22,7 @@ use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
 use hand_over::BEGINS_BELOW;
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
-use super::whole::{LEAST_STICK, LEAST_STICK_LATER, SOFT, carries, is_smooth, slides_on, spares_edge};
+use super::whole::{LEAST_STICK, LEAST_STICK_LATER, carries, is_smooth, slides_on, spares_edge};
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::transforms::Transforms;
@@ -182,8 +182,7 @@ impl Slides {
         let plain = conditions.friction.coefficient().is_some() && is_smooth(contact, schedule);
         // The edge of stick is followed until the last springs give way, and where polynomials would not carry what a rig does at first.
         let followed = plain && schedule.keeps_friction() && slides_on(contact, schedule);
-        let soft = contact.half_space().grading() < SOFT;
-        if on_rig && (followed || soft) && !slides(&schedule.first_slip(), nearly)? {
+        if on_rig && followed && !slides(&schedule.first_slip(), nearly)? {
             return Ok(Self::Never);
         }
         let [mut some, mut all] = [false, true];

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use super::edge_in_block::AtRest;
 use super::schedule::{AmplitudeControl, CycleLoading};
-use super::{Fields, Model};
+use super::{Fields, Model, State};
 use crate::contact::spring::{Response, Shakedown, SpringCycle, Steps, steady_cycle};
 use crate::contact::stick_slip::slip_amplitude_of_spring;
 use crate::laws::friction::FrictionLaw;
@@ -314,12 +314,32 @@ impl Model {
         if loading.control == AmplitudeControl::Displacement {
             return loading.amplitude;
         }
-        let strength = loading.friction.static_strength(self.contact.slip_compression() - loading.lift);
-        let largest = strength / self.contact.half_space().stiffness_ratio();
+        let largest = self.largest_amplitude(loading);
         let excess =
             |amplitude: f64| loading.excess(self.force(loading, lifted, fields, amplitude), amplitude);
         // At the last stick radius the contact gives way.
         bracketed(excess, 0.0, largest, 0.0).unwrap_or(largest)
+    }
+
+    /// Amplitude, m, at which springs slip from the last stick radius on.
+    fn largest_amplitude(&self, loading: &CycleLoading) -> f64 {
+        let strength = loading.friction.static_strength(self.contact.slip_compression() - loading.lift);
+        strength / self.contact.half_space().stiffness_ratio()
+    }
+
+    /// Whether a balance of tangential forces asks for more than all springs beyond the core of the mesh bear, where the edge of stick is on the mesh.
+    pub(super) fn gives_way(&self, state: &State) -> bool {
+        if !self.slides || self.gross().is_some() || self.moving().is_some() {
+            return false;
+        }
+        let loading = self.loading(state, state.cycles);
+        let loading = self.after_energy(loading, state.dissipated_energy);
+        if loading.control == AmplitudeControl::Displacement || loading.is_pause() {
+            return false;
+        }
+        let lifted: Vec<f64> = state.compression.iter().map(|q| q - loading.lift).collect();
+        let amplitude = self.largest_amplitude(&loading);
+        loading.excess(self.force(&loading, &lifted, &self.fields(state), amplitude), amplitude) < 0.0
     }
 
     /// Derivatives of the amplitude in the balance of forces.

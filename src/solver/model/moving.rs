@@ -306,13 +306,18 @@ impl MovingStick {
 /// As [`slides_at_once`].
 pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
-    let (friction, depth) = (&conditions.friction, contact.indentation());
-    let evenness = friction.kinetic_strength_slope(depth) * depth / friction.kinetic_strength(depth);
-    let jumps = !conditions.holds_normal_force && schedule.slips_otherwise_between_blocks();
     Ok(conditions.tangential_control != TangentialControl::Displacement
-        && !(jumps && evenness < LEAST_EVENNESS)
+        && !jumps_steeply(schedule, contact)
         && conditions.blocks.iter().all(|block| block.indentation_factor == 1.0)
         && !slides_at_once(schedule, contact)?)
+}
+
+/// Whether the edge of stick jumps between blocks at an indentation that is held, under friction that falls too steeply with the load for it to be followed.
+pub(super) fn jumps_steeply(schedule: &Schedule, contact: &InitialContact) -> bool {
+    let conditions = schedule.conditions();
+    let (friction, depth) = (&conditions.friction, contact.indentation());
+    let evenness = friction.kinetic_strength_slope(depth) * depth / friction.kinetic_strength(depth);
+    !conditions.holds_normal_force && schedule.slips_otherwise_between_blocks() && evenness < LEAST_EVENNESS
 }
 
 /// Whether a balance of tangential forces leaves no more stick in the first cycle than the core up to which the edge is followed.
@@ -403,7 +408,7 @@ impl Model {
 
     /// Whether a stick zone that shrinks has come to the core of the mesh, or breaks away before.
     pub fn loses_stick(&self, state: &State) -> bool {
-        self.shrinks_below(LOST, state) || self.breaks_away(state)
+        self.shrinks_below(LOST, state) || self.breaks_away(state) || self.gives_way(state)
     }
 
     /// Whether a stick zone that shrinks is so near to the core of the mesh that it is lost in the next moment, or shrinks so fast that it is.

@@ -35,8 +35,8 @@ pub(super) fn not_carried(contact: &InitialContact, schedule: &Schedule) -> Erro
         return Error::Inconsistent {
             what: "loading.tangential_control",
             why: format!(
-                "at an amplitude of {amplitude:e} m the tangential force that is held takes all stick away in the end, which is not followed beside blocks of other \
-                 indentations, or beside blocks under friction that falls as steeply with the load; reduce the amplitude, or hold it"
+                "at an amplitude of {amplitude:e} m the tangential force that is held takes all stick away in the end, which is not followed beside blocks under friction \
+                 that falls as steeply with the load; reduce the amplitude, or hold it"
             ),
         };
     }
