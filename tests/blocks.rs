@@ -90,7 +90,7 @@ fn a_short_block_between_two_equal_ones_changes_next_to_nothing() {
 }
 
 #[test]
-fn an_edge_of_stick_that_comes_to_rest_on_worn_ground_amidst_the_mesh_is_refused() {
+fn an_edge_of_stick_that_comes_to_rest_on_worn_ground_is_carried() {
     let case = Case::new(2.0, 0.0, 0.7, 40);
     let plain = laws::plain(&case.contact());
     let history = |factors: &[f64]| Conditions {
@@ -105,14 +105,6 @@ fn an_edge_of_stick_that_comes_to_rest_on_worn_ground_amidst_the_mesh_is_refused
         let schedule = Schedule::new(&contact, conditions, Resolution::default()).unwrap();
         Model::under(&contact, schedule, 40, case.clustering, &OperatorStore::default())
     };
-    let error = model(&blocks(lifted(), false)).map(|_| ()).unwrap_err().to_string();
-    println!("{error}");
-    assert!(
-        error.starts_with("loading.blocks: in the end springs slip below 0.")
-            && error.contains("repeat them")
-            && error.contains("slips farthest"),
-        "{error}"
-    );
     for conditions in [
         history(&[1.0, 0.909, 1.118]),
         history(&[1.0, 1.4, 1.2]),
@@ -121,6 +113,7 @@ fn an_edge_of_stick_that_comes_to_rest_on_worn_ground_amidst_the_mesh_is_refused
         history(&[1.0, 1.4, 1.0]),
         blocks(pause(), false),
         blocks(pause(), true),
+        blocks(lifted(), false),
         blocks(lifted(), true),
     ] {
         model(&conditions).unwrap();

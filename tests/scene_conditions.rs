@@ -654,25 +654,6 @@ fn everything_at_once_runs() {
     assert!(folder.path().join("scene.h5").exists());
 }
 
-#[test]
-fn friction_that_falls_and_rises_under_lifts_is_refused_with_nothing_written() {
-    let history = "[friction.coulomb]\ncoefficient = 0.6\n[friction.history]\nfactors = [1, 0.8, 1]\nat_tau = [0, 1, 3]";
-    let lifted = format!(
-        "{LOADING}[loading.normal_oscillation]\namplitude_ratio = 0.1\nfrequency_ratio = 1\nphase = 1"
-    );
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("scene.toml"), scene(history, WEAR, &lifted)).expect("the scene");
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fretwear"));
-    let output = command.current_dir(folder.path()).args(["run", "scene.toml"]).output().expect("a run");
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(
-        message.contains("friction.history: in the end") && message.contains("end at their smallest"),
-        "{message}"
-    );
-    assert!(!folder.path().join("scene.h5").exists());
-}
-
 fn fixed() -> Config {
     Config { cases: 2000, rng_seed: RngSeed::Fixed(11), failure_persistence: None, ..Config::default() }
 }

@@ -373,9 +373,9 @@ fn the_edge_of_stick_rests_where_blocks_of_other_indentations_leave_it() {
     let [deep_first, deep_last] =
         [[1.0, 0.8], [0.8, 1.0]].map(|depths| blocks_at_depths(&depths.map(|depth| [0.5, 1.0, depth])));
     let breaks_later = blocks_at_depths(&[[0.5, 0.3, 1.0], [0.5, 1.0, 1.1]]);
-    let oscillating = format!(
-        "{SHRINKING}\n[loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = 2\nphase = 1.0"
-    );
+    let oscillates =
+        "[loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = 2\nphase = 1.0".to_owned();
+    let oscillating = format!("{SHRINKING}\n{oscillates}");
     let held = "amplitude_ratio = 0.6";
     let partial = "stick_ratio = 0.7";
     let mut cases = vec![
@@ -384,6 +384,7 @@ fn the_edge_of_stick_rests_where_blocks_of_other_indentations_leave_it() {
         ("amplitude_ratio = 3", RIG, COULOMB.to_owned(), &breaks_later),
         (partial, "", by_energy(0.4), &oscillating),
         (partial, "", by_energy(0.6), &oscillating),
+        (partial, "", table("[1.0, 0.8, 1.0]"), &oscillates),
     ];
     for friction in [
         COULOMB.to_owned(),
