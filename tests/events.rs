@@ -270,6 +270,7 @@ fn check_tells_how_a_scene_is_computed() {
     assert_eq!(told("paraboloid.toml"), ("closed-form", "slip-annulus", "fixed", bdf));
     assert_eq!(told("orbit.toml"), ("resolved", "slip-annulus", "fixed", bdf));
     assert_eq!(told("normal_force.toml"), ("closed-form", "slip-annulus", "moving", sdirk));
+    assert_eq!(told("blocks.toml"), ("closed-form", "slip-annulus", "on-mesh", sdirk));
     assert_eq!(told("fouvry2007.toml"), ("closed-form", "whole-contact", "none", bdf));
     // What it tells is what is run.
     let (scene, told) = method("paraboloid.toml");

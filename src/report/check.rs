@@ -149,7 +149,11 @@ impl CheckReport {
             rows.gap();
             rows.row("slip of a cycle", method.cycle);
             rows.row("springs", format!("{} over the {}", method.springs, method.mesh.replace('-', " ")));
-            rows.row("edge of stick", method.stick_edge);
+            let edge = match method.stick_edge {
+                "on-mesh" => "moves over the springs",
+                edge => edge,
+            };
+            rows.row("edge of stick", edge);
             rows.row("time stepping", method.time_stepping);
             if let Some(how) = method.repeated_blocks {
                 let words = match how {

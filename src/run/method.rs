@@ -20,7 +20,7 @@ pub struct Method {
     /// How repeated blocks are passed through: `averaged` over passes, as in their mean cycle, `stepped`, one after the other, or `stepped-at-first`, until passes are
     /// short beside what is left of wear; none without.
     pub repeated_blocks: Option<&'static str>,
-    /// The edge of stick: `fixed`, `moving`, or `none` in gross slip.
+    /// The edge of stick: `fixed`; `moving`, with the springs; `on-mesh`, where it moves over springs that stay; or `none` in gross slip.
     pub stick_edge: &'static str,
     /// Memory of the transforms and of Newton's matrix, bytes, about; some 15 MB of the program itself come on top.
     pub memory_expected: f64,
@@ -46,6 +46,7 @@ impl Method {
             stick_edge: match model.moving() {
                 Some(_) => "moving",
                 None if in_gross_slip => "none",
+                None if model.follows_ground_at_rest() => "on-mesh",
                 None => "fixed",
             },
             memory_expected: operator_bytes(backend, springs),

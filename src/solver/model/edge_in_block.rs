@@ -41,7 +41,7 @@ impl Model {
     }
 
     /// Whether the mesh begins where springs slip in some cycle, and those that slip in others are found by their compressions at an indentation that is held.
-    fn follows_ground_at_rest(&self) -> bool {
+    pub fn follows_ground_at_rest(&self) -> bool {
         let conditions = self.schedule.conditions();
         let changes = self.schedule.changes_between_blocks() || self.limit_changes();
         changes && !conditions.holds_normal_force && self.moving().is_none() && self.gross().is_none()
