@@ -27,8 +27,18 @@ fn load_dependent(exponent: f64) -> String {
 
 /// Blocks of these dimensionless times and amplitude factors.
 fn blocks_of(blocks: &[(f64, f64)]) -> String {
-    let block = |(tau, factor)| format!("[[loading.blocks]]\ntau = {tau}\namplitude_factor = {factor}\n");
-    blocks.iter().copied().map(block).collect()
+    let at_one_depth: Vec<[f64; 3]> = blocks.iter().map(|(tau, factor)| [*tau, *factor, 1.0]).collect();
+    blocks_at_depths(&at_one_depth)
+}
+
+/// Blocks of these dimensionless times, amplitude and indentation factors.
+fn blocks_at_depths(blocks: &[[f64; 3]]) -> String {
+    let block = |[tau, amplitude, depth]: &[f64; 3]| {
+        format!(
+            "[[loading.blocks]]\ntau = {tau}\namplitude_factor = {amplitude}\nindentation_factor = {depth}\n"
+        )
+    };
+    blocks.iter().map(block).collect()
 }
 
 fn history(factor: f64) -> String {
@@ -354,16 +364,6 @@ fn a_pause_only_delays_wear() {
             }
         }
     }
-}
-
-/// Blocks of these dimensionless times, amplitude and indentation factors.
-fn blocks_at_depths(blocks: &[[f64; 3]]) -> String {
-    let block = |[tau, amplitude, depth]: &[f64; 3]| {
-        format!(
-            "[[loading.blocks]]\ntau = {tau}\namplitude_factor = {amplitude}\nindentation_factor = {depth}\n"
-        )
-    };
-    blocks.iter().map(block).collect()
 }
 
 /// At an indentation that changes between blocks the edge of stick comes to rest on the mesh, over worn ground too, under friction that changes, a held tangential force that

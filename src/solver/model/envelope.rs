@@ -41,10 +41,10 @@ impl Schedule {
         let radius = self.largest_first_radius(contact)?;
         let largest = depth - contact.equivalent_profile().value(LEAST_STICK * radius);
         let slides = compression > largest;
-        let first = conditions.tangential_control == TangentialControl::Displacement;
+        let at_once = slides_at_once(self, contact)?;
         let accelerates = match conditions.tangential_control {
             TangentialControl::Force if conditions.holds_both_forces() => slides,
-            TangentialControl::Force => slides_at_once(self, contact)?,
+            TangentialControl::Force => at_once,
             _ => false,
         };
         if accelerates {
@@ -63,7 +63,8 @@ impl Schedule {
         }
         if !follows {
             check_friction(self, contact, follows)?;
-            if first || jumps_steeply(self, contact) || slides_at_once(self, contact)? {
+            let given = conditions.tangential_control == TangentialControl::Displacement;
+            if given || at_once || jumps_steeply(self, contact) {
                 return Err(not_carried(contact, self));
             }
         }

@@ -332,8 +332,7 @@ impl Model {
         if !self.slides || self.gross().is_some() || self.moving().is_some() {
             return false;
         }
-        let loading = self.loading(state, state.cycles);
-        let loading = self.after_energy(loading, state.dissipated_energy);
+        let loading = self.loading_in(state, self.schedule.loading(state.cycles, state.cycles));
         if loading.control == AmplitudeControl::Displacement || loading.is_pause() {
             return false;
         }

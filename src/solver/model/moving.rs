@@ -37,6 +37,7 @@ use crate::numerics::grid::Clustering;
 use crate::numerics::roots::bracketed;
 use crate::solver::model::whole::slides_on;
 pub use both_forces::Bearing;
+use causes::at_one_indentation;
 pub(super) use causes::check_friction;
 pub use stage::{StickStage, StickTarget, StickTrial};
 
@@ -308,7 +309,7 @@ pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) 
     let conditions = schedule.conditions();
     Ok(conditions.tangential_control != TangentialControl::Displacement
         && !jumps_steeply(schedule, contact)
-        && conditions.blocks.iter().all(|block| block.indentation_factor == 1.0)
+        && at_one_indentation(conditions)
         && !slides_at_once(schedule, contact)?)
 }
 

@@ -599,6 +599,12 @@ impl Schedule {
         !self.slips_otherwise() && self.keeps_friction()
     }
 
+    /// Whether friction changes along the cycles and along the energy dissipated, which is not followed.
+    pub fn changes_friction_by_both(&self) -> bool {
+        let by_both = [&self.conditions.friction_history, &self.friction_along_energy];
+        by_both.iter().all(|history| **history != History::Constant)
+    }
+
     /// Whether friction changes neither along the cycles nor along the energy dissipated.
     pub fn keeps_friction(&self) -> bool {
         *self.friction_change() == History::Constant

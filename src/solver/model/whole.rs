@@ -3,7 +3,6 @@
 use super::schedule::Schedule;
 use crate::contact::InitialContact;
 use crate::error::Error;
-use crate::laws::history::History;
 
 /// Difference of a slope of friction from that of its strength at all of the indentation, relative, that is round-off.
 const EVEN: f64 = 1e-12;
@@ -23,9 +22,8 @@ const SOFTEST_THAT_LIFTS: f64 = -0.96;
 
 /// Whether the mesh of gross slip carries what happens in a contact, once all of it slides.
 pub(super) fn carries(contact: &InitialContact, schedule: &Schedule) -> bool {
-    let along_energy = *schedule.friction_along_energy() != History::Constant;
-    let both = along_energy && schedule.conditions().friction_history != History::Constant;
-    !both && (contact.half_space().grading() >= SOFTEST_THAT_LIFTS || !lifts(schedule))
+    !schedule.changes_friction_by_both()
+        && (contact.half_space().grading() >= SOFTEST_THAT_LIFTS || !lifts(schedule))
 }
 
 /// Why a contact is refused that [is not carried](carries).

@@ -114,7 +114,7 @@ fn only_grows(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
 }
 
 /// Whether blocks differ by their amplitudes alone.
-fn at_one_indentation(conditions: &Conditions) -> bool {
+pub(super) fn at_one_indentation(conditions: &Conditions) -> bool {
     conditions.blocks.iter().all(|block| block.indentation_factor == 1.0)
 }
 
@@ -146,8 +146,7 @@ pub(in crate::solver::model) fn check_friction(
 
 /// Refuses friction that changes with the energy that it dissipates and along the cycles at once.
 fn check_along_energy(schedule: &Schedule) -> Result<()> {
-    let along_cycles = schedule.conditions().friction_history != History::Constant;
-    if *schedule.friction_along_energy() == History::Constant || !along_cycles {
+    if !schedule.changes_friction_by_both() {
         return Ok(());
     }
     Err(Error::Inconsistent {
