@@ -466,3 +466,23 @@ fn a_run_that_knows_nothing_of_its_error_gives_way_to_one_that_does() {
     let shown = run.run().expect("an end").worn_volume();
     assert!(seen.len() > shown.len() && seen.ends_with(&shown), "{seen:?}");
 }
+
+/// Springs that move with an edge of stick over worn ground come to no end here, and an edge over springs that stay does: the last resort, which tells that nothing is known of its error.
+#[test]
+fn a_run_over_springs_that_stay_takes_the_same_way_in_parts() {
+    let scene = Scene::from_toml(
+        "[indenter.sphere]\nradius = 472496.98\n[half_space]\ngrading = -0.572741\nnormal_stiffness = 15585324335.73\nstiffness_ratio = 0.480897\n\
+         [friction.coulomb]\ncoefficient = 0.12326555\n[wear.threshold]\ncoefficient = \"0.001156319 1/MPa\"\npressure = 147598.47\n\
+         [loading]\nindentation = 1.01575728\nstick_ratio = 0.443112\ntau = 38.21708\ntangential_control = \"rig\"\nrig_stiffness = 331686498006.3\n\
+         [numerics]\naccuracy = 0.001\n[output]\nsnapshots = 5\n",
+        "scene.toml",
+    )
+    .expect("a scene");
+    let folder = tempfile::tempdir().expect("a folder");
+    let (run, [whole, parts], interruptions) =
+        support::resume::whole_and_in_parts(&scene, folder.path(), 600);
+    let attempt = whole.checkpoint.as_ref().expect("a checkpoint").attempt;
+    println!("{:?}, {interruptions} interruptions, {attempt:?}", run.error_estimate());
+    assert!(attempt.refinements >= 10 && run.accuracy_met() == Some(false), "{attempt:?}");
+    assert!(interruptions > 0 && whole == parts);
+}

@@ -225,6 +225,25 @@ fn wear_of_which_a_coarse_mesh_makes_less_than_nothing_is_found_on_a_finer_one()
     assert!(coarse.last().wear_volume < 0.0 && told > 1.0, "{told:e}");
 }
 
+/// Springs that make less than nothing of the energy of the first cycle, at k = -0.9959 on a table, tell nothing of how fast friction changes with it.
+#[test]
+fn a_first_cycle_that_dissipates_less_than_nothing_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let step = 1.1163651863856186e-9;
+    let rows = (0..33).map(f64::from).map(|i| format!("{:e}, {:e}\n", i * step, 2.63e-16 * i.powf(3.107)));
+    std::fs::write(folder.path().join("profile.csv"), rows.collect::<String>()).expect("a table");
+    let path = folder.path().join("scene.toml");
+    let text = "[indenter.table]\nfile = \"profile.csv\"\n[half_space]\ngrading = -0.9958946931209366\nnormal_stiffness = 245754678922.0\n\
+                stiffness_ratio = 0.6537\n[friction.wear-dependent]\nfirst_coefficient = 0.06384\nlast_coefficient = 0.05345\nenergy_density = 10879.0\n\
+                [wear.threshold]\ncoefficient = \"5.51e-9 1/MPa\"\npressure = \"23683101162.9 kPa\"\n[loading]\nindentation = 1.4077337e-12\n\
+                stick_ratio = 0.17925412\ntau = 5.4\nrig_stiffness = \"80373214.4 kN/m\"\n[[loading.blocks]]\ntau = 0.3675\namplitude_factor = 0.99\n\
+                [numerics]\naccuracy = 1e-4\n";
+    std::fs::write(&path, text).expect("a scene");
+    let scene = Scene::from_path(&path).expect("a scene");
+    let error = Simulation::new(&scene).map(|_| ()).expect_err("no first cycle").to_string();
+    assert!(error.contains("less than nothing") && error.contains("numerics.springs"), "{error}");
+}
+
 /// Wear under a held normal force that never comes to the rate asked for ends where it is shown to, on all meshes alike.
 #[test]
 fn wear_without_end_is_shown_to_the_same_time_on_every_mesh() {

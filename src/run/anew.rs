@@ -1,8 +1,11 @@
 //! A run that is made anew: on more springs where its error is larger than was asked for, in finer steps where those do not help, on fewer where it takes too long or finds no end.
 
+use std::cell::OnceCell;
 use std::mem;
 
-use super::attempt::{LAST_RESORT, REFINEMENTS, SPRINGS_OF_LAST_RESORT};
+use super::attempt::{
+    LAST_RESORT, ON_SPRINGS_THAT_STAY, REFINEMENTS, SPRINGS_OF_LAST_RESORT, SPRINGS_THAT_STAY,
+};
 use super::budget::{self, TIGHTER, UNKNOWN};
 use super::cost;
 use super::limit::header;
@@ -13,7 +16,7 @@ use crate::contact::closed_form::LimitingShape;
 use crate::data::{Attempt, Checkpoint, RunHeader, Snapshot};
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Stepper};
-use crate::solver::model::OperatorStore;
+use crate::solver::model::{MovingStick, OperatorStore};
 use crate::solver::simulation::{Outcome, Simulation};
 
 /// A run, attempt by attempt; its recorder holds what the one under way counts as.
@@ -23,7 +26,8 @@ pub(super) struct Attempts<'a> {
     pub recorder: &'a mut Recorder,
     pub stepping: Simulation,
     pub limit: Option<LimitingShape>,
-    pub known: Known,
+    /// Of attempts by their [kind](Attempt::kind).
+    pub known: [OnceCell<Known>; 3],
     /// That which ended and may be taken after all, if it was made in this process.
     pub ended: Option<Ended>,
 }
@@ -135,10 +139,12 @@ impl Attempts<'_> {
 
     fn begun(&self, anew: &Anew) -> Option<Begun> {
         let Anew { springs, on_fewer, counted } = *anew;
-        // The last resort has substeps of its own.
-        let known = (!counted.is_last_resort()).then_some(&self.known);
+        let known = &self.known[counted.kind()];
+        let before = Known::before(&counted, self.scene).ok()?;
         let numerics = counted.numerics(self.scene);
-        let mut parts = Parts::new(self.scene, &numerics, Some(springs), known, self.store).ok()?;
+        let found = known.get().or(before.as_ref());
+        let mut parts = Parts::new(self.scene, &numerics, Some(springs), found, self.store).ok()?;
+        known.get_or_init(|| Known::of(&parts));
         let limit = parts.limit.take();
         let stepping = parts.begin().ok()?;
         (!on_fewer || stepping.model().springs() < self.springs()).then_some((counted, stepping, limit))
@@ -232,7 +238,7 @@ impl Attempts<'_> {
     /// Coarser ones may come to an end where this does not, and tell that nothing is known of the error.
     fn for_an_end(&self, work: u64) -> Vec<Anew> {
         let (begun, _) = self.stepping.first();
-        let asked = Parts::new(self.scene, self.scene.numerics(), None, Some(&self.known), self.store).ok();
+        let asked = Parts::new(self.scene, self.scene.numerics(), None, self.known[0].get(), self.store).ok();
         let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
         let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
         let counted = Attempt { refinements: REFINEMENTS + 1, work, ..Attempt::default() };
@@ -240,17 +246,28 @@ impl Attempts<'_> {
         fewer.into_iter().chain(self.last_resort(work)).collect()
     }
 
-    /// In coarse steps, on those springs that have not been tried so.
+    /// In coarse steps, on those springs that have not been tried so; where a balance of forces moves the edge of stick, over springs that stay at last.
     fn last_resort(&self, work: u64) -> Vec<Anew> {
-        let attempt = self.recorder.attempt;
-        let refinements = LAST_RESORT.max(attempt.refinements + 1);
-        let counted = Attempt { refinements, work, ..Attempt::default() };
-        let all = SPRINGS_OF_LAST_RESORT[usize::from(self.stepping.model().gross().is_none())].iter();
-        let tried = match attempt.is_last_resort() {
-            true => 1 + all.clone().take_while(|it| **it != self.springs()).count(),
-            false => 0,
+        let (attempt, first) = (self.recorder.attempt, self.stepping.first().0);
+        let on = |springs: &[usize], from: u64, is_tried: bool| -> Vec<Anew> {
+            let counted =
+                Attempt { refinements: from.max(attempt.refinements + 1), work, ..Attempt::default() };
+            let tried = match is_tried {
+                true => 1 + springs.iter().take_while(|it| **it != self.springs()).count(),
+                false => 0,
+            };
+            let left = springs.iter().skip(tried);
+            left.map(|springs| Anew { springs: *springs, on_fewer: false, counted }).collect()
         };
-        all.skip(tried).map(|springs| Anew { springs: *springs, on_fewer: false, counted }).collect()
+        if attempt.is_on_springs_that_stay() {
+            return on(&SPRINGS_THAT_STAY, ON_SPRINGS_THAT_STAY, true);
+        }
+        let springs = SPRINGS_OF_LAST_RESORT[usize::from(self.stepping.model().gross().is_none())];
+        let mut all = on(springs, LAST_RESORT, attempt.is_last_resort());
+        if first.moving().is_some_and(MovingStick::is_balanced) {
+            all.extend(on(&SPRINGS_THAT_STAY, ON_SPRINGS_THAT_STAY, false));
+        }
+        all
     }
 
     /// Springs with which to repeat a run, where the program chose them and the run found no end or may be off by more than was asked for.

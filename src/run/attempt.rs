@@ -21,6 +21,10 @@ pub(super) const LAST_RESORT: u64 = REFINEMENTS + 2;
 const COARSE_SUBSTEPS: usize = 48;
 pub(super) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96, 60, 16]];
 
+/// The first of those after these in which an edge of stick moves over springs that stay, and those springs.
+pub(super) const ON_SPRINGS_THAT_STAY: u64 = LAST_RESORT + 5;
+pub(super) const SPRINGS_THAT_STAY: [usize; 2] = [96, 60];
+
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
 const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];
 
@@ -28,6 +32,16 @@ impl Attempt {
     /// Whether it is made in coarse steps, since no other found an end.
     pub(super) fn is_last_resort(&self) -> bool {
         self.refinements >= LAST_RESORT
+    }
+
+    /// Whether an edge of stick moves over springs that stay, since no other found an end.
+    pub(super) fn is_on_springs_that_stay(&self) -> bool {
+        self.refinements >= ON_SPRINGS_THAT_STAY
+    }
+
+    /// Which of those it is that share a schedule: with the substeps of the scene, with coarse ones, on springs that stay.
+    pub(super) fn kind(&self) -> usize {
+        usize::from(self.is_last_resort()) + usize::from(self.is_on_springs_that_stay())
     }
 
     /// Whether one before came to an end, so that it would do so again.

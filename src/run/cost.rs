@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::method::Method;
 use crate::error::{Error, Result};
+use crate::laws::loading::TangentialControl;
 use crate::scene::Stepper as Choice;
 use crate::solver::model::{FEWEST_SPRINGS, Model, State};
 use crate::solver::simulation::{End, Progress, Simulation};
@@ -44,7 +45,7 @@ pub(in crate::run) const OF_COMPANION: f64 = 0.2;
 const MOST_WORK_OF_LAST: f64 = 6e9;
 
 /// Most work of all attempts at a run together, their companions included, as [`work_so_far`], and the part of [`MOST_WORK`] that each may take in any case.
-const MOST_WORK_OF_ALL: f64 = 1.6e10;
+const MOST_WORK_OF_ALL: f64 = 1.35e10;
 const LEAST_PART: f64 = 0.05;
 
 /// Work of an attempt that is left: to begin it, over [`MOST_WORK`], and over that of its companion.
@@ -61,20 +62,23 @@ const FEWER: f64 = 0.6;
 const OF_WHOLE: f64 = 0.75;
 const FEWEST: usize = 12;
 
-/// Evaluations of a step that is tried: by stages where the edge of stick rests and where it moves, by backward differentiation, and in gross slip by backward
+/// Evaluations of a step that is expected: by stages where the edge of stick rests and where it moves, by backward differentiation, and in gross slip by backward
 /// differentiation, whose matrix by differences serves many steps, and by stages beside one for every spring, for theirs is found in each.
 const EVALUATIONS: [f64; 2] = [30.0, 60.0];
 const EVALUATIONS_BY_BACKWARD_DIFFERENTIATION: f64 = 3.0;
 const EVALUATIONS_IN_GROSS_SLIP: [f64; 2] = [4.5, 15.0];
 
-/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves, and in gross slip, where its sums are over the whole contact; by pair of springs over which wear
-/// spreads. Periods that are resolved are counted as they are passed.
+/// Nanoseconds of one core that they take by spring, without and with an edge of stick that moves; in gross slip, where its sums are over the whole contact, in any case, by spring and by pair of springs;
+/// and by pair of springs over which wear spreads. Periods that are resolved are counted as they are passed.
 const BY_SPRING: [f64; 2] = [150.0, 300.0];
-const BY_SPRING_IN_GROSS_SLIP: f64 = 200.0;
+const IN_GROSS_SLIP: [f64; 3] = [1300.0, 150.0, 0.8];
 const BY_SPREADING: f64 = 10.0;
 
-/// How much longer an evaluation in gross slip takes where springs stick and slip sets in with a jump, up to which its sums are integrated.
-const OF_JUMP: f64 = 8.0;
+/// How much longer an evaluation in gross slip takes where springs stick and slip sets in with a jump, up to which its sums are integrated; where an amplitude follows from a balance of forces; and where
+/// loads are asked for between the nodes.
+const OF_JUMP: f64 = 7.0;
+const OF_BALANCE: f64 = 1.7;
+const OF_POINTS: f64 = 3.0;
 
 /// Nanoseconds of one core of a step in any case, in gross slip and elsewhere; of its slopes, by pair of springs, where they are found in each step by stages; and of its factors, by triple of springs,
 /// without and with slopes that are products of matrices.
@@ -86,31 +90,48 @@ const BY_TRIPLE: [f64; 2] = [0.06, 0.35];
 const OF_RESOLVED: f64 = 1.5;
 
 /// How much longer it takes where a profile is a table and the edge of stick moves: slip of the unworn contact is then by quadrature in each evaluation.
-const OF_TABLE: f64 = 5.0;
+const OF_TABLE: f64 = 8.0;
 
-/// Work of a step that is tried, nanoseconds of one core, about, but for that of the periods that are resolved. The same on every machine, so that a run and one that
-/// was interrupted take the same way.
+/// Nanoseconds of one core, about, of an evaluation and of the rest of a step, but for the periods that are resolved. The same on every machine, so that a run and one that was interrupted take the same
+/// way.
+struct Work {
+    evaluation: f64,
+    step: f64,
+}
+
+impl Work {
+    fn of(model: &Model, springs: f64) -> Self {
+        let schedule = model.schedule();
+        let conditions = schedule.conditions();
+        let cycles = schedule.cycles_at_once() as f64;
+        let spread = if conditions.wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
+        let [in_gross_slip, elsewhere] = OVERHEAD;
+        let [of_factors, of_products] = BY_TRIPLE.map(|each| each * springs.powi(3));
+        let Some(gross) = model.gross() else {
+            let moves = model.moving().is_some();
+            let is_table = model.contact().equivalent_profile().end_of_table().is_some();
+            let table = if is_table && moves { OF_TABLE } else { 1.0 };
+            let evaluation = springs * (table * BY_SPRING[usize::from(moves)] + spread);
+            let slopes = if model.wears_steadily() { 0.0 } else { BY_SLOPE * springs.powi(2) };
+            let factors = if schedule.wears_by_pressure_alone() { of_factors } else { of_products };
+            return Self { evaluation: cycles * evaluation, step: elsewhere + cycles * (slopes + factors) };
+        };
+        let longer = [
+            (gross.sticks() && conditions.friction.remembers_slip(), OF_JUMP),
+            (conditions.tangential_control != TangentialControl::Displacement, OF_BALANCE),
+            (gross.asks_between_nodes(), OF_POINTS),
+        ];
+        let times: f64 = longer.iter().filter(|(is_so, _)| *is_so).map(|(_, times)| times).product();
+        let [in_any_case, by_spring, by_pair] = IN_GROSS_SLIP;
+        let once = times * (in_any_case + (by_spring + by_pair * springs) * springs) + spread * springs;
+        Self { evaluation: cycles * once, step: in_gross_slip + cycles * of_factors }
+    }
+}
+
+/// Work of a step that is expected, as [`Work`].
 fn work_of_step(model: &Model, springs: f64) -> f64 {
-    let schedule = model.schedule();
-    let moves = usize::from(model.moving().is_some());
-    let multiplies = model.gross().is_none() && !schedule.wears_by_pressure_alone();
-    let [of_whole, elsewhere] = OVERHEAD;
-    let overhead = if model.gross().is_some() { of_whole } else { elsewhere };
-    let is_table = model.contact().equivalent_profile().end_of_table().is_some();
-    let table = if is_table && moves == 1 { OF_TABLE } else { 1.0 };
-    let spread = if schedule.conditions().wear.spreading().is_some() { BY_SPREADING * springs } else { 0.0 };
-    let once = match model.gross() {
-        Some(gross) if gross.sticks() && schedule.conditions().friction.remembers_slip() => {
-            OF_JUMP * BY_SPRING_IN_GROSS_SLIP
-        }
-        Some(_) => BY_SPRING_IN_GROSS_SLIP,
-        None => BY_SPRING[moves],
-    };
-    let by_stages = model.gross().is_none() && !model.wears_steadily();
-    let slopes = if by_stages { BY_SLOPE * springs.powi(2) } else { 0.0 };
-    let factors = BY_TRIPLE[usize::from(multiplies)] * springs.powi(3);
-    let evaluations = evaluations(model, springs) * springs * (table * once + spread);
-    overhead + schedule.cycles_at_once() as f64 * (evaluations + slopes + factors)
+    let Work { evaluation, step } = Work::of(model, springs);
+    evaluations(model, springs) * evaluation + step
 }
 
 /// Evaluations of a step on so many springs.
@@ -125,12 +146,6 @@ fn evaluations(model: &Model, springs: f64) -> f64 {
     }
 }
 
-/// Steps tried so far, or as many as their evaluations make: one that finds no contact takes the most.
-fn tries(progress: &Progress, model: &Model) -> f64 {
-    let tried = (progress.steps + progress.rejected_steps) as f64;
-    tried.max(progress.rate_evaluations as f64 / evaluations(model, model.springs() as f64))
-}
-
 /// Work of a run so far without its companions, nanoseconds of one core, about, by what a step takes of the model that it began with.
 pub(super) fn work_so_far(simulation: &Simulation) -> f64 {
     work_by(simulation.first().0, simulation)
@@ -143,8 +158,15 @@ pub(super) fn work_of(simulation: &Simulation) -> u64 {
 
 fn work_by(steps_of: &Model, simulation: &Simulation) -> f64 {
     let progress = simulation.progress();
-    let step = work_of_step(steps_of, steps_of.springs() as f64);
-    tries(progress, simulation.model()) * step + progress.resolved_work as f64
+    work_on(steps_of, steps_of.springs() as f64, progress) + progress.resolved_work as f64
+}
+
+/// Work of as many steps, if they were made on so many springs.
+fn work_on(model: &Model, springs: f64, progress: &Progress) -> f64 {
+    let Work { evaluation, step } = Work::of(model, springs);
+    let more = evaluations(model, springs) / evaluations(model, model.springs() as f64);
+    let tried = progress.steps + progress.rejected_steps;
+    more * progress.rate_evaluations as f64 * evaluation + tried as f64 * step
 }
 
 /// Most work of an attempt, without its companions, after others that took so much.
@@ -207,7 +229,7 @@ pub(super) fn allows(simulation: &Simulation, springs: usize, work: u64) -> bool
     let before = (work + work_of(simulation)) as f64;
     let (springs, now) = (springs as f64, model.springs() as f64);
     let resolved = (springs / now).powf(OF_RESOLVED) * progress.resolved_work as f64;
-    let wanted = tries(progress, model) * work_of_step(model, springs) + resolved;
+    let wanted = work_on(model, springs, progress) + resolved;
     wanted <= MOST_WORK && before + WITH_COMPANION * wanted <= MOST_WORK_OF_ALL
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::parts::Parts;
+use super::parts::{Known, Parts};
 use super::recorder::Detail;
 use super::{Results, Shared, Simulation, Stop};
 use crate::data::{Checkpoint, LimitDistance, ResultPath, RunFile, RunWriter, scene_hash};
@@ -170,9 +170,9 @@ impl Run {
             file.header.path.clone(),
         )?;
         checkpoint.accuracy = scene.numerics().accuracy_asked();
-        let numerics = checkpoint.attempt.numerics(&scene);
+        let attempt = checkpoint.attempt;
         let parts =
-            Parts::of_state(&scene, &numerics, (&checkpoint.state, &file.header.radius), &shared.operators)?;
+            Parts::of_state(&scene, &attempt, (&checkpoint.state, &file.header.radius), &shared.operators)?;
         if file.header.radius != parts.model.radii()
             || !parts.fit(&checkpoint.state)
             || !checkpoint.state.past.fits(
@@ -200,6 +200,7 @@ impl Run {
             return Ok(Resumed::Complete(Box::new(Results {
                 distance: file.header.limit.as_ref().map(|limit| LimitDistance::new(limit, &last)),
                 indenter: parts.model.contact().indenter().clone(),
+                wears_locally: parts.model.schedule().conditions().wear.spreading().is_none(),
                 header: file.header,
                 snapshots: file.snapshots,
                 stop_reason: file.stop_reason,
@@ -208,11 +209,12 @@ impl Run {
                 limit: parts.limit,
             })));
         }
-        let Checkpoint { state, progress, wall_seconds, attempt, .. } = checkpoint;
-        let limit = parts.limit.clone();
+        let Checkpoint { state, progress, wall_seconds, .. } = checkpoint;
+        let (limit, known) = (parts.limit.clone(), Known::of(&parts));
         Ok(Resumed::Run(Box::new(Self(Simulation {
             stepping: parts.resume(state, progress)?,
             limit,
+            known,
             warning: None,
             scene,
             shared: shared.clone(),

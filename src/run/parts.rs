@@ -1,6 +1,6 @@
 //! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::Cell;
 
 use super::budget::{
     self, FEWEST_CUBICS, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up, springs_to_stick_again,
@@ -12,6 +12,7 @@ use super::rim;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::contact::stick_slip::Regime;
+use crate::data::Attempt;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::scene::{Cycle, Numerics, Scene, Stepper as StepperChoice};
@@ -44,6 +45,8 @@ pub(super) struct Parts {
     pub tolerance: f64,
     pub plan: Plan,
     pub limit: Option<LimitingShape>,
+    /// Where gross slip leads to, where the contact is in gross slip.
+    reach: Option<Reach>,
     /// What comes of gross slip where springs may stick again.
     pub hand_over: Option<HandOver>,
     /// As in [`Simulation::averaging_below`].
@@ -70,10 +73,12 @@ impl Parts {
             rim::check_gross_slip(&parts.model, parts.plan.end)?;
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
-            let Reach { radius, sticks_again, worn } = match known {
-                Some(known) => known.reach(&parts)?,
+            let reach = match known.and_then(|it| it.reach) {
+                Some(reach) => reach,
                 None => Reach::of(&parts)?,
             };
+            let Reach { radius, sticks_again, worn } = reach;
+            parts.reach = Some(reach);
             // Errors of the compressions are relative to all of them, those of a short run to what it wears.
             if numerics.tolerance.is_none() && numerics.stepper == StepperChoice::Implicit && worn < SHORT {
                 parts.tolerance = (parts.tolerance * worn / SHORT).max(ROUND_OFF);
@@ -94,12 +99,13 @@ impl Parts {
     /// * `radii` -- of the output, m
     pub(super) fn of_state(
         scene: &Scene,
-        numerics: &Numerics,
+        attempt: &Attempt,
         (state, radii): (&State, &[f64]),
         store: &OperatorStore,
     ) -> Result<Self> {
         let springs = state.compression.len() + 1;
-        let on = |springs| Self::new(scene, numerics, Some(springs), None, store);
+        let (numerics, known) = (attempt.numerics(scene), Known::before(attempt, scene)?);
+        let on = |springs| Self::new(scene, &numerics, Some(springs), known.as_ref(), store);
         let first = on(springs);
         if first.as_ref().is_ok_and(|parts| parts.fit(state)) {
             return first;
@@ -176,11 +182,7 @@ impl Parts {
         check_regime(scene, &contact)?;
         let schedule = match known {
             Some(schedule) => schedule.clone(),
-            None => {
-                let schedule = Schedule::new(&contact, scene.conditions(), resolution(scene, numerics))?;
-                let implicit = numerics.stepper == StepperChoice::Implicit;
-                if implicit { schedule } else { schedule.for_explicit_steps() }
-            }
+            None => schedule(scene, &contact, numerics)?,
         };
         let model = mesh::model(&contact, &schedule, scene.loading().duration, numerics, wanted, store)?;
         check_stepper(numerics.stepper, &model)?;
@@ -216,8 +218,15 @@ impl Parts {
         let hand_over =
             model.is_taken_up().then_some(HandOver { springs, tolerance: part * tolerance, expected: false });
         let most_swing = averaging.most_swing;
-        Ok(Self { model, stepper, tolerance, plan, limit: None, hand_over, most_swing })
+        Ok(Self { model, stepper, tolerance, plan, limit: None, reach: None, hand_over, most_swing })
     }
+}
+
+/// What acts on a contact, for the steps of some numerics.
+fn schedule(scene: &Scene, contact: &InitialContact, numerics: &Numerics) -> Result<Schedule> {
+    let schedule = Schedule::new(contact, scene.conditions(), resolution(scene, numerics))?;
+    let implicit = numerics.stepper == StepperChoice::Implicit;
+    Ok(if implicit { schedule } else { schedule.for_explicit_steps() })
 }
 
 /// The limit in closed form, where there is one.
@@ -233,22 +242,24 @@ fn limit(model: &Model) -> Result<Option<LimitingShape>> {
 /// What is the same in all attempts at a run with the same substeps.
 pub(super) struct Known {
     schedule: Schedule,
-    reach: OnceCell<Reach>,
+    reach: Option<Reach>,
 }
 
 impl Known {
-    pub(super) fn of(model: &Model) -> Self {
-        Self { schedule: model.schedule().clone(), reach: OnceCell::new() }
+    pub(super) fn of(parts: &Parts) -> Self {
+        Self { schedule: parts.model.schedule().clone(), reach: parts.reach }
     }
 
+    /// Before an attempt, where its schedule is not that of the scene alone.
+    ///
     /// # Errors
-    /// Those of [`Reach::of`].
-    fn reach(&self, parts: &Parts) -> Result<Reach> {
-        if let Some(reach) = self.reach.get() {
-            return Ok(*reach);
+    /// Those of the schedule.
+    pub(super) fn before(attempt: &Attempt, scene: &Scene) -> Result<Option<Self>> {
+        if !attempt.is_on_springs_that_stay() {
+            return Ok(None);
         }
-        let reach = Reach::of(parts)?;
-        Ok(*self.reach.get_or_init(|| reach))
+        let schedule = schedule(scene, &scene.contact()?, &attempt.numerics(scene))?;
+        Ok(Some(Self { schedule: schedule.on_springs_that_stay(), reach: None }))
     }
 }
 

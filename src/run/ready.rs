@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::cost;
-use super::parts::Parts;
+use super::parts::{Known, Parts};
 use super::rim;
 use crate::contact::closed_form::LimitingShape;
 use crate::error::{Error, Result};
@@ -24,6 +24,7 @@ const LEAST_OF_CYCLE: f64 = 1e-6;
 pub(super) struct Ready {
     pub simulation: Simulation,
     pub limit: Option<LimitingShape>,
+    pub known: Known,
 }
 
 impl Ready {
@@ -35,14 +36,14 @@ impl Ready {
 
     fn unkeyed(scene: &Scene, store: &OperatorStore) -> Result<Self> {
         let mut parts = Parts::new(scene, scene.numerics(), None, None, store)?;
-        let limit = parts.limit.take();
+        let (limit, known) = (parts.limit.take(), Known::of(&parts));
         let mut simulation = parts.begin()?;
         let numerics = scene.numerics();
         cost::check(numerics.stepper, numerics.springs.is_some(), &mut simulation)?;
         check_width(&mut simulation)?;
         rim::check_partial_slip(&simulation)?;
         check_energy(&simulation)?;
-        Ok(Self { simulation, limit })
+        Ok(Self { simulation, limit, known })
     }
 }
 
@@ -64,7 +65,12 @@ fn check_energy(simulation: &Simulation) -> Result<()> {
         return Ok(());
     };
     let area = PI * model.contact().contact_radius().powi(2);
-    let cycles = density * area / simulation.cycle().dissipation;
+    let dissipation = simulation.cycle().dissipation;
+    if dissipation < 0.0 {
+        let why = format!("by its springs {dissipation:.1e} J are dissipated, less than nothing");
+        return Err(Error::NotConverged { what: "energy dissipated", why });
+    }
+    let cycles = density * area / dissipation;
     if cycles >= LEAST_OF_CYCLE || cycles.is_nan() {
         return Ok(());
     }

@@ -38,6 +38,8 @@ pub struct Results {
     pub(super) limit: Option<LimitingShape>,
     pub(super) distance: Option<LimitDistance>,
     pub(super) indenter: Indenter,
+    /// Whether ground wears only where it is pressed.
+    pub(super) wears_locally: bool,
 }
 
 /// Series: one number of each snapshot.
@@ -268,7 +270,7 @@ impl Results {
         rings.sum::<f64>() / snapshot.normal_force.max(LEAST_FORCE * largest)
     }
 
-    /// A word where springs pull: debris has worn the ground away from under the pressure.
+    /// A word where springs pull: debris has worn the ground away from under the pressure, or they do not resolve it.
     fn pulls(&self) -> Option<String> {
         let seen = || self.snapshots.iter().chain([&self.last]);
         let largest = seen().map(|it| it.normal_force).fold(0.0, f64::max);
@@ -278,11 +280,21 @@ impl Results {
             .collect();
         let (first, _) = *pulling.first()?;
         let (at, most) = *pulling.iter().max_by(|one, other| one.1.total_cmp(&other.1))?;
-        Some(format!(
-            "from τ = {first:.3} on springs within the contact pull, at τ = {at:.3} with {:.0} % of the normal force, for debris has worn the ground away from under the pressure. \
-             Such ground would lose touch, which is not modelled: it wears as if it adhered. End before (loading.tau = {first:.3}), or take a law of wear that is local",
+        let seen = format!(
+            "from τ = {first:.3e} on springs within the contact pull, at τ = {at:.3e} with {:.0} % of the normal force",
             100.0 * most
-        ))
+        );
+        let why = if self.wears_locally {
+            "though no law that is local wears ground until it does: pressure is not resolved there, and swings about what it is. Worn volume and depth are as good as the estimated error; for the pressure \
+             compare with more springs by hand (numerics.springs)"
+                .to_owned()
+        } else {
+            format!(
+                "for debris has worn the ground away from under the pressure. Such ground would lose touch, which is not modelled: it wears as if it adhered. End before \
+                 (loading.tau = {first:.3e}), or take a law of wear that is local"
+            )
+        };
+        Some(format!("{seen}, {why}"))
     }
 
     /// A word about an end that is less accurate than was asked for.

@@ -1,5 +1,7 @@
 //! A scene simulated in memory: no file, no signal, nothing printed.
 
+use std::cell::OnceCell;
+
 use super::anew::{Attempts, End};
 use super::cost::{self, Expected};
 use super::limit::header;
@@ -34,6 +36,7 @@ use crate::solver::simulation::{self as stepping, Observer};
 pub struct Simulation<'a> {
     pub(super) stepping: stepping::Simulation,
     pub(super) limit: Option<LimitingShape>,
+    pub(super) known: Known,
     pub(super) warning: Option<String>,
     pub(super) scene: Scene,
     pub(super) shared: Shared,
@@ -85,7 +88,7 @@ impl<'a> Simulation<'a> {
         shared: &Shared,
         writer: impl FnOnce(RunHeader) -> Result<RunWriter>,
     ) -> Result<Self> {
-        let Ready { simulation: stepping, limit } = Ready::new(scene, &shared.operators)?;
+        let Ready { simulation: stepping, limit, known } = Ready::new(scene, &shared.operators)?;
         if scene.numerics().stepper == Stepper::Implicit {
             stepping.model().release_factors();
         }
@@ -93,6 +96,7 @@ impl<'a> Simulation<'a> {
             writer: writer(header(scene, stepping.model(), limit.as_ref()))?,
             stepping,
             limit,
+            known,
             warning: None,
             scene: scene.clone(),
             shared: shared.clone(),
@@ -158,6 +162,7 @@ impl<'a> Simulation<'a> {
         let Self {
             stepping,
             limit,
+            known,
             scene,
             shared,
             writer,
@@ -172,11 +177,13 @@ impl<'a> Simulation<'a> {
         (recorder.saves_result, recorder.detail) = (saves_result, detail);
         recorder.attempt = attempt;
         let mut onlookers = Onlookers { watchers, observer };
+        let mut found = [const { OnceCell::new() }; 3];
+        found[attempt.kind()] = OnceCell::from(known);
         let attempts = Attempts {
             scene: &scene,
             store: &shared.operators,
             recorder: &mut recorder,
-            known: Known::of(stepping.model()),
+            known: found,
             stepping,
             limit,
             ended: None,
@@ -206,8 +213,10 @@ fn results(
     stop_reason: StopReason,
 ) -> Results {
     let last = snapshot(stepping);
-    let indenter = stepping.model().contact().indenter().clone();
+    let model = stepping.model();
+    let indenter = model.contact().indenter().clone();
+    let wears_locally = model.schedule().conditions().wear.spreading().is_none();
     let (header, snapshots) = writer.into_parts();
     let distance = header.limit.as_ref().map(|limit| LimitDistance::new(limit, &last));
-    Results { header, snapshots, checkpoint, stop_reason, last, limit, distance, indenter }
+    Results { header, snapshots, checkpoint, stop_reason, last, limit, distance, indenter, wears_locally }
 }

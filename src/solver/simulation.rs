@@ -424,10 +424,15 @@ impl Simulation {
     }
 
     fn tell(&mut self, observers: &mut [&mut dyn Observer]) -> Result<()> {
+        self.counting(|it| observers.iter_mut().try_for_each(|observer| observer.output(it)))
+    }
+
+    /// Does something, and counts the periods that it resolves.
+    fn counting<T>(&mut self, something: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.model.work_counted();
-        let told = observers.iter_mut().try_for_each(|observer| observer.output(self));
+        let done = something(self);
         self.progress.resolved_work += self.model.work_counted() - before;
-        told
+        done
     }
 
     /// Cycles up to which wear is shown that has no end, where it is to end by its rate.
@@ -463,7 +468,8 @@ impl Simulation {
             let step = landing.step;
             let trial = self.tried(&landing)?;
             let (error, next_step) = (trial.error / self.tolerance, trial.next_step);
-            let reached = if error <= 1.0 || self.settles { self.reached(trial) } else { None };
+            let is_looked_at = error <= 1.0 || self.settles;
+            let reached = if is_looked_at { self.counting(|it| it.reached(trial)) } else { None };
             if let Some(shorter) = reached.as_ref().and_then(|it| self.overshoot(it.rate, step)) {
                 self.progress.next_step = shorter;
                 continue;
@@ -471,7 +477,7 @@ impl Simulation {
             let passed = reached.as_ref().and_then(|it| self.passed(&it.state, landing.rests));
             let mut accepted = false;
             if let Some((reached, passed)) = reached.zip(passed) {
-                accepted = self.accept(reached, landing.at)?;
+                accepted = self.counting(|it| it.accept(reached, landing.at))?;
                 if accepted {
                     self.tell_passed(passed, observers)?;
                 }
@@ -504,12 +510,10 @@ impl Simulation {
 
     /// Tries a step, and counts what that takes.
     fn tried(&mut self, landing: &Landing) -> Result<Trial> {
-        let before = self.model.work_counted();
-        let trial = match landing.rests {
-            true => Trial::at_rest(self.resting_until(self.state.cycles + landing.step)),
-            false => self.stepper.step(&self.model, &self.state, landing.step)?,
-        };
-        self.progress.resolved_work += self.model.work_counted() - before;
+        let trial = self.counting(|it| match landing.rests {
+            true => Ok(Trial::at_rest(it.resting_until(it.state.cycles + landing.step))),
+            false => it.stepper.step(&it.model, &it.state, landing.step),
+        })?;
         self.progress.rate_evaluations += trial.rate_evaluations;
         Ok(trial)
     }
@@ -569,7 +573,7 @@ impl Simulation {
         // Steppers look at their ends; the first cycle of a block is where springs come to slip.
         state.least_stick_radius = state.least_stick_radius.min(self.cycle.stick_radius);
         if target.is_some() {
-            let (edge, before) = (state.stick.as_ref().map(|it| it.area), self.model.work_counted());
+            let edge = state.stick.as_ref().map(|it| it.area);
             state = self.model.begin_block(state, self.state.cycles)?;
             self.model.count_jump(edge, &state);
             if self.model.schedule().ends_pass(self.state.cycles, state.cycles)
@@ -578,7 +582,6 @@ impl Simulation {
                 self.progress.averages_from = state.cycles;
                 self.model.average_from(state.cycles);
             }
-            self.progress.resolved_work += self.model.work_counted() - before;
             fields = self.model.fields(&state);
             // On a mesh that begins anew the depth between springs is another by as much as they leave open.
             depth = self.model.depth_on_springs(&state, &fields);

@@ -100,7 +100,7 @@ impl Companion {
     pub(super) fn run(coarser: &Coarser<'_>) -> Result<Self, Lost> {
         let Coarser { scene, numerics, .. } = coarser;
         let averages = Some(coarser.averages);
-        let Ok(parts) =
+        let Ok(mut parts) =
             Parts::on_any(scene, numerics, Some(coarser.springs), coarser.schedule, averages, coarser.store)
         else {
             return Err(Lost::NoEnd);
@@ -109,8 +109,8 @@ impl Companion {
         let samples = coarser.samples && !scene.conditions().mode.is_tangential();
         let unsampled = samples.then(|| Unsampled::new(scene, numerics, &parts.model).ok_or(Lost::NoEnd));
         let unsampled = unsampled.transpose()?;
-        let model = parts.model.shown_at(coarser.offsets.to_vec());
-        let Ok(mut simulation) = (Parts { model, ..parts }).begin() else { return Err(Lost::NoEnd) };
+        parts.model = parts.model.shown_at(coarser.offsets.to_vec());
+        let Ok(mut simulation) = parts.begin() else { return Err(Lost::NoEnd) };
         // Explicit steps are as many as cycles or stiffness ask for.
         let implicit = numerics.stepper == Stepper::Implicit;
         let most_steps = if implicit { coarser.most_steps } else { f64::INFINITY };

@@ -130,7 +130,7 @@ impl Gross {
     }
 
     /// Whether loads are asked for between the nodes as well.
-    pub(super) fn asks_between_nodes(&self) -> bool {
+    pub fn asks_between_nodes(&self) -> bool {
         self.touching.is_some()
     }
 
@@ -179,6 +179,9 @@ impl Slides {
             AmplitudeControl::Rig(_) => slides_on_rig(contact, loading, depth - height_of_last_core(contact)),
         };
         let on_rig = conditions.tangential_control.is_rig();
+        if on_rig && !schedule.follows_balance() {
+            return Ok(Self::Never);
+        }
         let plain = conditions.friction.coefficient().is_some() && is_smooth(contact, schedule);
         // The edge of stick is followed until the last springs give way, and where polynomials would not carry what a rig does at first.
         let followed = plain && schedule.keeps_friction() && slides_on(contact, schedule);

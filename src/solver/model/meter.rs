@@ -10,10 +10,10 @@ use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
 use crate::numerics::whole_contact::Touching;
 
-/// Nanoseconds of one core, as fitted to 42 runs of all kinds, which took 0.8 to 1.25 times as long: of a substep through which a spring is passed along a line, where it turns, and where slip begins
+/// Nanoseconds of one core, as fitted to 60 runs of all kinds: of a substep through which a spring is passed along a line, where it turns, and where slip begins
 /// at a static limit; of a column of slip at a spring and of one of loads, each by what is done with it there, by the response of a table, by steps, and in gross slip; and of either by each other spring
 /// that it is carried to.
-const BY_SUBSTEP: [f64; 3] = [11.0, 11.0, 29.0];
+const BY_SUBSTEP: [f64; 3] = [11.0, 17.0, 40.0];
 const BY_COLUMN: [f64; 3] = [15.0, 10.0, 27.0];
 const BY_LOAD: [f64; 3] = [6.0, 10.0, 11.0];
 const BY_PAIR: f64 = 0.055;

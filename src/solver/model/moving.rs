@@ -300,14 +300,15 @@ impl MovingStick {
     }
 }
 
-/// Whether the edge of stick is followed under a balance of tangential forces: there is one at first, blocks differ by their amplitudes alone, and where they do friction does
+/// Whether the edge of stick is followed under a balance of tangential forces: springs are to move with it, there is one at first, blocks differ by their amplitudes alone, and where they do friction does
 /// not fall too steeply with the load.
 ///
 /// # Errors
 /// As [`slides_at_once`].
 pub(super) fn follows_held_force(schedule: &Schedule, contact: &InitialContact) -> Result<bool> {
     let conditions = schedule.conditions();
-    Ok(conditions.tangential_control != TangentialControl::Displacement
+    Ok(schedule.follows_balance()
+        && conditions.tangential_control != TangentialControl::Displacement
         && !jumps_steeply(schedule, contact)
         && at_one_indentation(conditions)
         && !slides_at_once(schedule, contact)?)

@@ -172,6 +172,8 @@ pub struct Schedule {
     largest_indentation: f64,
     /// Whether steps follow an edge of stick that jumps between blocks.
     follows_jumps: bool,
+    /// Whether springs move with an edge of stick that a balance of tangential forces moves, where they can.
+    follows_balance: bool,
     /// Cycles from which on wear goes on as in the mean cycle of a pass, so that no step ends at the end of a block; infinite where each does.
     averages_from: f64,
     /// What [`Schedule::envelope`] found for a contact of this indentation and amplitude, m; copies of the schedule share it.
@@ -279,6 +281,7 @@ impl Schedule {
             friction_along_energy,
             largest_indentation,
             follows_jumps: true,
+            follows_balance: true,
             averages_from: f64::INFINITY,
             envelope: Arc::default(),
         })
@@ -287,6 +290,11 @@ impl Schedule {
     /// The same for explicit steps, which do not follow an edge of stick that jumps between blocks: the mesh begins where that is innermost.
     pub(crate) fn for_explicit_steps(self) -> Self {
         Self { follows_jumps: false, ..self }
+    }
+
+    /// The same with an edge of stick that moves over springs that stay, whatever moves it: coarser, and wherever a balance of forces leads it.
+    pub(crate) fn on_springs_that_stay(self) -> Self {
+        Self { follows_balance: false, envelope: Arc::default(), ..self }
     }
 
     /// Lets wear go on as in the mean cycle of a pass through the blocks, from some cycle on; before, or if that is infinite, a step ends with each block.
@@ -321,6 +329,11 @@ impl Schedule {
     /// Cycles of each block of a pass.
     pub fn durations(&self) -> impl Iterator<Item = f64> {
         (0..self.ends.len()).map(|block| self.duration(block))
+    }
+
+    /// Whether springs move with an edge of stick that a balance of tangential forces moves, where they can.
+    pub(super) fn follows_balance(&self) -> bool {
+        self.follows_balance
     }
 
     /// Whether steps follow an edge of stick that jumps between blocks.

@@ -28,6 +28,9 @@ const FOLLOWED: f64 = 0.1;
 /// The same of an unworn contact below which it begins on the mesh of gross slip: an edge that is followed at once would leave no time to settle in.
 pub(super) const BEGINS_BELOW: f64 = 0.09;
 
+/// Grading below which polynomials make pressure swing around a kink, so that the edge is followed at once from the second number on, which grows by so much with the grading below.
+const FOLLOWED_AT_ONCE: [f64; 3] = [-0.3, 0.02, 0.1];
+
 /// Radius of the core of the mesh that follows it, over that of the first contact.
 const CORE: f64 = 0.03;
 
@@ -41,8 +44,12 @@ fn is_followed(schedule: &Schedule) -> bool {
 impl Gross {
     /// Whether a contact hardly sticks at first, and soon sticks farther out under the normal force that is held.
     pub fn nearly_follows(contact: &InitialContact, schedule: &Schedule) -> bool {
-        let small =
-            contact.stick_radius().is_some_and(|radius| radius < BEGINS_BELOW * contact.contact_radius());
+        let [even, least, growth] = FOLLOWED_AT_ONCE;
+        let below = match contact.half_space().grading() - even {
+            beyond if beyond < 0.0 => least - growth * beyond,
+            _ => BEGINS_BELOW,
+        };
+        let small = contact.stick_radius().is_some_and(|radius| radius < below * contact.contact_radius());
         let held = schedule.conditions().holds_normal_force && contact.half_space().grading() >= SOFT;
         contact.regime() == Regime::PartialSlip && small && held && is_followed(schedule)
     }
