@@ -91,9 +91,8 @@ pub(in crate::run) fn springs_for(
     }
     let smooth = clustering == Clustering::Smooth;
     let creeps = schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip;
-    let moves = creeps || !(schedule.is_uniform() || schedule.resolves());
-    let beside_small_stick =
-        if moves { fewest_beside_small_stick(contact).min(MOST_REFINED as f64) } else { 0.0 };
+    let moves = creeps || !(schedule.is_steady() || schedule.resolves());
+    let beside_small_stick = if moves { fewest_beside_small_stick(contact) } else { 0.0 };
     if creeps && !smooth {
         let [springs, at] = SPRINGS_UNDER_FORCE;
         return (springs * (at / accuracy).sqrt())
@@ -221,11 +220,17 @@ const FEWEST_UNDER_FORCE: f64 = 28.0;
 /// no step leads on, with companions on 0.6 of them: 60 serve for 0.12 at k = -0.595, 120 for 0.085, 240 for 0.057, and for 0.03 at -0.4.
 const BESIDE_SMALL_STICK: [f64; 5] = [100.0, 0.12, 1.85, -0.595, 7.1];
 
-/// Fewest springs where a held normal force moves the edge of a stick zone that may be small.
+/// Minus the grading down to which there is no need for as many, and number of them from which on as many as there may be do not help.
+const SOFTER: f64 = 0.3;
+const OUT_OF_REACH: f64 = 1000.0;
+
+/// Fewest springs where the edge moves of a stick zone that may be small.
 fn fewest_beside_small_stick(contact: &InitialContact) -> f64 {
-    let [springs, part, power, grading, growth] = BESIDE_SMALL_STICK;
+    let ([springs, part, power, grading, growth], softer) =
+        (BESIDE_SMALL_STICK, -contact.half_space().grading());
     let logarithm = contact.stick_logarithm().unwrap_or(0.0) + part.ln();
-    springs * (power * logarithm + growth * (grading - contact.half_space().grading())).exp()
+    let fewest = springs * (power * logarithm + growth * (grading + softer)).exp();
+    if softer <= SOFTER || fewest > OUT_OF_REACH { 0.0 } else { fewest.min(MOST_REFINED as f64) }
 }
 
 /// Springs with which gross slip is followed to an accuracy, and the power with which they grow: polynomials over the whole contact
