@@ -22,7 +22,7 @@ const COARSE_SUBSTEPS: usize = 48;
 pub(super) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96, 60, 16]];
 
 /// The first of those after these in which an edge of stick moves over springs that stay, and those springs.
-pub(super) const ON_SPRINGS_THAT_STAY: u64 = LAST_RESORT + 5;
+pub(super) const ON_SPRINGS_THAT_STAY: u64 = LAST_RESORT + SPRINGS_OF_LAST_RESORT[1].len() as u64;
 pub(super) const SPRINGS_THAT_STAY: [usize; 2] = [96, 60];
 
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.

@@ -216,21 +216,21 @@ const SPRINGS_UNDER_FORCE: [f64; 2] = [200.0, 1e-4];
 /// Fewest springs there: on 20 the second companion had 10 for 0.36 of 20, and no order was seen.
 const FEWEST_UNDER_FORCE: f64 = 28.0;
 
-/// Springs there for a stick radius that is a part of that of the contact, the power with which they grow for smaller ones, and gradings by one unit of which below some they grow by a power of e. On fewer
-/// no step leads on, with companions on 0.6 of them: 60 serve for 0.12 at k = -0.595, 120 for 0.085, 240 for 0.057, and for 0.03 at -0.4.
+/// Springs for a ratio of stick radius to contact radius, that ratio, and the power with which they grow for smaller ones; the grading they are for, and by how much their logarithm grows with each unit below it.
+/// On fewer no step leads on, with companions on 0.6 of them: 60 serve for 0.12 at k = -0.595, 120 for 0.085, 240 for 0.057, and for 0.03 at -0.4.
 const BESIDE_SMALL_STICK: [f64; 5] = [100.0, 0.12, 1.85, -0.595, 7.1];
 
-/// Minus the grading down to which there is no need for as many, and number of them from which on as many as there may be do not help.
-const SOFTER: f64 = 0.3;
+/// Grading from which on as many are not needed, and number beyond which [`MOST_REFINED`] do not help.
+const STIFF_ENOUGH: f64 = -0.3;
 const OUT_OF_REACH: f64 = 1000.0;
 
-/// Fewest springs where the edge moves of a stick zone that may be small.
+/// Fewest springs with which the moving edge of a stick zone that may be small is followed; 0 where no such number is known.
 fn fewest_beside_small_stick(contact: &InitialContact) -> f64 {
-    let ([springs, part, power, grading, growth], softer) =
-        (BESIDE_SMALL_STICK, -contact.half_space().grading());
+    let [springs, part, power, reference, growth] = BESIDE_SMALL_STICK;
+    let grading = contact.half_space().grading();
     let logarithm = contact.stick_logarithm().unwrap_or(0.0) + part.ln();
-    let fewest = springs * (power * logarithm + growth * (grading + softer)).exp();
-    if softer <= SOFTER || fewest > OUT_OF_REACH { 0.0 } else { fewest.min(MOST_REFINED as f64) }
+    let fewest = springs * (power * logarithm + growth * (reference - grading)).exp();
+    if grading >= STIFF_ENOUGH || fewest > OUT_OF_REACH { 0.0 } else { fewest.min(MOST_REFINED as f64) }
 }
 
 /// Springs with which gross slip is followed to an accuracy, and the power with which they grow: polynomials over the whole contact
