@@ -288,7 +288,8 @@ impl Attempts<'_> {
             Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
             Err(_) => None,
         };
-        let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, attempt.work));
+        let is_met = outcome.is_ok() && checkpoint.error_estimate.is_some_and(|error| error <= accuracy);
+        let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, attempt.work, is_met));
         if simulation.sticks_after_gross_slip() { wanted.map(budget::springs_before) } else { wanted }
     }
 
@@ -310,7 +311,7 @@ impl Attempts<'_> {
         let before = (attempt.ended_on as usize, attempt.ended_within);
         let shares = self.recorder.shares(&self.stepping);
         shares.is_some_and(|it| it.stand_still(self.springs(), before, numerics.accuracy))
-            && cost::allows(&self.stepping, self.springs(), attempt.work)
+            && cost::allows(&self.stepping, self.springs(), attempt.work, false)
     }
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.

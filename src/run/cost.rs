@@ -48,6 +48,9 @@ const MOST_WORK_OF_LAST: f64 = 6e9;
 const MOST_WORK_OF_ALL: f64 = 1.35e10;
 const LEAST_PART: f64 = 0.05;
 
+/// Part of it for a run that is only made anew for its estimate to be surely within the accuracy.
+const TO_BE_SURE: f64 = 0.25;
+
 /// Work of an attempt that is left: to begin it, over [`MOST_WORK`], and over that of its companion.
 const OF_LEFT: [f64; 2] = [0.05, 2.5];
 
@@ -224,13 +227,17 @@ pub(super) fn steps_of_attempt(model: &Model) -> f64 {
 }
 
 /// Whether a run that came to its end, after others that took so much, can be made anew on so many springs.
-pub(super) fn allows(simulation: &Simulation, springs: usize, work: u64) -> bool {
+///
+/// # Arguments
+/// * `is_met` -- whether its estimate is within the accuracy already, if not surely
+pub(super) fn allows(simulation: &Simulation, springs: usize, work: u64, is_met: bool) -> bool {
     let (model, progress) = (simulation.model(), simulation.progress());
     let before = (work + work_of(simulation)) as f64;
     let (springs, now) = (springs as f64, model.springs() as f64);
     let resolved = (springs / now).powf(OF_RESOLVED) * progress.resolved_work as f64;
     let wanted = work_on(model, springs, progress) + resolved;
-    wanted <= MOST_WORK && before + WITH_COMPANION * wanted <= MOST_WORK_OF_ALL
+    let most = if is_met { TO_BE_SURE * MOST_WORK } else { MOST_WORK };
+    wanted <= most && before + WITH_COMPANION * wanted <= MOST_WORK_OF_ALL
 }
 
 /// How a run is computed, and what it will take.
