@@ -140,10 +140,7 @@ impl Attempts<'_> {
     fn begun(&self, anew: &Anew) -> Option<Begun> {
         let Anew { springs, on_fewer, counted } = *anew;
         let known = &self.known[counted.kind()];
-        let before = Known::before(&counted, self.scene).ok()?;
-        let numerics = counted.numerics(self.scene);
-        let found = known.get().or(before.as_ref());
-        let mut parts = Parts::new(self.scene, &numerics, Some(springs), found, self.store).ok()?;
+        let mut parts = Parts::of_attempt(self.scene, &counted, springs, known.get(), self.store).ok()?;
         known.get_or_init(|| Known::of(&parts));
         let limit = parts.limit.take();
         let stepping = parts.begin().ok()?;

@@ -89,26 +89,29 @@ pub(in crate::run) fn springs_for(
     if Gross::follows(contact, schedule).unwrap_or_default() {
         return springs_in_gross_slip(contact, schedule, accuracy);
     }
-    let smooth = clustering == Clustering::Smooth;
     let creeps = schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip;
     let moves = creeps || !(schedule.is_steady() || schedule.resolves());
-    let beside_small_stick = if moves { fewest_beside_small_stick(contact) } else { 0.0 };
-    if creeps && !smooth {
-        let [springs, at] = SPRINGS_UNDER_FORCE;
-        return (springs * (at / accuracy).sqrt())
-            .clamp(FEWEST_UNDER_FORCE.max(beside_small_stick), MOST_REFINED as f64)
-            .ceil() as usize;
-    }
-    if !smooth {
+    let fewest = if moves { fewest_beside_small_stick(contact) } else { 0 };
+    let by_error = match clustering {
+        Clustering::Smooth => springs_on_smooth_mesh(contact, accuracy),
+        _ if creeps => {
+            let [springs, at] = SPRINGS_UNDER_FORCE;
+            (springs * (at / accuracy).sqrt()).clamp(FEWEST_UNDER_FORCE, MOST_REFINED as f64)
+        }
         // The worn volume is of third order there (docs/numerics.md).
-        return (120.0 * (1e-4 / accuracy).cbrt()).max(beside_small_stick).ceil() as usize;
-    }
+        _ => 120.0 * (1e-4 / accuracy).cbrt(),
+    };
+    fewest.max(by_error.ceil() as usize)
+}
+
+/// The same where neither wear has a kink nor the mesh a concentration of springs.
+fn springs_on_smooth_mesh(contact: &InitialContact, accuracy: f64) -> f64 {
     let [wide, next_to_stick] = Falling::of(contact);
     let fewest = if accuracy < 1e-2 { FEWEST_BELOW_A_HUNDREDTH } else { FEWEST };
     let added = 1.0 + ADDED * (smallness(contact).clamp(SMALLNESS[0], SMALLNESS[1]) - SMALLNESS[0]);
     let wanted = MARGIN * accuracy;
-    let springs = (added * wide.springs(wanted)).max(next_to_stick.springs(wanted)).max(beside_small_stick);
-    springs.clamp(fewest, MOST_RAISED as f64).ceil() as usize
+    let springs = (added * wide.springs(wanted)).max(next_to_stick.springs(wanted));
+    springs.clamp(fewest, MOST_RAISED as f64)
 }
 
 /// The same over the whole contact in gross slip.
@@ -225,12 +228,13 @@ const STIFF_ENOUGH: f64 = -0.3;
 const OUT_OF_REACH: f64 = 1000.0;
 
 /// Fewest springs with which the moving edge of a stick zone that may be small is followed; 0 where no such number is known.
-fn fewest_beside_small_stick(contact: &InitialContact) -> f64 {
+fn fewest_beside_small_stick(contact: &InitialContact) -> usize {
     let [springs, part, power, reference, growth] = BESIDE_SMALL_STICK;
     let grading = contact.half_space().grading();
     let logarithm = contact.stick_logarithm().unwrap_or(0.0) + part.ln();
     let fewest = springs * (power * logarithm + growth * (reference - grading)).exp();
-    if grading >= STIFF_ENOUGH || fewest > OUT_OF_REACH { 0.0 } else { fewest.min(MOST_REFINED as f64) }
+    let is_known = grading < STIFF_ENOUGH && fewest <= OUT_OF_REACH;
+    if is_known { MOST_REFINED.min(fewest.ceil() as usize) } else { 0 }
 }
 
 /// Springs with which gross slip is followed to an accuracy, and the power with which they grow: polynomials over the whole contact

@@ -200,7 +200,7 @@ impl Run {
             return Ok(Resumed::Complete(Box::new(Results {
                 distance: file.header.limit.as_ref().map(|limit| LimitDistance::new(limit, &last)),
                 indenter: parts.model.contact().indenter().clone(),
-                wears_locally: parts.model.schedule().conditions().wear.spreading().is_none(),
+                wears_locally: parts.model.schedule().wears_locally(),
                 header: file.header,
                 snapshots: file.snapshots,
                 stop_reason: file.stop_reason,

@@ -93,7 +93,22 @@ impl Parts {
         Ok(parts)
     }
 
-    /// As [`Parts::new`], on as many springs as a run came to, however often it was made anew.
+    /// As [`Parts::new`], of an attempt at a run.
+    ///
+    /// # Arguments
+    /// * `known` -- what another attempt of the same [kind](Attempt::kind) has found
+    pub(super) fn of_attempt(
+        scene: &Scene,
+        attempt: &Attempt,
+        springs: usize,
+        known: Option<&Known>,
+        store: &OperatorStore,
+    ) -> Result<Self> {
+        let before = if known.is_none() { Known::before(attempt, scene)? } else { None };
+        Self::new(scene, &attempt.numerics(scene), Some(springs), known.or(before.as_ref()), store)
+    }
+
+    /// The same on as many springs as a run came to, however often it was made anew.
     ///
     /// # Arguments
     /// * `radii` -- of the output, m
@@ -104,8 +119,7 @@ impl Parts {
         store: &OperatorStore,
     ) -> Result<Self> {
         let springs = state.compression.len() + 1;
-        let (numerics, known) = (attempt.numerics(scene), Known::before(attempt, scene)?);
-        let on = |springs| Self::new(scene, &numerics, Some(springs), known.as_ref(), store);
+        let on = |springs| Self::of_attempt(scene, attempt, springs, None, store);
         let first = on(springs);
         if first.as_ref().is_ok_and(|parts| parts.fit(state)) {
             return first;
@@ -254,7 +268,7 @@ impl Known {
     ///
     /// # Errors
     /// Those of the schedule.
-    pub(super) fn before(attempt: &Attempt, scene: &Scene) -> Result<Option<Self>> {
+    fn before(attempt: &Attempt, scene: &Scene) -> Result<Option<Self>> {
         if !attempt.is_on_springs_that_stay() {
             return Ok(None);
         }

@@ -215,7 +215,7 @@ fn results(
     let last = snapshot(stepping);
     let model = stepping.model();
     let indenter = model.contact().indenter().clone();
-    let wears_locally = model.schedule().conditions().wear.spreading().is_none();
+    let wears_locally = model.schedule().wears_locally();
     let (header, snapshots) = writer.into_parts();
     let distance = header.limit.as_ref().map(|limit| LimitDistance::new(limit, &last));
     Results { header, snapshots, checkpoint, stop_reason, last, limit, distance, indenter, wears_locally }

@@ -612,6 +612,11 @@ impl Schedule {
         !self.slips_otherwise() && self.keeps_friction()
     }
 
+    /// Whether ground wears only where it is pressed: no debris spreads.
+    pub fn wears_locally(&self) -> bool {
+        self.conditions.wear.spreading().is_none()
+    }
+
     /// Whether friction changes along the cycles and along the energy dissipated, which is not followed.
     pub fn changes_friction_by_both(&self) -> bool {
         let by_both = [&self.conditions.friction_history, &self.friction_along_energy];
@@ -664,10 +669,10 @@ impl Schedule {
     /// Whether both forces are held in cycles that are the same, and wear is local: the edge of stick stays, and amplitude and indentation follow from the
     /// springs.
     fn rests_under_both_forces(&self) -> bool {
-        let Conditions { mode, friction, wear, .. } = &self.conditions;
+        let Conditions { mode, friction, .. } = &self.conditions;
         let same = self.keeps_slipping_alike();
         let closed = mode.is_tangential() && friction.coefficient().is_some() && !self.resolves();
-        self.conditions.holds_both_forces() && same && closed && wear.spreading().is_none()
+        self.conditions.holds_both_forces() && same && closed && self.wears_locally()
     }
 
     /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.
@@ -678,7 +683,7 @@ impl Schedule {
 
     /// Whether cycles are the same, at a constant indentation, and wear is local: at most resolved cycles or a threshold make kinks along the annulus.
     pub fn makes_weak_kinks(&self) -> bool {
-        self.is_steady() && !self.lifts() && self.conditions.wear.spreading().is_none()
+        self.is_steady() && !self.lifts() && self.wears_locally()
     }
 }
 

@@ -43,7 +43,7 @@ impl Simulation {
     /// Whether compressions fall to zero at the contact edge. Where the ground wears there as well, the equations have another root: the edge stays or recedes, and
     /// behind it is a corner as that of a punch, which no wear makes.
     fn ends_smoothly(&self, state: &State) -> bool {
-        if self.model.schedule().conditions().wear.spreading().is_none() {
+        if self.model.schedule().wears_locally() {
             return true;
         }
         let nodes = self.model.operators().nodes();

@@ -37,7 +37,7 @@ const CORE: f64 = 0.03;
 /// Whether the edge of springs that stick again is followed.
 fn is_followed(schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
-    let local = conditions.wear.spreading().is_none() && !schedule.resolves();
+    let local = schedule.wears_locally() && !schedule.resolves();
     schedule.is_steady() && local && conditions.friction.coefficient().is_some()
 }
 
@@ -45,12 +45,10 @@ impl Gross {
     /// Whether a contact hardly sticks at first, and soon sticks farther out under the normal force that is held.
     pub fn nearly_follows(contact: &InitialContact, schedule: &Schedule) -> bool {
         let [even, least, growth] = FOLLOWED_AT_ONCE;
-        let below = match contact.half_space().grading() - even {
-            beyond if beyond < 0.0 => least - growth * beyond,
-            _ => BEGINS_BELOW,
-        };
+        let grading = contact.half_space().grading();
+        let below = if grading < even { least + growth * (even - grading) } else { BEGINS_BELOW };
         let small = contact.stick_radius().is_some_and(|radius| radius < below * contact.contact_radius());
-        let held = schedule.conditions().holds_normal_force && contact.half_space().grading() >= SOFT;
+        let held = schedule.conditions().holds_normal_force && grading >= SOFT;
         contact.regime() == Regime::PartialSlip && small && held && is_followed(schedule)
     }
 }
