@@ -54,7 +54,7 @@ pub(in crate::run) const SURE: f64 = 0.6;
 const MOST_REFINED: usize = 400;
 
 /// The same where periods of a changing normal load are passed through step by step.
-const MOST_REFINED_LIFTING: usize = 200;
+const MOST_REFINED_LIFTING: usize = 400;
 
 /// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
 pub(super) const CAUTIOUS_ORDER: f64 = 4.0;

@@ -27,6 +27,7 @@ mod output;
 mod passes;
 mod past;
 mod schedule;
+mod slipping;
 mod spreading;
 mod stage;
 mod surface;

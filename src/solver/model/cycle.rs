@@ -327,10 +327,16 @@ impl Model {
                 let (pressed, profile) = (pressed(j), profile.col_as_slice(j));
                 let by_pressure = by_pressure.col_as_slice(j - first);
                 let by_slip = by_slip.col_as_slice(j - first);
+                let carried = |i: usize| scale * profile[i] * fields.density_factor[j] / fields.slip_depth[i];
                 for (i, to) in matrix.col_as_slice_mut(j).iter_mut().enumerate().take(n) {
-                    let carried = scale * profile[i] * fields.density_factor[j];
-                    let worn = by_pressure[i] * pressure_scale * pressed[i] + by_slip[i] * carried;
-                    *to += (per_cycle * worn + factor * cycle.growth[i] * carried) / fields.slip_depth[i];
+                    let pressed = by_pressure[i] * pressure_scale * pressed[i] / fields.slip_depth[i];
+                    *to += per_cycle * pressed + factor * cycle.growth[i] * carried(i);
+                }
+                let own = [(j, 1.0)];
+                for (of, slope) in motion.follows.get(j).map_or(&own[..], Vec::as_slice) {
+                    let slope = per_cycle * slope;
+                    let column = matrix.col_as_slice_mut(*of).iter_mut().enumerate().take(n);
+                    column.for_each(|(i, to)| *to += slope * by_slip[i] * carried(i));
                 }
             }
         }

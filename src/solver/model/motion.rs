@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::edge_in_block::AtRest;
 use super::schedule::{AmplitudeControl, CycleLoading};
+use super::slipping::Slipping;
 use super::{Fields, Model, State};
 use crate::contact::spring::{Response, Shakedown, SpringCycle, Steps, steady_cycle};
 use crate::contact::stick_slip::slip_amplitude_of_spring;
@@ -34,9 +35,11 @@ pub(super) struct Motion {
     pub load: Mat<f64>,
     /// By spring, shape `(springs - 1,)`.
     pub energies: Vec<Energies>,
-    /// Derivatives of `slip` and `load` by the compression of their spring.
+    /// Derivatives of `slip` by the compression that a spring slips by, and of `load` by that of the spring.
     pub slip_slope: Mat<f64>,
     pub load_slope: Mat<f64>,
+    /// Derivatives of the compressions that springs slip by, as [`Slipping`] has them.
+    pub follows: Vec<Vec<(usize, f64)>>,
     /// Where the amplitude depends on the compressions.
     pub amplitude_slope: Option<AmplitudeSlope>,
     /// Springs that do not slip whatever their compression.
@@ -161,6 +164,7 @@ impl Model {
             load_slope: Mat::from_fn(rows, 1, |j, _| {
                 self.slope(|q| bearing.of(q, loading.lift), compression[j])
             }),
+            follows: vec![],
             amplitude_slope,
             at_rest: AtRest::default(),
         }
@@ -204,10 +208,13 @@ impl Model {
             energies: Vec::with_capacity(inner),
             slip_slope: Mat::zeros(if slopes { inner } else { 0 }, columns),
             load_slope: Mat::zeros(0, 0),
+            follows: vec![],
             amplitude_slope: None,
             at_rest: AtRest::default(),
         };
-        for (j, q) in compression.iter().enumerate() {
+        let slipping = (!path.is_level()).then(|| Slipping::new(compression));
+        let by = slipping.as_ref().map_or(compression, Slipping::compressions);
+        for (j, q) in by.iter().enumerate() {
             motion.energies.push(springs.pass(q.max(0.0), &mut values, &mut slope));
             for (m, value) in values.iter().enumerate() {
                 motion.slip[(j, m)] = *value;
@@ -216,6 +223,7 @@ impl Model {
                 motion.slip_slope[(j, m)] = *value;
             }
         }
+        motion.follows = slipping.map(Slipping::into_follows).unwrap_or_default();
         self.count_substeps(springs.passed, path, &*loading.friction);
         let count = path.points.len();
         let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
@@ -278,15 +286,18 @@ impl Model {
             energies: Vec::with_capacity(inner),
             slip_slope: Mat::zeros(rows, columns),
             load_slope: Mat::zeros(rows, columns),
+            follows: vec![],
             amplitude_slope: None,
             at_rest: AtRest::default(),
         };
         // Springs without compression are never loaded.
         let [mut values, mut after] = [(); 2].map(|()| vec![0.0; columns]);
         let difference = DIFFERENCE * self.contact.slip_compression();
-        let per_compression = Bearing::new(loading).of(1.0, 0.0);
-        for (j, q) in compression.iter().enumerate() {
-            let passed = steps.pass(q.max(0.0), &mut values);
+        let bearing = Bearing::new(loading);
+        let per_compression = bearing.of(1.0, 0.0);
+        let slipping = Slipping::new(compression);
+        for (j, (q, by)) in compression.iter().zip(slipping.compressions()).enumerate() {
+            let passed = steps.pass(by.max(0.0), &mut values);
             let dissipation = ratio * passed.dissipation;
             motion.energies.push(Energies { dissipation, jump_loss: 0.0, work: dissipation });
             for (m, value) in values.iter().enumerate() {
@@ -294,10 +305,17 @@ impl Model {
             }
             if slopes {
                 // Springs that bear next to nothing touch for a moment, and their slopes hold over no more than that.
-                steps.pass(q.max(0.0) + difference, &mut after);
+                steps.pass(by.max(0.0) + difference, &mut after);
                 for (m, (after, value)) in after.iter().zip(&values).enumerate() {
                     motion.slip_slope[(j, m)] = (after - value) / difference;
                 }
+            }
+            if *q < 0.0 {
+                motion.load.row_mut(j).fill(bearing.of(*q, 0.0));
+                if slopes {
+                    motion.load_slope.row_mut(j).fill(self.slope(|q| bearing.of(q, 0.0), *q));
+                }
+                continue;
             }
             steps.load(*q, |m, load, slope| {
                 motion.load[(j, m)] = per_compression * load;
@@ -306,6 +324,7 @@ impl Model {
                 }
             });
         }
+        motion.follows = slipping.into_follows();
         motion
     }
 
@@ -558,15 +577,14 @@ impl<'a> Bearing<'a> {
 
     /// Of a spring of this compression at the largest indentation, lifted by `lift`, m: its compression, or what resists its slip.
     pub(super) fn of(&self, compression: f64, lift: f64) -> f64 {
-        let lifted = compression - lift;
-        // A spring that is never lifted loses contact by round-off only, about zero in the limit; that is better left as it is, for it wears
-        // back. Else springs may lose contact.
-        let by_round_off = lift == 0.0 && lifted < 0.0;
+        // A spring that pulls at the largest indentation does so by round-off, about zero in the limit, or as compressions swing next to the edge of stick;
+        // it pulls all the time, wherever it is lifted to, for so it wears back. One that presses there may lose contact.
+        let pulls = compression < 0.0;
         match self.traction {
-            Some(law) if by_round_off => -law.kinetic_strength(-lifted),
-            Some(law) => law.kinetic_strength(lifted),
-            None if by_round_off && !self.spreads => lifted,
-            None => lifted.max(0.0),
+            Some(law) if pulls => -law.kinetic_strength(-compression),
+            Some(law) => law.kinetic_strength(compression - lift),
+            None if pulls && !self.spreads => compression,
+            None => (compression - lift).max(0.0),
         }
     }
 }
