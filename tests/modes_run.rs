@@ -469,3 +469,25 @@ fn a_normal_oscillation_is_followed_to_the_end_of_its_wear() {
         }
     }
 }
+
+/// Pressed hardest as slip turns, the contact hardly wears at its rim, which comes to bear ever more, and on few springs compressions swing there: on those that gross slip takes else these found no end.
+#[test]
+fn gross_slip_that_is_pressed_hardest_as_it_turns_comes_to_its_end() {
+    for (grading, amplitude) in [(0.0, 1.5), (-0.3, 0.9)] {
+        let scene = |numerics: &str| {
+            let text = format!(
+                "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = {grading}\nnormal_stiffness = 1e11\nstiffness_ratio = 0.8\n\
+                 [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1e-13\n\
+                 [loading]\nindentation = \"1 um\"\namplitude = \"{amplitude} um\"\ntau = 10\n\
+                 [loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = 2\n\
+                 [numerics]\naccuracy = 1e-2\n{numerics}\n[output]\nsnapshots = 12\n"
+            );
+            Scene::from_toml(&text, "scene.toml").expect("a scene").simulate().expect("an end")
+        };
+        let [found, finer] = ["", "springs = 96"].map(scene);
+        let missed = (found.last().wear_volume / finer.last().wear_volume - 1.0).abs();
+        let estimate = found.error_estimate().expect("the program chose the springs");
+        println!("k = {grading}: {} springs, off by {missed:.1e}, told {estimate:.1e}", found.springs());
+        assert!(missed < 2e-3 && estimate < 1e-2, "k = {grading}: off by {missed:e}, told {estimate:e}");
+    }
+}

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::mem;
 
 use super::attempt::{
-    LAST_RESORT, ON_SPRINGS_THAT_STAY, REFINEMENTS, SPRINGS_OF_LAST_RESORT, SPRINGS_THAT_STAY,
+    LAST_RESORT, ON_SPRINGS_THAT_STAY, REFINEMENTS, SPRINGS_THAT_STAY, springs_of_last_resort,
 };
 use super::budget::{self, TIGHTER, UNKNOWN};
 use super::cost;
@@ -170,8 +170,14 @@ impl Attempts<'_> {
         if self.recorder.attempt.is_last_resort() {
             return vec![];
         }
+        let (model, attempt) = (self.stepping.model(), self.recorder.attempt);
+        if let Some(springs) = budget::enough_for_gross_slip_that_lifts(model) {
+            let is_first = attempt.refinements == 0;
+            let more = is_first.then(|| vec![self.finer(springs, attempt.tolerance, None, work)]);
+            return more.unwrap_or_else(|| self.last_resort(work));
+        }
         // In gross slip the last resort has no fewer springs than these.
-        if self.stepping.model().gross().is_none() && (far_too_long || cost::is_nearly_spent(work)) {
+        if model.gross().is_none() && (far_too_long || cost::is_nearly_spent(work)) {
             return self.last_resort(work);
         }
         let counted = Attempt { refinements, work, ..Attempt::default() };
@@ -239,6 +245,7 @@ impl Attempts<'_> {
         let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
         let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
         let counted = Attempt { refinements: REFINEMENTS + 1, work, ..Attempt::default() };
+        let fewer = fewer.filter(|_| !begun.slides_and_lifts());
         let fewer = fewer.map(|springs| Anew { springs, on_fewer: true, counted });
         fewer.into_iter().chain(self.last_resort(work)).collect()
     }
@@ -259,7 +266,7 @@ impl Attempts<'_> {
         if attempt.is_on_springs_that_stay() {
             return on(&SPRINGS_THAT_STAY, ON_SPRINGS_THAT_STAY, true);
         }
-        let springs = SPRINGS_OF_LAST_RESORT[usize::from(self.stepping.model().gross().is_none())];
+        let springs = springs_of_last_resort(self.stepping.model());
         let mut all = on(springs, LAST_RESORT, attempt.is_last_resort());
         if first.moving().is_some_and(MovingStick::is_balanced) {
             all.extend(on(&SPRINGS_THAT_STAY, ON_SPRINGS_THAT_STAY, false));
@@ -282,7 +289,8 @@ impl Attempts<'_> {
                 budget::refined_by_order(springs, shares, accuracy, simulation.model())
             }
             // More springs may find an end where few do not.
-            Err(Error::NotConverged { .. }) => budget::refined(springs, None, accuracy),
+            Err(Error::NotConverged { .. }) => budget::enough_for_gross_slip_that_lifts(simulation.model())
+                .or_else(|| budget::refined(springs, None, accuracy)),
             Err(_) => None,
         };
         let is_met = outcome.is_ok() && checkpoint.error_estimate.is_some_and(|error| error <= accuracy);

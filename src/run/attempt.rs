@@ -16,13 +16,25 @@ pub(super) const REFINEMENTS: u64 = 3;
 /// becomes of the contact, and that nothing is known of the error.
 pub(super) const LAST_RESORT: u64 = REFINEMENTS + 2;
 
-/// Substeps of a period that is sampled in that attempt, and the springs that it tries one after the other until there is an end: in gross slip, and elsewhere,
-/// where a mesh from near the axis needs more.
+/// Substeps of a period that is sampled in that attempt.
 const COARSE_SUBSTEPS: usize = 48;
-pub(super) const SPRINGS_OF_LAST_RESORT: [&[usize]; 2] = [&[10, 8], &[24, 48, 96, 60, 16]];
+
+/// The springs that it tries one after the other until there is an end: in gross slip, in gross slip that lifts within each period, and elsewhere, where a mesh from near the axis needs more.
+const IN_GROSS_SLIP: &[usize] = &[10, 8];
+const IN_GROSS_SLIP_THAT_LIFTS: &[usize] = &[80, 10, 8];
+const ELSEWHERE: &[usize] = &[24, 48, 96, 60, 16];
+
+/// Those of a model.
+pub(super) fn springs_of_last_resort(model: &Model) -> &'static [usize] {
+    match model.gross() {
+        Some(_) if model.slides_and_lifts() => IN_GROSS_SLIP_THAT_LIFTS,
+        Some(_) => IN_GROSS_SLIP,
+        None => ELSEWHERE,
+    }
+}
 
 /// The first of those after these in which an edge of stick moves over springs that stay, and those springs.
-pub(super) const ON_SPRINGS_THAT_STAY: u64 = LAST_RESORT + SPRINGS_OF_LAST_RESORT[1].len() as u64;
+pub(super) const ON_SPRINGS_THAT_STAY: u64 = LAST_RESORT + ELSEWHERE.len() as u64;
 pub(super) const SPRINGS_THAT_STAY: [usize; 2] = [96, 60];
 
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.

@@ -388,6 +388,16 @@ pub(in crate::run) fn refined(springs: usize, error: Option<f64>, accuracy: f64)
     (refined <= MOST_REFINED).then_some(refined)
 }
 
+/// Springs on which gross slip comes to its end where the contact lifts within each period, and fewer may find none: pressed hardest as slip turns, a contact hardly wears at its rim, which comes to
+/// bear ever more, and cubics swing there.
+const ENOUGH_WHERE_GROSS_SLIP_LIFTS: usize = 80;
+
+/// More springs for a run of gross slip that found no end on these, or whose companion did not.
+pub(in crate::run) fn enough_for_gross_slip_that_lifts(model: &Model) -> Option<usize> {
+    let more = model.slides_and_lifts() && model.springs() < ENOUGH_WHERE_GROSS_SLIP_LIFTS;
+    more.then_some(ENOUGH_WHERE_GROSS_SLIP_LIFTS)
+}
+
 /// As [`refined`] where the order of convergence was observed: the first that a run may take of the springs that this order asks for, those that the full one does, and twice as many.
 ///
 /// # Arguments

@@ -57,7 +57,7 @@ const OF_LEFT: [f64; 2] = [0.05, 2.5];
 /// Largest part of [`MOST_WORK`] that the last resort may take, the least ones of it and of each that follows on other springs, and the part of [`MOST_WORK_OF_ALL`] beyond which it is what follows on
 /// an attempt that takes too long.
 const MOST_OF_LAST_RESORT: f64 = 0.82;
-const OF_LAST_RESORT: [f64; 2] = [0.25, 0.08];
+const OF_LAST_RESORT: [f64; 2] = [0.4, 0.08];
 const NEARLY_ALL: f64 = 0.7;
 
 /// Springs of a run that takes too long when it is made anew over those before, and fewest with which it is.
