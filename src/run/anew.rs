@@ -162,7 +162,7 @@ impl Attempts<'_> {
         if self.recorder.attempt.has_end() { vec![] } else { self.coarser(REFINEMENTS, work, false) }
     }
 
-    /// On fewer springs where these take too long.
+    /// On fewer springs where these take too long; on more where the contact may bear at its rim and this was the first attempt, and by the last resort where it was not.
     ///
     /// # Arguments
     /// * `refinements` -- as how many that counts, unless it is the last resort
@@ -171,10 +171,11 @@ impl Attempts<'_> {
             return vec![];
         }
         let (model, attempt) = (self.stepping.model(), self.recorder.attempt);
-        if let Some(springs) = budget::enough_for_gross_slip_that_lifts(model) {
-            let is_first = attempt.refinements == 0;
-            let more = is_first.then(|| vec![self.finer(springs, attempt.tolerance, None, work)]);
-            return more.unwrap_or_else(|| self.last_resort(work));
+        if let Some(springs) = budget::enough_for_a_rim(model) {
+            return match attempt.refinements {
+                0 => vec![self.finer(springs, attempt.tolerance, None, work)],
+                _ => self.last_resort(work),
+            };
         }
         // In gross slip the last resort has no fewer springs than these.
         if model.gross().is_none() && (far_too_long || cost::is_nearly_spent(work)) {
@@ -245,7 +246,7 @@ impl Attempts<'_> {
         let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
         let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
         let counted = Attempt { refinements: REFINEMENTS + 1, work, ..Attempt::default() };
-        let fewer = fewer.filter(|_| !begun.slides_and_lifts());
+        let fewer = fewer.filter(|_| !budget::may_bear_at_rim(begun));
         let fewer = fewer.map(|springs| Anew { springs, on_fewer: true, counted });
         fewer.into_iter().chain(self.last_resort(work)).collect()
     }
@@ -289,7 +290,7 @@ impl Attempts<'_> {
                 budget::refined_by_order(springs, shares, accuracy, simulation.model())
             }
             // More springs may find an end where few do not.
-            Err(Error::NotConverged { .. }) => budget::enough_for_gross_slip_that_lifts(simulation.model())
+            Err(Error::NotConverged { .. }) => budget::enough_for_a_rim(simulation.model())
                 .or_else(|| budget::refined(springs, None, accuracy)),
             Err(_) => None,
         };

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::budget::UNKNOWN;
+use super::budget::{UNKNOWN, may_bear_at_rim};
 use super::cost;
 use crate::data::Attempt;
 use crate::scene::{Numerics, Scene};
@@ -19,15 +19,15 @@ pub(super) const LAST_RESORT: u64 = REFINEMENTS + 2;
 /// Substeps of a period that is sampled in that attempt.
 const COARSE_SUBSTEPS: usize = 48;
 
-/// The springs that it tries one after the other until there is an end: in gross slip, in gross slip that lifts within each period, and elsewhere, where a mesh from near the axis needs more.
+/// The springs that it tries one after the other until there is an end: in gross slip, where the contact may bear at its rim, and elsewhere, where a mesh from near the axis needs more.
 const IN_GROSS_SLIP: &[usize] = &[10, 8];
-const IN_GROSS_SLIP_THAT_LIFTS: &[usize] = &[80, 10, 8];
+const AT_RIM: &[usize] = &[80, 10, 8];
 const ELSEWHERE: &[usize] = &[24, 48, 96, 60, 16];
 
 /// Those of a model.
 pub(super) fn springs_of_last_resort(model: &Model) -> &'static [usize] {
     match model.gross() {
-        Some(_) if model.slides_and_lifts() => IN_GROSS_SLIP_THAT_LIFTS,
+        Some(_) if may_bear_at_rim(model) => AT_RIM,
         Some(_) => IN_GROSS_SLIP,
         None => ELSEWHERE,
     }

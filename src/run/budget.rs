@@ -53,9 +53,6 @@ pub(in crate::run) const SURE: f64 = 0.6;
 /// Most springs of a repeated run: more would take longer than a user may wait without having been asked.
 const MOST_REFINED: usize = 400;
 
-/// The same where periods of a changing normal load are passed through step by step.
-const MOST_REFINED_LIFTING: usize = 400;
-
 /// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
 pub(super) const CAUTIOUS_ORDER: f64 = 4.0;
 const AIM: f64 = 0.5;
@@ -389,13 +386,20 @@ pub(in crate::run) fn refined(springs: usize, error: Option<f64>, accuracy: f64)
 }
 
 /// Springs on which gross slip comes to its end where the contact lifts within each period, and fewer may find none: pressed hardest as slip turns, a contact hardly wears at its rim, which comes to
-/// bear ever more, and cubics swing there.
-const ENOUGH_WHERE_GROSS_SLIP_LIFTS: usize = 80;
+/// bear ever more, and cubics swing there. And the gradings at which that is so: above, 24 do, and below as many are too few.
+const ENOUGH_FOR_A_RIM: usize = 80;
+const GRADINGS_WITH_A_RIM: [f64; 2] = [-0.5, 0.25];
 
-/// More springs for a run of gross slip that found no end on these, or whose companion did not.
-pub(in crate::run) fn enough_for_gross_slip_that_lifts(model: &Model) -> Option<usize> {
-    let more = model.slides_and_lifts() && model.springs() < ENOUGH_WHERE_GROSS_SLIP_LIFTS;
-    more.then_some(ENOUGH_WHERE_GROSS_SLIP_LIFTS)
+/// Whether the contact may come to bear at a rim that hardly wears.
+pub(in crate::run) fn may_bear_at_rim(model: &Model) -> bool {
+    let lifts = model.gross().is_some() && model.schedule().lifts();
+    let (grading, [least, most]) = (model.contact().half_space().grading(), GRADINGS_WITH_A_RIM);
+    lifts && grading > least && grading < most
+}
+
+/// More springs for a run that found no end on these, or whose companion did not, where the contact may bear at its rim.
+pub(in crate::run) fn enough_for_a_rim(model: &Model) -> Option<usize> {
+    (may_bear_at_rim(model) && model.springs() < ENOUGH_FOR_A_RIM).then_some(ENOUGH_FOR_A_RIM)
 }
 
 /// As [`refined`] where the order of convergence was observed: the first that a run may take of the springs that this order asks for, those that the full one does, and twice as many.
@@ -410,7 +414,7 @@ pub(in crate::run) fn refined_by_order(
 ) -> Option<usize> {
     let most = match model.gross() {
         Some(_) => MOST_IN_GROSS_SLIP,
-        None if model.schedule().lifts() => MOST_REFINED_LIFTING,
+        None if model.schedule().lifts() => MOST_REFINED,
         None => MOST_RAISED,
     };
     if shares.springs >= UNKNOWN {

@@ -240,11 +240,6 @@ impl Model {
         }
     }
 
-    /// Whether that lifts within each period.
-    pub fn slides_and_lifts(&self) -> bool {
-        self.gross().is_some() && self.schedule.lifts()
-    }
-
     /// Radii of the output, m², squared, of a contact that grows to a radius, m.
     pub fn gross_offsets(&self, last: f64) -> Vec<f64> {
         let [within, beyond] = SHOWN;

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::motion::{Bearing, Motion};
+use super::motion::Motion;
 use super::schedule::CycleLoading;
 use super::{Model, State};
 use crate::contact::spring::searched_stick_compression;
@@ -98,7 +98,7 @@ impl Model {
         let carried = BY_PAIR * springs;
         let spread = if loading.wear.spreading().is_some() { BY_SPREAD * springs } else { 0.0 };
         let by_slopes = self.gross().is_some_and(|it| it.asks_between_nodes())
-            && Bearing::new(loading).in_proportion().is_none();
+            && self.bearing_in(loading).in_proportion().is_none();
         let pressed =
             if by_slopes { Touching::POINTS as f64 * (BY_POINT + carried) } else { of_load + carried };
         let by_spring = slips * (at_spring + carried) + loads * (pressed + spread);

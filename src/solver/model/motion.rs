@@ -16,6 +16,9 @@ use crate::numerics::roots::bracketed;
 /// Change of a compression, relative to the one at the edge of stick, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
 
+/// Grading up to which compressions swing wherever a block at a smaller indentation has worn, and springs that it lifts out of contact are better taken to bear nothing: with them pulling, no step led on.
+const SWINGING_ALL_OVER: f64 = -0.9;
+
 /// What the springs inside the contact edge do in one period.
 pub(super) struct Motion {
     /// Tangential amplitude of the contact, m.
@@ -147,7 +150,7 @@ impl Model {
             }
         };
         let inner = compression.len();
-        let bearing = Bearing::new(loading);
+        let bearing = self.bearing_in(loading);
         let amplitude_slope = (slopes && loading.control != AmplitudeControl::Displacement)
             .then(|| self.amplitude_slope(loading, &lifted, &slip, fields));
         let rows = if slopes { inner } else { 0 };
@@ -227,7 +230,7 @@ impl Model {
         self.count_substeps(springs.passed, path, &*loading.friction);
         let count = path.points.len();
         let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
-        let bearing = Bearing::new(loading);
+        let bearing = self.bearing_in(loading);
         let different = if path.is_level() { 1 } else { steps };
         let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing.of(q, lift)).iter().sum::<f64>();
         motion.load = Mat::from_fn(inner, different, |j, m| mean(compression[j], m));
@@ -293,7 +296,7 @@ impl Model {
         // Springs without compression are never loaded.
         let [mut values, mut after] = [(); 2].map(|()| vec![0.0; columns]);
         let difference = DIFFERENCE * self.contact.slip_compression();
-        let bearing = Bearing::new(loading);
+        let bearing = self.bearing_in(loading);
         let per_compression = bearing.of(1.0, 0.0);
         let slipping = Slipping::new(compression);
         for (j, (q, by)) in compression.iter().zip(slipping.compressions()).enumerate() {
@@ -419,6 +422,15 @@ impl Model {
         let q = 1.0 + half_space.grading();
         let tangential = half_space.stiffness_ratio() * half_space.normal_stiffness();
         2.0 * tangential * amplitude * fields.stick_zone.stick_area.powf(0.5 * q) / q
+    }
+
+    /// What the law of wear takes for the load of springs.
+    pub(super) fn bearing_in<'a>(&self, loading: &'a CycleLoading) -> Bearing<'a> {
+        Bearing {
+            traction: loading.wear.takes_traction().then_some(&*loading.friction),
+            spreads: loading.wear.spreading().is_some(),
+            pulls_lifted: loading.path.is_some() || self.contact.half_space().grading() > SWINGING_ALL_OVER,
+        }
     }
 
     /// Slope of a function of the compression of one spring, by a difference to the side of more compression.
@@ -560,14 +572,11 @@ pub(super) struct Bearing<'a> {
     /// The law that says what resists slip, where wear takes the traction.
     traction: Option<&'a dyn FrictionLaw>,
     spreads: bool,
+    /// Whether what pulls at the largest indentation does so wherever it is lifted to.
+    pulls_lifted: bool,
 }
 
 impl<'a> Bearing<'a> {
-    pub(super) fn new(loading: &'a CycleLoading) -> Self {
-        let traction = loading.wear.takes_traction().then_some(&*loading.friction);
-        Self { traction, spreads: loading.wear.spreading().is_some() }
-    }
-
     /// What is taken for each compression, where all springs that are loaded bear in proportion to theirs.
     pub(super) fn in_proportion(&self) -> Option<f64> {
         let Some(law) = self.traction else { return Some(1.0) };
@@ -579,7 +588,7 @@ impl<'a> Bearing<'a> {
     pub(super) fn of(&self, compression: f64, lift: f64) -> f64 {
         // A spring that pulls at the largest indentation does so by round-off, about zero in the limit, or as compressions swing next to the edge of stick;
         // it pulls all the time, wherever it is lifted to, for so it wears back. One that presses there may lose contact.
-        let pulls = compression < 0.0;
+        let pulls = compression < 0.0 && (self.pulls_lifted || lift == 0.0);
         match self.traction {
             Some(law) if pulls => -law.kinetic_strength(-compression),
             Some(law) => law.kinetic_strength(compression - lift),

@@ -15,7 +15,7 @@ use crate::laws::friction::FrictionLaw;
 use crate::laws::wear::Spreading;
 use crate::numerics::roots::bracketed;
 use crate::numerics::whole_contact::{Coordinate, WholeContact};
-use crate::solver::model::motion::{Bearing, Energies, Motion};
+use crate::solver::model::motion::{Energies, Motion};
 use crate::solver::model::moving::LAST_STICK;
 use crate::solver::model::schedule::{AmplitudeControl, CycleLoading};
 use crate::solver::model::spreading::Debris;
@@ -256,7 +256,7 @@ impl Model {
             let factor = if taken { coefficient } else { 1.0 };
             Mat::from_fn(mesh.inner(), 1, |i, _| factor * whole.pressure[i])
         } else {
-            let bearing = Bearing::new(loading);
+            let bearing = self.bearing_in(loading);
             let load = Mat::from_fn(mesh.inner(), 1, |i, _| bearing.of(compression[i], 0.0));
             self.pressed(gross, loading, compression, whole, &load)
         };
@@ -416,7 +416,7 @@ impl Model {
         let changes = loading.path.as_ref().is_none_or(|path| !path.is_level());
         let mut pressure = match &gross.touching {
             Some(touching) if changes => {
-                let bearing = Bearing::new(loading);
+                let bearing = self.bearing_in(loading);
                 let lifts: Vec<f64> = match &loading.path {
                     Some(path) => (0..=steps).map(|m| path.points[m % path.points.len()].lift).collect(),
                     None => vec![0.0; steps + 1],
