@@ -53,6 +53,9 @@ pub(in crate::run) const SURE: f64 = 0.6;
 /// Most springs of a repeated run: more would take longer than a user may wait without having been asked.
 const MOST_REFINED: usize = 400;
 
+/// The same where the normal load changes along the period: with more, profiles at the contact edge were off by five times their estimates.
+const MOST_REFINED_LIFTING: usize = 200;
+
 /// Order of the error in the springs with which the factor is found, low, and the part of the accuracy that is aimed at.
 pub(super) const CAUTIOUS_ORDER: f64 = 4.0;
 const AIM: f64 = 0.5;
@@ -414,7 +417,7 @@ pub(in crate::run) fn refined_by_order(
 ) -> Option<usize> {
     let most = match model.gross() {
         Some(_) => MOST_IN_GROSS_SLIP,
-        None if model.schedule().lifts() => MOST_REFINED,
+        None if model.schedule().lifts() => MOST_REFINED_LIFTING,
         None => MOST_RAISED,
     };
     if shares.springs >= UNKNOWN {
