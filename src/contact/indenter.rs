@@ -21,6 +21,7 @@ mod table_transform;
 use std::ops::Deref;
 use std::sync::Arc;
 
+pub(crate) use cubic::Cubic;
 pub use equivalent::{Equivalent, EquivalentProfile};
 pub use power_law::power_law_factor;
 pub use shape::Shape;

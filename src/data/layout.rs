@@ -68,6 +68,16 @@ pub const COMPRESSION_RATE: Quantity =
     quantity("compression_rate", "m", "compression of the springs gained per cycle in the last step");
 /// Group, in that of the checkpoint, of an edge of stick that moves; absent where it stays.
 pub const STICK: &str = "stick";
+/// Group, in that of the checkpoint, of ground that blocks at other indentations have worn in gross slip; absent where they have not.
+pub const GROUND: &str = "ground";
+/// Squared radius at which that ground is known, shape `(worn_place,)`.
+pub const WORN_PLACE: Quantity = quantity("worn_place", "m2", "square of the radius of worn ground");
+/// Depth worn there when the block under way began, shape `(worn_place,)`.
+pub const WORN_BEFORE: Quantity =
+    quantity("worn_before", "m", "wear depth when the block under way began, to go on from");
+/// By how much that block lifts the indenter.
+pub const LIFT: Quantity =
+    quantity("lift", "m", "largest indentation of the run less that of the block under way");
 /// Index coordinate along the radii at which slip left behind is known, shape `(station,)`.
 pub const STATION: Quantity =
     quantity("station", "1", "index of the radius at which slip left behind is known");

@@ -14,7 +14,7 @@ use crate::contact::indenter::TabulatedProfile;
 use crate::contact::stick_slip::{FrettingRegime, Regime};
 use crate::error::Result;
 use crate::laws::motion::RecordedPath;
-use crate::solver::model::{Linearised, Past, PastPoint, StickEdge};
+use crate::solver::model::{Linearised, Past, PastPoint, StickEdge, WornGround};
 
 const NOT_A_RUN: &str = "give a file that `fretwear run` wrote";
 
@@ -242,6 +242,18 @@ fn put_checkpoint(checkpoint: &Checkpoint) -> Dataset {
     if let Some(stick) = &state.stick {
         stored.groups.push((STICK.into(), put_stick(stick)));
     }
+    if let Some(ground) = &state.ground {
+        stored.groups.push((GROUND.into(), put_ground(ground)));
+    }
+    stored
+}
+
+fn put_ground(ground: &WornGround) -> Dataset {
+    let mut stored = Dataset::default();
+    stored.coordinate(WORN_PLACE, ground.squared.clone());
+    let place = (WORN_PLACE.name, ground.squared.len());
+    stored.add(Variable::new(WORN_BEFORE, &[place], ground.worn.clone()));
+    stored.scalar(LIFT, ground.lift);
     stored
 }
 
@@ -394,6 +406,7 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
     let springs = state.compression.len();
     state.compression_rate = stored.take(COMPRESSION_RATE, &[Some(springs)])?;
     state.stick = stored.take_group(STICK)?.map(stick).transpose()?;
+    state.ground = stored.take_group(GROUND)?.map(ground).transpose()?.map(Arc::new);
     if let Some(past) = stored.take_group(PAST)? {
         state.past = self::past(past, springs)?;
     }
@@ -416,6 +429,15 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
         };
     }
     Ok(checkpoint)
+}
+
+fn ground(mut stored: Dataset) -> Result<WornGround> {
+    let squared: Vec<f64> = stored.take(WORN_PLACE, &[None])?;
+    Ok(WornGround {
+        lift: stored.take_scalar(LIFT)?,
+        worn: stored.take(WORN_BEFORE, &[Some(squared.len())])?,
+        squared,
+    })
 }
 
 fn stick(mut stored: Dataset) -> Result<StickEdge> {

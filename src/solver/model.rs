@@ -44,7 +44,7 @@ use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
 pub use construction::{FEWEST_SPRINGS, MOST_IN_GROSS_SLIP};
 pub use cycle::CycleFields;
-pub use gross::{Gross, GrossRates};
+pub use gross::{Gross, GrossRates, WornGround};
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
 use meter::Meter;
@@ -85,6 +85,8 @@ pub struct State {
     pub resting_area: f64,
     /// The edge of stick, where that moves.
     pub stick: Option<StickEdge>,
+    /// Ground that blocks at other indentations have worn in gross slip, and how deep the one under way presses; none at the largest indentation on unworn ground.
+    pub ground: Option<Arc<WornGround>>,
     /// The times before, for a multistep method.
     pub past: Past,
 }
@@ -111,6 +113,7 @@ pub struct Fields {
     /// The unworn slip at the same radii.
     pub unworn: Vec<UnwornValues>,
     density: Vec<f64>,
+    ground: Option<Arc<WornGround>>,
 }
 
 /// The stick zone, at whose edge the mesh begins.
@@ -256,7 +259,7 @@ impl Model {
     /// [`Error::NotConverged`] if no edge is found.
     pub fn initial_state(&self) -> Result<State> {
         if let Some(gross) = self.gross() {
-            return Ok(self.gross_initial_state(gross));
+            return self.gross_initial_state(gross);
         }
         let stick = self.moving().map(|moving| moving.start(self)).transpose()?;
         let stick_zone = self.stick_zone_in(stick.as_ref(), &self.schedule.loading(0.0, 0.0));
@@ -291,6 +294,7 @@ impl Model {
             slip_area_rate: 0.0,
             resting_area: 0.0,
             stick,
+            ground: None,
             past: Past::default(),
         })))
     }

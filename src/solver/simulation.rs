@@ -177,6 +177,14 @@ impl Simulation {
         let mut growth = 0.0_f64;
         let mut finite = true;
         for loading in model.schedule().first_cycles() {
+            let (state, fields) = match model.gross() {
+                Some(gross) if model.follows_blocks() => {
+                    let state = model.lifted_to(gross, state.clone(), loading.lift)?;
+                    let fields = model.fields(&state);
+                    (Cow::Owned(state), Cow::Owned(fields))
+                }
+                _ => (Cow::Borrowed(&state), Cow::Borrowed(&fields)),
+            };
             let cycle = model.cycle_in_block(&model.loading_in(&state, loading), &state.compression, &fields);
             first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
             growth = growth.max(largest(&cycle.growth));
@@ -233,7 +241,10 @@ impl Simulation {
 
     /// Whether steps that end with each block may come to see passes.
     pub fn may_come_to_average(&self) -> bool {
-        self.most_swing > 0.0 && self.model.may_average() && !self.model.wears_without_end()
+        self.most_swing > 0.0
+            && !self.model.follows_blocks()
+            && self.model.may_average()
+            && !self.model.wears_without_end()
     }
 
     /// The swing of a pass, over the limit, that is left out since blocks are no longer stepped through.
@@ -450,13 +461,16 @@ impl Simulation {
             End::Cycles(cycles) => (self.state.cycles >= cycles).then_some(Outcome::End),
             End::Rate(fraction) => {
                 // After a step beyond the limit the rate is negative for a while.
+                let shown = self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
                 let spent = self.cycle.volume >= 0.0
                     && self.wear_rate() <= fraction * self.progress.first_rate
-                    && self.model.schedule().has_shown_all(self.progress.busy_until, self.state.cycles);
+                    && shown;
                 let limit = WORN_OUT * self.model.contact().slip_compression();
                 let worn_out =
                     self.state.compression.iter().all(|q| q.abs() <= limit) || self.wears_no_more();
-                spent.then_some(Outcome::Rate).or(worn_out.then_some(Outcome::WornOut))
+                spent
+                    .then_some(Outcome::Rate)
+                    .or((worn_out && (shown || !self.model.follows_blocks())).then_some(Outcome::WornOut))
             }
         }
     }

@@ -2,7 +2,7 @@
 
 /// A function from 0 on, a cubic between neighbouring knots, and a straight line beyond the last.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Cubic {
+pub(crate) struct Cubic {
     knots: Vec<f64>,
     /// Coefficients of the powers of the distance from each knot on; those of the last continue it.
     pieces: Vec<[f64; 4]>,
@@ -15,7 +15,7 @@ impl Cubic {
     /// # Arguments
     /// * `knots` -- increasing from 0, at least two
     /// * `values`, `slopes` -- at the knots
-    pub(super) fn new(knots: Vec<f64>, values: &[f64], mut slopes: Vec<f64>) -> Self {
+    pub(crate) fn new(knots: Vec<f64>, values: &[f64], mut slopes: Vec<f64>) -> Self {
         let last = knots.len() - 1;
         let rate = |i: usize| (values[i + 1] - values[i]) / (knots[i + 1] - knots[i]);
         for (i, slope) in slopes.iter_mut().enumerate() {
@@ -61,14 +61,14 @@ impl Cubic {
     }
 
     /// Value at `x >= 0`.
-    pub(super) fn value(&self, x: f64) -> f64 {
+    pub(crate) fn value(&self, x: f64) -> f64 {
         let i = self.index(x);
         let ([constant, ..], t) = (self.pieces[i], x - self.knots[i]);
         constant + self.rise_within(i, t)
     }
 
     /// Slope at `x >= 0`.
-    pub(super) fn derivative(&self, x: f64) -> f64 {
+    pub(crate) fn derivative(&self, x: f64) -> f64 {
         let i = self.index(x);
         let t = x - self.knots[i];
         self.mean_slope(i, t, t)

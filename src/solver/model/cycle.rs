@@ -107,7 +107,7 @@ impl Model {
         fields: &Fields,
     ) -> CycleFields {
         if let Some(gross) = self.gross() {
-            return self.gross_cycle(gross, loading, compression);
+            return self.gross_cycle(gross, loading, compression, fields);
         }
         if loading.is_pause() {
             let edge = fields.stick_zone.stick_area + fields.slip_area;

@@ -14,11 +14,13 @@
 //! `q_c - u` is the transform of `(q_c - q)₊`, zero within the stick radius.
 
 mod cycle;
+mod ground;
 mod hand_over;
 
 use std::f64::consts::PI;
 
 use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
+pub use ground::{Surroundings, WornGround};
 use hand_over::BEGINS_BELOW;
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
@@ -250,31 +252,32 @@ impl Model {
         inside.chain(outside.filter(|r| *r > first)).map(|r| r * r).collect()
     }
 
-    pub(super) fn gross_initial_state(&self, gross: &Gross) -> State {
+    pub(super) fn gross_initial_state(&self, gross: &Gross) -> Result<State> {
         let (slip_area, compression) = gross.first.clone();
-        State {
+        let first = State {
             slip_area,
             compression_rate: vec![0.0; compression.len()],
             compression,
             least_stick_radius: f64::INFINITY,
             ..State::default()
-        }
+        };
+        self.in_block_of(gross, first)
     }
 
     /// Everything that follows from the compressions; none where no contact has them.
-    fn whole(&self, gross: &Gross, compression: &[f64]) -> Option<Whole> {
-        let (half_space, indenter, mesh) = (self.contact.half_space(), self.contact.indenter(), &gross.mesh);
+    fn whole(&self, gross: &Gross, around: &Surroundings, compression: &[f64]) -> Option<Whole> {
+        let (half_space, mesh) = (self.contact.half_space(), &gross.mesh);
         let nu = 0.5 * (1.0 + half_space.grading());
         let elastic = mesh.profile(compression);
         let at_edge = elastic[mesh.inner()];
         let (area, indentation) = match gross.held_load {
             Some(load) => {
                 let area = (load / mesh.load(compression)).powf(nu.recip());
-                (area, indenter.profile(area.sqrt()) + at_edge)
+                (area, around.profile(area.sqrt()) + at_edge)
             }
             None => {
-                let held = self.contact.indentation();
-                (indenter.radius_at_height(held - at_edge).powi(2), held)
+                let held = around.indentation;
+                (around.radius_at_height(held - at_edge).powi(2), held)
             }
         };
         // A load that is held presses.
@@ -297,17 +300,18 @@ impl Model {
         &self,
         gross: &Gross,
         loading: &CycleLoading,
+        around: &Surroundings,
         compression: &[f64],
     ) -> Option<GrossRates> {
         let mesh = &gross.mesh;
-        let whole = self.whole(gross, compression)?;
+        let whole = self.whole(gross, around, compression)?;
         let (depth, cycle) = self.gross_mean_wear(gross, loading, compression, &whole);
         // q' = d' F⁻¹ 1 + (A'/A) F⁻¹ ξ ∂u/∂ξ - F⁻¹ W, with A'/A and d' from the edge and the force.
         let carried = mesh.dilation(compression, &whole.elastic);
         let mut worn = depth;
         mesh.solve_profile(&mut worn);
         let radius = whole.area.sqrt();
-        let rise = 0.5 * radius * self.contact.indenter().profile_derivative(radius);
+        let rise = 0.5 * radius * around.slope(radius);
         let edge = [&gross.lifted, &carried, &worn].map(|part| mesh.profile_at_edge(part));
         let (growth, sinking) = match gross.held_load {
             Some(_) => {
@@ -322,7 +326,7 @@ impl Model {
                     (matrix[0][0] * second - matrix[1][0] * first) / determinant,
                 )
             }
-            None => (edge[2] / (rise + edge[1]), 0.0),
+            None => (edge[2] / around.kept_apart(rise + edge[1], rise), 0.0),
         };
         let parts = gross.lifted.iter().zip(&carried).zip(&worn);
         let rates: Vec<f64> =
@@ -339,8 +343,8 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::NotConverged`] where the profile ends before.
-    pub fn gross_area(&self, gross: &Gross, compression: &[f64]) -> Result<f64> {
-        self.whole(gross, compression).map(|whole| whole.area).ok_or_else(|| Error::NotConverged {
+    pub fn gross_area(&self, gross: &Gross, around: &Surroundings, compression: &[f64]) -> Result<f64> {
+        self.whole(gross, around, compression).map(|whole| whole.area).ok_or_else(|| Error::NotConverged {
             what: "contact edge",
             why: "the contact has grown to where the profile of the indenter ends".into(),
         })
@@ -354,7 +358,8 @@ impl Model {
     }
 
     pub(super) fn gross_fields(&self, gross: &Gross, state: &State) -> Fields {
-        let Some(whole) = self.whole(gross, &state.compression) else { return Fields::default() };
+        let around = self.surroundings(state.ground.as_ref());
+        let Some(whole) = self.whole(gross, &around, &state.compression) else { return Fields::default() };
         Fields {
             stick_zone: StickZone {
                 slip_compression: self.contact.slip_compression(),
@@ -365,6 +370,7 @@ impl Model {
             elastic_depth: whole.elastic,
             pressure: whole.pressure,
             density: state.compression.clone(),
+            ground: state.ground.clone(),
             ..Fields::default()
         }
     }
@@ -374,8 +380,10 @@ impl Model {
         gross: &Gross,
         loading: &CycleLoading,
         compression: &[f64],
+        fields: &Fields,
     ) -> CycleFields {
-        self.whole(gross, compression)
+        let around = self.surroundings(fields.ground.as_ref());
+        self.whole(gross, &around, compression)
             .map_or_else(CycleFields::default, |whole| self.gross_wear(gross, loading, compression, &whole).1)
     }
 
@@ -384,12 +392,12 @@ impl Model {
         if fraction < 1.0 {
             gross.mesh.value(&fields.wear_depth, gross.mesh.coordinate(fraction))
         } else {
-            0.0
+            self.surroundings(fields.ground.as_ref()).worn(squared)
         }
     }
 
     pub(super) fn gross_volume(&self, gross: &Gross, fields: &Fields) -> f64 {
-        PI * fields.slip_area * gross.mesh.area(&fields.wear_depth)
+        PI * fields.slip_area * gross.mesh.area(&fields.wear_depth) + self.volume_around(fields)
     }
 
     pub(super) fn gross_normal_force(&self, gross: &Gross, fields: &Fields) -> f64 {
@@ -397,7 +405,8 @@ impl Model {
     }
 
     pub(super) fn gross_indentation(&self, gross: &Gross, state: &State) -> f64 {
-        self.whole(gross, &state.compression).map_or(f64::NAN, |whole| whole.indentation)
+        let around = self.surroundings(state.ground.as_ref());
+        self.whole(gross, &around, &state.compression).map_or(f64::NAN, |whole| whole.indentation)
     }
 
     /// Sum of something over the springs, `2 ∫_0^a x^k value(q) dx`.
@@ -442,13 +451,18 @@ impl Model {
     pub(super) fn gross_radial_fields(&self, gross: &Gross, state: &State) -> RadialFields {
         let offsets = self.output.offsets();
         let [mut wear_depth, mut pressure, mut slip] = [(); 3].map(|()| vec![0.0; offsets.len()]);
-        if let Some(whole) = self.whole(gross, &state.compression) {
+        let around = self.surroundings(state.ground.as_ref());
+        if let Some(whole) = self.whole(gross, &around, &state.compression) {
             let mesh = &gross.mesh;
             let loading = self.loading_in(state, self.schedule.loading_in_block(state.cycles, state.cycles));
             let (_, cycle, sliding) = self.gross_wear(gross, &loading, &state.compression, &whole);
             let transforms = self.beside_polynomials(state);
             let depth = self.gross_depth(gross, &whole);
-            for (i, squared) in offsets.iter().enumerate().take_while(|(_, squared)| **squared < whole.area) {
+            for (i, squared) in offsets.iter().enumerate() {
+                if *squared >= whole.area {
+                    wear_depth[i] = around.worn(*squared);
+                    continue;
+                }
                 let coordinate = mesh.coordinate(squared / whole.area);
                 wear_depth[i] = mesh.value(&depth, coordinate).max(0.0);
                 let first = transforms.as_ref().and_then(|it| self.unworn_pressure(it, squared.sqrt()));

@@ -41,7 +41,12 @@ impl Model {
             return None;
         }
         let (schedule, now) = (&self.schedule, state.cycles);
-        let fields = self.fields(state);
+        // All blocks on one mesh: that at the largest indentation.
+        let deepest = match self.gross() {
+            Some(gross) => self.lifted_to(gross, state.clone(), 0.0).ok()?,
+            None => state.clone(),
+        };
+        let (state, fields) = (&deepest, self.fields(&deepest));
         // In gross slip growth is over the indentation.
         let scale = |i: usize| fields.slip_depth.get(i).copied().unwrap_or(self.contact.indentation());
         let durations: Vec<f64> = schedule.durations().collect();

@@ -546,6 +546,11 @@ impl Schedule {
         pass * self.ends[last] + self.ends[block]
     }
 
+    /// Whether blocks differ by their indentation.
+    pub fn lifts_blocks(&self) -> bool {
+        self.loadings.iter().any(|loading| loading.lift > 0.0)
+    }
+
     /// Whether the indenter is lifted within a period, so that springs lose contact.
     pub fn lifts(&self) -> bool {
         self.loadings.iter().any(|loading| loading.path.as_ref().is_some_and(|path| !path.is_level()))
@@ -677,7 +682,7 @@ impl Schedule {
 
     /// Whether every cycle of gross slip does the same to the same compressions, at a rate without a kink.
     pub fn is_smooth_in_gross_slip(&self) -> bool {
-        let differs = self.changes_in_time() && self.slips_otherwise();
+        let differs = self.changes_in_time() && (self.slips_otherwise() || self.lifts_blocks());
         !differs && self.keeps_friction() && !self.conditions.wear.has_kink()
     }
 

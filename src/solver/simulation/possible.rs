@@ -31,13 +31,18 @@ impl Simulation {
     /// the edge settles by 1e-6 to 1e-4, and is not looked at.
     pub(super) fn has_not_shrunk(&self, gross: &Gross, state: &State) -> bool {
         let now = &self.state;
-        let settles = self.model.contact().half_space().grading() < 0.0;
+        let settles = self.model.contact().half_space().grading() < 0.0 || now.ground.is_some();
         // Where little presses any more, errors of the compressions move the edge the farther.
         let error = self.tolerance * self.model.gross_error_scale(gross, &state.compression);
         let most = SHRINKS * error / largest_magnitude(&state.compression);
         let keeps = |area: f64| 1.0 - state.slip_area / area <= most;
         // Where a first contact is none of them either, as at a sharp tip, a first step of any length brings it to where they have its edge.
-        settles || keeps(now.slip_area) || self.model.gross_area(gross, &now.compression).is_ok_and(keeps)
+        settles
+            || keeps(now.slip_area)
+            || self
+                .model
+                .gross_area(gross, &self.model.surroundings(now.ground.as_ref()), &now.compression)
+                .is_ok_and(keeps)
     }
 
     /// Whether compressions fall to zero at the contact edge. Where the ground wears there as well, the equations have another root: the edge stays or recedes, and

@@ -77,6 +77,7 @@ fn state_after(state: &State, at: Unknowns, quantities: &[f64], stick_radius: f6
         compression: at.compression,
         resting_area: state.resting_area,
         stick: state.stick.clone(),
+        ground: None,
         past: state.past.clone(),
     }
 }

@@ -87,7 +87,8 @@ impl Slopes {
         at: &Arc<Linearised>,
         evaluations: &mut u64,
     ) -> Option<Self> {
-        let rates = |compression: &[f64]| model.gross_rates(gross, loading, compression);
+        let around = model.surroundings(None);
+        let rates = |compression: &[f64]| model.gross_rates(gross, loading, &around, compression);
         let here = rates(&at.compression)?;
         *evaluations += 1;
         let matrix = slopes(&at.compression, &here, evaluations, rates)?;
@@ -184,7 +185,7 @@ impl Stepper for GrossBdf {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let gross = mesh(model)?;
         // What no smaller step can cure.
-        model.gross_area(gross, &state.compression)?;
+        model.gross_area(gross, &model.surroundings(state.ground.as_ref()), &state.compression)?;
         let mut evaluations = 0;
         let trial = self.try_step(model, gross, state, cycles, &mut evaluations);
         Ok(trial.unwrap_or_else(|| Trial::failed(evaluations)))
@@ -210,7 +211,8 @@ impl Stepper for GrossBdf {
     fn between(&self, model: &Model, state: &State, cycles: f64) -> Option<State> {
         let between =
             state_of(state, TimesBefore::new(model, cycles, &state.past).guess(&state.past), cycles);
-        let slip_area = model.gross_area(model.gross()?, &between.compression).ok()?;
+        let slip_area =
+            model.gross_area(model.gross()?, &model.surroundings(None), &between.compression).ok()?;
         Some(State { slip_area, ..between })
     }
 }
@@ -230,6 +232,7 @@ impl GrossBdf {
         };
         let (now, scale) = (state.cycles + cycles, model.gross_error_scale(gross, &state.compression));
         let loading = model.schedule().loading(state.cycles, now);
+        let around = model.surroundings(None);
         let times = TimesBefore::new(model, now, &past);
         let gathered = PastPoint::sum(&times.gathering(past.order), &past.points);
         let step = times.step(past.order);
@@ -237,7 +240,7 @@ impl GrossBdf {
         let guess = match is_first {
             true => {
                 *evaluations += 1;
-                let rates = model.gross_rates(gross, &loading, &state.compression)?.compression;
+                let rates = model.gross_rates(gross, &loading, &around, &state.compression)?.compression;
                 state.compression.iter().zip(rates).map(|(q, rate)| q + cycles * rate).collect()
             }
             false => times.guess(&past).compression,
@@ -248,7 +251,7 @@ impl GrossBdf {
         let solve = |slopes: &Slopes, evaluations: &mut u64| {
             stage.solve(&slopes.matrix, &guess, |compression| {
                 *evaluations += 1;
-                model.gross_rates(gross, &loading, compression)
+                model.gross_rates(gross, &loading, &around, compression)
             })
         };
         let found = self.slopes.as_ref().and_then(|slopes| solve(slopes, evaluations));
@@ -268,7 +271,7 @@ impl GrossBdf {
         };
         let mut end = State {
             cycles: now,
-            slip_area: model.gross_area(gross, &compression).ok()?,
+            slip_area: model.gross_area(gross, &around, &compression).ok()?,
             compression,
             dissipated_energy: gathered.dissipated_energy + step * rates.dissipation,
             volume_by_rate: gathered.volume_by_rate + step * rates.volume,
@@ -344,7 +347,7 @@ impl Stepper for GrossSdirk {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let gross = mesh(model)?;
         // What no smaller step can cure.
-        model.gross_area(gross, &state.compression)?;
+        model.gross_area(gross, &model.surroundings(state.ground.as_ref()), &state.compression)?;
         let mut evaluations = 1;
         Ok(step(model, gross, state, cycles, self.tolerance, &mut evaluations)
             .unwrap_or_else(|| Trial::failed(evaluations)))
@@ -367,18 +370,21 @@ fn step(
     tolerance: f64,
     evaluations: &mut u64,
 ) -> Option<Trial> {
-    let start = &state.compression;
+    let (start, ground) = (&state.compression, state.ground.as_ref());
+    let around = model.surroundings(ground);
+    let loading = |at: f64, energy: f64| {
+        let loading = model.schedule().loading(state.cycles, at);
+        model.after_energy(model.on_ground(ground.map(|it| &**it), loading), energy)
+    };
     let rates = |at: f64, energy: f64, compression: &[f64], evaluations: &mut u64| {
         *evaluations += 1;
-        let loading = model.after_energy(model.schedule().loading(state.cycles, at), energy);
-        model.gross_rates(gross, &loading, compression)
+        model.gross_rates(gross, &loading(at, energy), &around, compression)
     };
     let scale = model.gross_error_scale(gross, start);
     let first = rates(state.cycles, state.dissipated_energy, start, evaluations)?;
     let step = cycles * ALEXANDER.diagonal;
     let slopes = slopes(start, &first, evaluations, |compression| {
-        let loading = model.schedule().loading(state.cycles, state.cycles);
-        model.gross_rates(gross, &model.after_energy(loading, state.dissipated_energy), compression)
+        model.gross_rates(gross, &loading(state.cycles, state.dissipated_energy), &around, compression)
     })?;
     let mut stages: Vec<GrossRates> = Vec::with_capacity(ALEXANDER.matrix.len());
     let mut at = start.clone();
@@ -423,7 +429,7 @@ fn step(
     let stick_radius = stages.iter().map(|stage| stage.stick_radius).fold(f64::INFINITY, f64::min);
     let end = State {
         cycles: state.cycles + cycles,
-        slip_area: model.gross_area(gross, &at).ok()?,
+        slip_area: model.gross_area(gross, &around, &at).ok()?,
         compression: at,
         dissipated_energy: state.dissipated_energy + sum(|stage| stage.dissipation),
         volume_by_rate: state.volume_by_rate + sum(|stage| stage.volume),

@@ -213,11 +213,15 @@ impl Model {
         let (half_space, mesh, friction) = (self.contact.half_space(), &gross.mesh, &*loading.friction);
         let (ratio, nu) = (half_space.stiffness_ratio(), 1.0 - self.mu());
         let coefficient = friction.reference_coefficient();
-        let plain = friction.coefficient().is_some();
-        // Springs lose contact by round-off only.
-        let resisting = |q: &f64| friction.kinetic_strength(q.abs()).copysign(*q) / coefficient;
-        let mut borne: Vec<f64> =
-            if plain { compression.to_vec() } else { compression.iter().map(resisting).collect() };
+        let lift = loading.lift;
+        let lifted: Vec<f64> = compression.iter().map(|q| q - lift).collect();
+        let plain = friction.coefficient().is_some() && lift == 0.0;
+        let resisting = |q: &f64| match lift {
+            // Springs lose contact by round-off only.
+            0.0 => friction.kinetic_strength(q.abs()).copysign(*q) / coefficient,
+            _ => friction.kinetic_strength(*q) / coefficient,
+        };
+        let mut borne: Vec<f64> = if plain { lifted.clone() } else { lifted.iter().map(resisting).collect() };
         let per_depth = coefficient / ratio;
         let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
         // Exactly where slip sets in with a jump, or the edge of stick is to be followed from there on.
@@ -226,7 +230,7 @@ impl Model {
         let (amplitude, stick) = match presses {
             true => {
                 let level = loading.amplitude / per_depth;
-                (loading.amplitude, self.pressed_to_stick(gross, loading, compression, level, &mut borne))
+                (loading.amplitude, self.pressed_to_stick(gross, loading, &lifted, level, &mut borne))
             }
             false => self.sticking(gross, loading, force, &mut borne),
         };
@@ -257,7 +261,7 @@ impl Model {
             Mat::from_fn(mesh.inner(), 1, |i, _| factor * whole.pressure[i])
         } else {
             let bearing = self.bearing_in(loading);
-            let load = Mat::from_fn(mesh.inner(), 1, |i, _| bearing.of(compression[i], 0.0));
+            let load = Mat::from_fn(mesh.inner(), 1, |i, _| bearing.of(compression[i], lift));
             self.pressed(gross, loading, compression, whole, &load)
         };
         Sliding {
@@ -413,13 +417,13 @@ impl Model {
     ) -> Mat<f64> {
         let steps = load.ncols();
         // On a level path springs touch nowhere within a step, and a kink stays where it is.
-        let changes = loading.path.as_ref().is_none_or(|path| !path.is_level());
+        let changes = loading.path.as_ref().map_or(loading.lift == 0.0, |path| !path.is_level());
         let mut pressure = match &gross.touching {
             Some(touching) if changes => {
                 let bearing = self.bearing_in(loading);
                 let lifts: Vec<f64> = match &loading.path {
                     Some(path) => (0..=steps).map(|m| path.points[m % path.points.len()].lift).collect(),
-                    None => vec![0.0; steps + 1],
+                    None => vec![loading.lift; steps + 1],
                 };
                 match bearing.in_proportion() {
                     Some(factor) => {

@@ -96,7 +96,7 @@ impl Model {
 
     /// The stick zone of springs that stick again.
     fn stick_zone_again(&self, gross: &Gross, state: &State) -> Option<StickZone> {
-        let (mesh, whole) = (&gross.mesh, self.whole(gross, &state.compression)?);
+        let (mesh, whole) = (&gross.mesh, self.whole(gross, &self.surroundings(None), &state.compression)?);
         let loading = self.schedule.loading(state.cycles, state.cycles);
         if loading.is_pause() {
             return None;
@@ -139,7 +139,7 @@ impl Model {
             }
         };
         let compression: Vec<f64> = mesh.fractions()[..mesh.inner()].iter().map(compression_at).collect();
-        let whole = to.whole(gross, &compression)?;
+        let whole = to.whole(gross, &to.surroundings(None), &compression)?;
         Some(State {
             slip_area: whole.area,
             compression_rate: vec![0.0; compression.len()],
@@ -155,7 +155,7 @@ impl Model {
     fn stuck_again(&self, state: &State, to: &Self) -> Option<State> {
         let (gross, moving) = (self.gross()?, to.moving()?);
         let zone = self.stick_zone_again(gross, state)?;
-        let (mesh, whole) = (&gross.mesh, self.whole(gross, &state.compression)?);
+        let (mesh, whole) = (&gross.mesh, self.whole(gross, &self.surroundings(None), &state.compression)?);
         let slip_area = whole.area - zone.stick_area;
         let profile = self.contact.equivalent_profile();
         let height = profile.value(zone.stick_area.sqrt());
