@@ -98,7 +98,7 @@ impl MovingStick {
             if level && jumps && !changes && !conditions.repeat {
                 return Ok(Some(Self { outwards: shrink, jumps: true, ..by }));
             }
-            return Ok((level && rests_on_worn_ground(schedule, contact)).then_some(turning));
+            return Ok((!schedule.lifts() && rests_on_worn_ground(schedule, contact)).then_some(turning));
         }
         Ok(changes.then_some(Self { outwards: rises, ..by }))
     }
