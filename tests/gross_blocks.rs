@@ -1,0 +1,172 @@
+//! Gross slip in blocks at different indentations, each on the ground that those before have worn.
+
+mod support;
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+
+use fretwear::Results;
+use fretwear::scene::Scene;
+
+/// Radius of the paraboloid, m, and worn volume per energy, m³/J.
+const RADIUS: f64 = 10e-3;
+const PER_ENERGY: f64 = 2e-13;
+const TIGHT: &str = "accuracy = 1e-4\n";
+const PARABOLOID: &str = "[indenter.paraboloid]\nradius = \"10 mm\"";
+
+/// A contact that slides to and fro by more than 1.2 times what full sliding takes.
+fn scene(indenter: &str, grading: f64, loading: &str, numerics: &str) -> Scene {
+    let text = format!(
+        "{indenter}\n[half_space]\ngrading = {grading}\nnormal_stiffness = 1e11\nstiffness_ratio = 0.8\n\
+         [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1e-13\n\
+         [loading]\namplitude = \"800 nm\"\n{loading}\n[numerics]\n{numerics}\n"
+    );
+    text.parse().unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Blocks of these dimensionless times, amplitude factors and indentation factors, under a paraboloid at 1 µm.
+fn blocks(blocks: &[[f64; 3]], more: &str) -> String {
+    let mut text = format!("indentation = \"1 um\"\n{more}\n");
+    for [tau, amplitude, depth] in blocks {
+        let _ = write!(
+            text,
+            "[[loading.blocks]]\ntau = {tau}\namplitude_factor = {amplitude}\nindentation_factor = {depth}\n"
+        );
+    }
+    text
+}
+
+fn run(scene: &Scene) -> Results {
+    scene.simulate().unwrap_or_else(|error| panic!("{error}\n{}", scene.text()))
+}
+
+/// The last block wears flat whatever presses on it: at its indentation `d` within the radius `√(2Rd)`, if that is beyond all that was worn before.
+#[test]
+fn the_last_block_wears_flat() {
+    for grading in [-0.6, -0.3, 0.0, 0.5] {
+        for depth in [0.9, 0.95] {
+            let loading = blocks(&[[1.0, 1.0, 1.0], [1.0, 1.0, depth]], "tau = 3000");
+            let results = run(&scene(PARABOLOID, grading, &loading, "accuracy = 1e-3"));
+            let indentation = depth * 1e-6;
+            let radius = (2.0 * RADIUS * indentation).sqrt();
+            let volume = PI * RADIUS * indentation * indentation;
+            let last = results.last();
+            let off = [last.wear_volume / volume, last.contact_radius / radius].map(|ratio| ratio - 1.0);
+            println!("k = {grading}, d = {depth}: {off:?}");
+            assert!(off.iter().all(|it| it.abs() < 1e-6), "k = {grading}, d = {depth}: {off:?}");
+            assert!((last.indentation / indentation - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+/// A first block at a smaller indentation than a later one wears as if it were alone.
+#[test]
+fn a_first_block_that_is_shallower_wears_as_one_that_is_alone() {
+    for grading in [-0.3, 0.0, 0.5] {
+        let alone = run(&scene(PARABOLOID, grading, "indentation = \"0.7 um\"\ncycles = 300", TIGHT));
+        let first = "cycles = 300\n[[loading.blocks]]\ncycles = 400\nindentation_factor = 0.7\n[[loading.blocks]]\ncycles = 1";
+        let first = run(&scene(PARABOLOID, grading, &format!("indentation = \"1 um\"\n{first}"), TIGHT));
+        let pairs = [
+            [first.last().wear_volume, alone.last().wear_volume],
+            [first.last().normal_force, alone.last().normal_force],
+            [first.last().contact_radius, alone.last().contact_radius],
+        ];
+        let off = pairs.map(|[one, other]| one / other - 1.0);
+        println!("k = {grading}: {off:?}");
+        assert!(off.iter().all(|it| it.abs() < 2e-4), "k = {grading}: {off:?}");
+    }
+}
+
+/// The second block wears as a contact of its own, with the worn profile as its indenter: a table, whose first contact is found in another way.
+#[test]
+fn a_block_wears_as_a_contact_whose_indenter_the_one_before_has_worn() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("worn.csv");
+    for grading in [-0.3, 0.0, 0.5] {
+        for depth in [0.6, 0.9] {
+            let until = |tau: f64| {
+                let loading = blocks(&[[1.0, 1.0, 1.0], [1.0, 1.0, depth]], &format!("tau = {tau}"));
+                run(&scene(PARABOLOID, grading, &loading, &format!("{TIGHT}springs = 60")))
+            };
+            let [first, both] = [until(1.0), until(2.0)];
+            let (radius, worn) = (first.radius(), &first.last().wear_depth);
+            let heights: Vec<f64> =
+                radius.iter().zip(worn).map(|(r, worn)| r * r / (2.0 * RADIUS) + worn).collect();
+            let [near, next] = [0, 1].map(|i| radius[i] * radius[i]);
+            let tip = heights[0] - (heights[1] - heights[0]) * near / (next - near);
+            let mut rows = "0,0\n".to_owned();
+            for (r, height) in radius.iter().zip(&heights) {
+                let _ = writeln!(rows, "{r:e},{:e}", height - tip);
+            }
+            // The table goes on unworn to beyond where the block comes.
+            for i in 1..60 {
+                let r = radius[radius.len() - 1] * 1.02_f64.powi(i);
+                let _ = writeln!(rows, "{r:e},{:e}", r * r / (2.0 * RADIUS) - tip);
+            }
+            std::fs::write(&file, rows).unwrap();
+            let indenter = format!("[indenter.table]\nfile = {file:?}\nsmoothing = 0");
+            let loading =
+                format!("indentation = {:e}\ncycles = {:e}", depth * 1e-6 - tip, first.last().cycles);
+            let alone = run(&scene(&indenter, grading, &loading, ""));
+            let volume = both.last().wear_volume - first.last().wear_volume;
+            let off = [
+                volume / alone.last().wear_volume,
+                both.last().contact_radius / alone.last().contact_radius,
+                both.last().normal_force / alone.last().normal_force,
+            ]
+            .map(|ratio| ratio - 1.0);
+            println!("k = {grading}, d = {depth}: {off:?}");
+            assert!(off.iter().all(|it| it.abs() < 2e-4), "k = {grading}, d = {depth}: {off:?}");
+        }
+    }
+}
+
+/// Blocks that recur, of other amplitudes as well, and a pause: what the profile has lost is what energy wears, and four times the springs come to the same.
+#[test]
+fn blocks_that_recur_wear_what_their_energy_does() {
+    for grading in [-0.3, 0.0, 0.5] {
+        for (name, sequence) in [
+            ("two depths", vec![[1.0, 1.0, 1.0], [1.0, 1.0, 0.6]]),
+            ("deeper later", vec![[1.0, 1.0, 0.7], [1.0, 1.0, 1.0]]),
+            ("amplitudes too", vec![[0.5, 1.0, 1.0], [0.5, 1.2, 0.6], [0.5, 1.0, 0.8]]),
+            ("a pause", vec![[0.3, 1.0, 1.0], [0.3, 0.0, 0.6], [0.3, 1.0, 0.6]]),
+        ] {
+            let on = |springs: usize| {
+                let loading = blocks(&sequence, "tau = 6\nrepeat = true");
+                run(&scene(PARABOLOID, grading, &loading, &format!("{TIGHT}springs = {springs}")))
+            };
+            let [coarse, fine] = [on(24), on(96)];
+            let springs = coarse.last().wear_volume / fine.last().wear_volume - 1.0;
+            let energies = fine.snapshots().iter().map(|it| {
+                (it.wear_volume - PER_ENERGY * it.dissipated_energy).abs() / fine.last().wear_volume
+            });
+            let energy = energies.fold(0.0, f64::max);
+            println!("k = {grading}, {name}: by springs {springs:.1e}, by energy {energy:.1e}");
+            assert!(springs.abs() < 4e-4 && energy < 5e-5, "k = {grading}, {name}: {springs:e}, {energy:e}");
+        }
+    }
+}
+
+/// A block that does not touch what was worn deeper before wears nothing; and the next that does goes on.
+#[test]
+fn a_block_that_does_not_touch_wears_nothing() {
+    let sequence = [[60.0, 1.0, 1.0], [1.0, 1.0, 0.4], [1.0, 1.0, 1.1]];
+    let until = |tau: f64| {
+        let loading = blocks(&sequence, &format!("tau = {tau}"));
+        run(&scene(PARABOLOID, 0.0, &loading, "springs = 32")).last().wear_volume
+    };
+    let [before, after, on] = [60.0, 61.0, 62.0].map(until);
+    println!("{before:e} {after:e} {on:e}");
+    assert!((after / before - 1.0).abs() < 1e-6 && on > 1.02 * before, "{before:e} {after:e} {on:e}");
+}
+
+#[test]
+fn blocks_in_gross_slip_that_are_interrupted_go_on_as_if_they_had_not_been() {
+    let folder = tempfile::tempdir().unwrap();
+    let loading = blocks(&[[0.5, 1.0, 0.8], [0.5, 1.0, 1.0], [0.5, 1.0, 0.6]], "tau = 5\nrepeat = true");
+    let scene = scene(PARABOLOID, 0.0, &loading, "springs = 24");
+    let (run, [whole, parts], interruptions) = support::resume::whole_and_in_parts(&scene, folder.path(), 5);
+    println!("{interruptions} interruptions, {} steps", run.checkpoint().progress.steps);
+    assert!(run.checkpoint().state.ground.is_some());
+    assert!(interruptions >= 10 && whole == parts);
+}
