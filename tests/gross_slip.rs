@@ -670,7 +670,7 @@ fn wear_within_a_ring_of_springs_goes_on_as_the_ring_comes_to_stick() {
         assert!(hollow[0] < 0.1 * most && *hollow.last().unwrap() < 0.5 * most);
         let rates = |over: f64| {
             let compression: Vec<f64> = hollow.iter().map(|q| q * over * loading.amplitude / most).collect();
-            model.gross_rates(gross, &loading, &compression).unwrap()
+            model.gross_rates(gross, &loading, &model.surroundings(None), &compression).unwrap()
         };
         let [slides, sticks] = [rates(1.0 - 1e-9), rates(1.0 + 1e-9)];
         let size = slides.compression.iter().fold(0.0, |most: f64, it| most.max(it.abs()));

@@ -17,7 +17,7 @@ use fretwear::data::{
     RunWriter, Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
 };
 use fretwear::laws::motion::RecordedPath;
-use fretwear::solver::model::{Linearised, Past, PastPoint, State, StickEdge};
+use fretwear::solver::model::{Linearised, Past, PastPoint, State, StickEdge, WornGround};
 use fretwear::solver::simulation::Progress;
 use hdf5::types::VarLenUnicode;
 use support::command::names;
@@ -121,6 +121,11 @@ fn checkpoint() -> Checkpoint {
                 slip_compression: 1e-7 / 3.0,
                 rates: [1e-300, -1e-17 / 3.0, 5e-324],
             }),
+            ground: Some(Arc::new(WornGround {
+                lift: 1e-7 / 3.0,
+                squared: vec![0.0, 0.1 / 3.0, 0.4],
+                worn: vec![1e-8 / 3.0, 5e-324, 0.0],
+            })),
             past: Past {
                 order: 3,
                 points: (0..4).map(past_point).collect(),

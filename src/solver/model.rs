@@ -44,7 +44,7 @@ use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
 pub use construction::{FEWEST_SPRINGS, MOST_IN_GROSS_SLIP};
 pub use cycle::CycleFields;
-pub use gross::{Gross, GrossRates, WornGround};
+pub use gross::{Gross, GrossRates, Surroundings, WornGround};
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
 use meter::Meter;

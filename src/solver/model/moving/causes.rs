@@ -98,7 +98,9 @@ impl MovingStick {
             if level && jumps && !changes && !conditions.repeat {
                 return Ok(Some(Self { outwards: shrink, jumps: true, ..by }));
             }
-            return Ok((!schedule.lifts() && rests_on_worn_ground(schedule, contact)).then_some(turning));
+            // Beside friction that changes an edge that is followed finds no step on from where the indenter is lifted.
+            let follows = level || !changes && !schedule.lifts();
+            return Ok((follows && rests_on_worn_ground(schedule, contact)).then_some(turning));
         }
         Ok(changes.then_some(Self { outwards: rises, ..by }))
     }
