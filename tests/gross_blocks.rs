@@ -147,6 +147,26 @@ fn blocks_that_recur_wear_what_their_energy_does() {
     }
 }
 
+/// An oscillation, normal or along an orbit, that is small changes little, though its periods are resolved: less than the oscillation itself.
+#[test]
+fn small_oscillations_beside_blocks_change_little() {
+    let normal =
+        "[loading.normal_oscillation]\namplitude_ratio = 0.01\nfrequency_ratio = 1\nphase = \"90 deg\"";
+    let orbit = "[loading.orbit]\ntransverse_ratio = 0.15\nphase = \"90 deg\"";
+    for grading in [-0.3, 0.0, 0.5] {
+        let volume = |mode: &str| {
+            let loading = blocks(&[[1.0, 1.0, 1.0], [1.0, 1.0, 0.7]], "tau = 3\nrepeat = true");
+            run(&scene(PARABOLOID, grading, &format!("{loading}{mode}"), "")).last().wear_volume
+        };
+        let plain = volume("");
+        for (mode, within) in [(normal, 5e-3), (orbit, 2e-2)] {
+            let off = volume(mode) / plain - 1.0;
+            println!("k = {grading}, {mode}: {off:.1e}");
+            assert!(off.abs() < within, "k = {grading}, {mode}: {off:e}");
+        }
+    }
+}
+
 /// A block that does not touch what was worn deeper before wears nothing; and the next that does goes on.
 #[test]
 fn a_block_that_does_not_touch_wears_nothing() {

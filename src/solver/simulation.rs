@@ -179,7 +179,7 @@ impl Simulation {
         for loading in model.schedule().first_cycles() {
             let (state, fields) = match model.gross() {
                 Some(gross) if model.follows_blocks() => {
-                    let state = model.lifted_to(gross, state.clone(), loading.lift)?;
+                    let state = model.lifted_to(gross, state.clone(), loading.least_lift())?;
                     let fields = model.fields(&state);
                     (Cow::Owned(state), Cow::Owned(fields))
                 }

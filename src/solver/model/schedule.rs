@@ -118,6 +118,20 @@ impl CycleLoading {
         lifts.min_by(f64::total_cmp).unwrap_or(self.lift)
     }
 
+    /// Lifts the indenter by so much more throughout, m.
+    pub fn lift_by(&mut self, lift: f64) {
+        if lift == 0.0 {
+            return;
+        }
+        match self.path.as_mut().map(Arc::make_mut) {
+            Some(path) => path.points.iter_mut().for_each(|point| point.lift += lift),
+            None => self.lift += lift,
+        }
+        if let Some(steps) = &mut self.steps {
+            Arc::make_mut(steps).lift(lift);
+        }
+    }
+
     /// The same to and fro by an amplitude of the contact, m, that a balance of forces has decided.
     pub fn displaced(self, amplitude: f64) -> Self {
         let factor = amplitude / self.amplitude;
@@ -262,14 +276,7 @@ impl Schedule {
         }
         let largest_indentation = depths.iter().fold(0.0, |largest: f64, depth| largest.max(*depth));
         for (loading, depth) in loadings.iter_mut().zip(&depths) {
-            let lift = largest_indentation - depth;
-            match loading.path.as_mut().map(Arc::make_mut) {
-                Some(path) => path.points.iter_mut().for_each(|point| point.lift += lift),
-                None => loading.lift = lift,
-            }
-            if let Some(steps) = loading.steps.as_mut().filter(|_| lift != 0.0) {
-                Arc::make_mut(steps).lift(lift);
-            }
+            loading.lift_by(largest_indentation - depth);
         }
         let friction_along_energy = conditions.friction.along_energy();
         let conditions = conditions.clone();
@@ -548,7 +555,7 @@ impl Schedule {
 
     /// Whether blocks differ by their indentation.
     pub fn lifts_blocks(&self) -> bool {
-        self.loadings.iter().any(|loading| loading.lift > 0.0)
+        self.changes_between_blocks() && self.loadings.iter().any(|loading| loading.least_lift() > 0.0)
     }
 
     /// Whether the indenter is lifted within a period, so that springs lose contact.

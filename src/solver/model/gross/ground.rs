@@ -112,9 +112,7 @@ impl Model {
     /// Whether the mesh of gross slip ends at the contact edge of the block under way, where blocks press to different indentations.
     pub fn follows_blocks(&self) -> bool {
         let held = self.gross().is_some_and(|gross| !gross.holds_force());
-        held && self.schedule.lifts_blocks()
-            && !self.schedule.resolves()
-            && self.schedule.averages_from() > 0.0
+        held && self.schedule.lifts_blocks() && self.schedule.averages_from() > 0.0
     }
 
     /// What surrounds the contact, on ground that blocks before have worn.
@@ -134,7 +132,10 @@ impl Model {
     ) -> CycleLoading {
         match ground {
             None => loading,
-            Some(ground) => loading.each(|it| CycleLoading { lift: it.lift - ground.lift, ..it }),
+            Some(ground) => loading.each(|mut it| {
+                it.lift_by(-ground.lift);
+                it
+            }),
         }
     }
 
@@ -146,7 +147,7 @@ impl Model {
         if !self.follows_blocks() {
             return Ok(state);
         }
-        let lift = self.schedule.loading(state.cycles, state.cycles).lift;
+        let lift = self.schedule.loading(state.cycles, state.cycles).least_lift();
         self.lifted_to(gross, state, lift)
     }
 
