@@ -98,7 +98,7 @@ impl MovingStick {
             if level && jumps && !changes && !conditions.repeat {
                 return Ok(Some(Self { outwards: shrink, jumps: true, ..by }));
             }
-            // Beside friction that changes an edge that is followed finds no step on from where the indenter is lifted.
+            // Beside friction that changes an edge that is followed finds no step on from some time on, on many springs, where a block lifts the indenter.
             let follows = level || !changes && !schedule.lifts();
             return Ok((follows && rests_on_worn_ground(schedule, contact)).then_some(turning));
         }

@@ -35,7 +35,8 @@ impl Schedule {
     pub fn rests_or_goes_on(&self, cycles: f64) -> bool {
         let now = self.loading(cycles, cycles);
         let same = |last: CycleLoading| {
-            let [last, now] = [&last, &now].map(|it| [it.asked(), it.friction.reference_coefficient()]);
+            let [last, now] =
+                [&last, &now].map(|it| [it.asked(), it.lift, it.friction.reference_coefficient()]);
             last == now
         };
         now.is_pause() || self.slip_before(cycles).is_none_or(same)
