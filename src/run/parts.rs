@@ -313,11 +313,7 @@ impl Reach {
             let before = coarse.state().ground.iter().flat_map(|it| &it.worn);
             let depths = coarse.fields().wear_depth.iter().chain(before).copied();
             Ok(Ok(Self {
-                radius: coarse
-                    .model()
-                    .worn_area(coarse.state())
-                    .sqrt()
-                    .max(coarse.model().contact_radius(coarse.state())),
+                radius: coarse.model().worn_radius(coarse.state()),
                 sticks_again: sticks_again.get(),
                 worn: depths.fold(0.0, f64::max) / contact.indentation(),
             }))

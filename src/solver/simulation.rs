@@ -172,19 +172,12 @@ impl Simulation {
     pub fn new(model: Model, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Result<Self> {
         stepper::check_model(&*stepper, &model)?;
         let state = model.initial_state()?;
-        let fields = model.fields(&state);
         let mut first_rate = 0.0_f64;
         let mut growth = 0.0_f64;
         let mut finite = true;
         for loading in model.schedule().first_cycles() {
-            let (state, fields) = match model.gross() {
-                Some(gross) if model.follows_blocks() => {
-                    let state = model.lifted_to(gross, state.clone(), loading.least_lift())?;
-                    let fields = model.fields(&state);
-                    (Cow::Owned(state), Cow::Owned(fields))
-                }
-                _ => (Cow::Borrowed(&state), Cow::Borrowed(&fields)),
-            };
+            let state = model.at_indentation_of(&loading, &state)?;
+            let fields = model.fields(&state);
             let cycle = model.cycle_in_block(&model.loading_in(&state, loading), &state.compression, &fields);
             first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
             growth = growth.max(largest(&cycle.growth));

@@ -20,6 +20,7 @@ mod hand_over;
 use std::f64::consts::PI;
 
 use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
+use ground::pressed_on;
 pub use ground::{Surroundings, WornGround};
 use hand_over::BEGINS_BELOW;
 
@@ -221,16 +222,9 @@ fn unworn(contact: &InitialContact, mesh: &WholeContact) -> (f64, Vec<f64>) {
             mesh.distances().map(|distance| -profile.rise(edge, -edge * edge * distance)).collect(),
         );
     }
-    let (indenter, depth) = (contact.indenter(), contact.indentation());
-    let height = |radius: f64, fraction: f64| depth - indenter.profile(radius * fraction.sqrt());
-    let on = |radius: f64| {
-        let mut compression: Vec<f64> =
-            mesh.fractions()[..mesh.inner()].iter().map(|fraction| height(radius, *fraction)).collect();
-        mesh.solve_profile(&mut compression);
-        compression
-    };
-    let radius = next_to(|radius| mesh.profile_at_edge(&on(radius)) - height(radius, 1.0), edge);
-    (radius, on(radius))
+    let height = |radius: f64| contact.indentation() - contact.indenter().profile(radius);
+    let radius = next_to(|radius| pressed_on(mesh, radius, height).1, edge);
+    (radius, pressed_on(mesh, radius, height).0)
 }
 
 impl Model {

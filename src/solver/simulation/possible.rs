@@ -28,7 +28,7 @@ const SHRINKS: f64 = 1e-2;
 impl Simulation {
     /// Whether a contact in gross slip has not become smaller. The equations on a mesh have another solution, in which the edge recedes and pressure in front of it
     /// grows, and implicit steps that are too long to resolve how it grows may come to it. Below `k = 0`, where the first contact and one that is handed over are none of the polynomials,
-    /// the edge settles by 1e-6 to 1e-4, and is not looked at.
+    /// the edge settles by 1e-6 to 1e-4, and is not looked at; nor is it on worn ground, which has kinks.
     pub(super) fn has_not_shrunk(&self, gross: &Gross, state: &State) -> bool {
         let now = &self.state;
         let settles = self.model.contact().half_space().grading() < 0.0 || now.ground.is_some();

@@ -151,6 +151,23 @@ impl Model {
         self.lifted_to(gross, state, lift)
     }
 
+    /// A state at the indentation of a loading, where the mesh ends at the contact edge of each block.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where no contact edge is found.
+    pub(in crate::solver) fn at_indentation_of(
+        &self,
+        loading: &CycleLoading,
+        state: &State,
+    ) -> Result<State> {
+        match self.gross() {
+            Some(gross) if self.follows_blocks() => {
+                self.lifted_to(gross, state.clone(), loading.least_lift())
+            }
+            _ => Ok(state.clone()),
+        }
+    }
+
     /// The same contact with the indenter lifted by so much, m, from its largest indentation of the run.
     ///
     /// # Errors
@@ -225,28 +242,31 @@ impl Model {
         PI * places.windows(2).map(part).sum::<f64>()
     }
 
-    /// Squared radius up to which ground is worn in gross slip, m².
-    pub fn worn_area(&self, state: &State) -> f64 {
+    /// Radius up to which ground is worn, m.
+    pub fn worn_radius(&self, state: &State) -> f64 {
         let before = state.ground.as_ref().and_then(|it| it.squared.last().copied());
-        state.slip_area.max(before.unwrap_or_default())
+        self.contact_radius(state).max(before.unwrap_or_default().sqrt())
     }
 }
 
+/// Compressions, m, at the inner nodes with which the surface of a contact of a radius, m, has a height, m, by the radius; and what it is too high by at the edge, where they are zero.
+pub(super) fn pressed_on(mesh: &WholeContact, radius: f64, height: impl Fn(f64) -> f64) -> (Vec<f64>, f64) {
+    let at = |fraction: &f64| height(radius * fraction.sqrt());
+    let mut compression: Vec<f64> = mesh.fractions()[..mesh.inner()].iter().map(at).collect();
+    mesh.solve_profile(&mut compression);
+    let mismatch = mesh.profile_at_edge(&compression) - at(&1.0);
+    (compression, mismatch)
+}
+
 /// Squared contact radius, m², and compressions, m, on the ground around, with an edge near a guess, m; none where it has none.
-pub(super) fn fitted(mesh: &WholeContact, around: &Surroundings, guess: f64) -> Option<(f64, Vec<f64>)> {
-    let height = |radius: f64, fraction: f64| around.indentation - around.profile(radius * fraction.sqrt());
-    let on = |radius: f64| {
-        let mut compression: Vec<f64> =
-            mesh.fractions()[..mesh.inner()].iter().map(|fraction| height(radius, *fraction)).collect();
-        mesh.solve_profile(&mut compression);
-        compression
-    };
-    let mismatch = |radius: f64| mesh.profile_at_edge(&on(radius)) - height(radius, 1.0);
+fn fitted(mesh: &WholeContact, around: &Surroundings, guess: f64) -> Option<(f64, Vec<f64>)> {
+    let height = |radius: f64| around.indentation - around.profile(radius);
+    let mismatch = |radius: f64| pressed_on(mesh, radius, height).1;
     let sign = mismatch(guess).signum();
     // The nearest change of sign to either side.
     let change =
         (1..=TRIES).flat_map(|i| [i, -i]).find(|i| mismatch(guess * SEARCH.powi(*i)).signum() != sign)?;
     let ends = [change, change - change.signum()].map(|i| guess * SEARCH.powi(i));
     let radius = bracketed(mismatch, ends[0].min(ends[1]), ends[0].max(ends[1]), 0.0).ok()?;
-    Some((radius * radius, on(radius)))
+    Some((radius * radius, pressed_on(mesh, radius, height).0))
 }
