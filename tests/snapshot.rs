@@ -121,11 +121,11 @@ fn checkpoint() -> Checkpoint {
                 slip_compression: 1e-7 / 3.0,
                 rates: [1e-300, -1e-17 / 3.0, 5e-324],
             }),
-            ground: Some(Arc::new(WornGround {
-                lift: 1e-7 / 3.0,
-                squared: vec![0.0, 0.1 / 3.0, 0.4],
-                worn: vec![1e-8 / 3.0, 5e-324, 0.0],
-            })),
+            ground: Some(Arc::new(WornGround::new(
+                1e-7 / 3.0,
+                vec![0.0, 0.1 / 3.0, 0.4],
+                &[1e-8 / 3.0, 5e-324, 0.0],
+            ))),
             past: Past {
                 order: 3,
                 points: (0..4).map(past_point).collect(),

@@ -250,9 +250,10 @@ fn put_checkpoint(checkpoint: &Checkpoint) -> Dataset {
 
 fn put_ground(ground: &WornGround) -> Dataset {
     let mut stored = Dataset::default();
-    stored.coordinate(WORN_PLACE, ground.squared.clone());
-    let place = (WORN_PLACE.name, ground.squared.len());
-    stored.add(Variable::new(WORN_BEFORE, &[place], ground.worn.clone()));
+    let (squared, worn): (Vec<f64>, Vec<f64>) = ground.places().unzip();
+    let place = (WORN_PLACE.name, squared.len());
+    stored.coordinate(WORN_PLACE, squared);
+    stored.add(Variable::new(WORN_BEFORE, &[place], worn));
     stored.scalar(LIFT, ground.lift);
     stored
 }
@@ -433,11 +434,8 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
 
 fn ground(mut stored: Dataset) -> Result<WornGround> {
     let squared: Vec<f64> = stored.take(WORN_PLACE, &[None])?;
-    Ok(WornGround {
-        lift: stored.take_scalar(LIFT)?,
-        worn: stored.take(WORN_BEFORE, &[Some(squared.len())])?,
-        squared,
-    })
+    let worn: Vec<f64> = stored.take(WORN_BEFORE, &[Some(squared.len())])?;
+    Ok(WornGround::new(stored.take_scalar(LIFT)?, squared, &worn))
 }
 
 fn stick(mut stored: Dataset) -> Result<StickEdge> {

@@ -310,8 +310,8 @@ impl Reach {
             if outcome? == Outcome::Interrupted {
                 return Ok(Err(coarse.reaches_too_slowly()));
             }
-            let before = coarse.state().ground.iter().flat_map(|it| &it.worn);
-            let depths = coarse.fields().wear_depth.iter().chain(before).copied();
+            let before = coarse.state().ground.iter().flat_map(|it| it.places()).map(|(_, worn)| worn);
+            let depths = coarse.fields().wear_depth.iter().copied().chain(before);
             Ok(Ok(Self {
                 radius: coarse.model().worn_radius(coarse.state()),
                 sticks_again: sticks_again.get(),

@@ -172,14 +172,15 @@ impl Simulation {
     pub fn new(model: Model, stepper: Box<dyn Stepper + Send>, tolerance: f64, plan: Plan) -> Result<Self> {
         stepper::check_model(&*stepper, &model)?;
         let state = model.initial_state()?;
+        let fields = model.fields(&state);
         let mut first_rate = 0.0_f64;
         let mut growth = 0.0_f64;
         let mut finite = true;
         for loading in model.schedule().first_cycles() {
-            let state = model.at_indentation_of(&loading, &state)?;
-            let fields = model.fields(&state);
-            let cycle = model.cycle_in_block(&model.loading_in(&state, loading), &state.compression, &fields);
-            first_rate = first_rate.max(rate_of_wear(&model, &fields, &cycle));
+            let other = model.at_indentation_of(&loading, &state)?.map(|state| (model.fields(&state), state));
+            let (fields, state) = other.as_ref().map_or((&fields, &state), |(fields, state)| (fields, state));
+            let cycle = model.cycle_in_block(&model.loading_in(state, loading), &state.compression, fields);
+            first_rate = first_rate.max(rate_of_wear(&model, fields, &cycle));
             growth = growth.max(largest(&cycle.growth));
             finite &= cycle.volume.is_finite() && cycle.growth.iter().all(|it| it.is_finite());
         }
@@ -461,9 +462,8 @@ impl Simulation {
                 let limit = WORN_OUT * self.model.contact().slip_compression();
                 let worn_out =
                     self.state.compression.iter().all(|q| q.abs() <= limit) || self.wears_no_more();
-                spent
-                    .then_some(Outcome::Rate)
-                    .or((worn_out && (shown || !self.model.follows_blocks())).then_some(Outcome::WornOut))
+                let worn_out = worn_out && (shown || !self.model.follows_blocks());
+                spent.then_some(Outcome::Rate).or(worn_out.then_some(Outcome::WornOut))
             }
         }
     }

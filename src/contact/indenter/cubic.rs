@@ -41,7 +41,7 @@ impl Cubic {
     }
 
     /// Knots, increasing from 0.
-    pub(super) fn knots(&self) -> &[f64] {
+    pub(crate) fn knots(&self) -> &[f64] {
         &self.knots
     }
 
@@ -51,7 +51,7 @@ impl Cubic {
     }
 
     /// Value at a knot.
-    pub(super) fn at_knot(&self, index: usize) -> f64 {
+    pub(crate) fn at_knot(&self, index: usize) -> f64 {
         self.pieces[index][0]
     }
 

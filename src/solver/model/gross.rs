@@ -255,7 +255,7 @@ impl Model {
             least_stick_radius: f64::INFINITY,
             ..State::default()
         };
-        self.in_block_of(gross, first)
+        self.in_block_of(first)
     }
 
     /// Everything that follows from the compressions; none where no contact has them.
@@ -344,6 +344,14 @@ impl Model {
         })
     }
 
+    /// The same of a state.
+    ///
+    /// # Errors
+    /// As [`Model::gross_area`].
+    pub fn gross_area_in(&self, gross: &Gross, state: &State) -> Result<f64> {
+        self.gross_area(gross, &self.surroundings(state.ground.as_deref()), &state.compression)
+    }
+
     /// Wear depth at all nodes, m.
     fn gross_depth(&self, gross: &Gross, whole: &Whole) -> Vec<f64> {
         let unworn = |fraction: &f64| self.contact.indenter().profile((whole.area * fraction).sqrt());
@@ -352,7 +360,7 @@ impl Model {
     }
 
     pub(super) fn gross_fields(&self, gross: &Gross, state: &State) -> Fields {
-        let around = self.surroundings(state.ground.as_ref());
+        let around = self.surroundings(state.ground.as_deref());
         let Some(whole) = self.whole(gross, &around, &state.compression) else { return Fields::default() };
         Fields {
             stick_zone: StickZone {
@@ -376,7 +384,7 @@ impl Model {
         compression: &[f64],
         fields: &Fields,
     ) -> CycleFields {
-        let around = self.surroundings(fields.ground.as_ref());
+        let around = self.surroundings(fields.ground.as_deref());
         self.whole(gross, &around, compression)
             .map_or_else(CycleFields::default, |whole| self.gross_wear(gross, loading, compression, &whole).1)
     }
@@ -386,7 +394,7 @@ impl Model {
         if fraction < 1.0 {
             gross.mesh.value(&fields.wear_depth, gross.mesh.coordinate(fraction))
         } else {
-            self.surroundings(fields.ground.as_ref()).worn(squared)
+            self.surroundings(fields.ground.as_deref()).worn(squared)
         }
     }
 
@@ -399,7 +407,7 @@ impl Model {
     }
 
     pub(super) fn gross_indentation(&self, gross: &Gross, state: &State) -> f64 {
-        let around = self.surroundings(state.ground.as_ref());
+        let around = self.surroundings(state.ground.as_deref());
         self.whole(gross, &around, &state.compression).map_or(f64::NAN, |whole| whole.indentation)
     }
 
@@ -445,7 +453,7 @@ impl Model {
     pub(super) fn gross_radial_fields(&self, gross: &Gross, state: &State) -> RadialFields {
         let offsets = self.output.offsets();
         let [mut wear_depth, mut pressure, mut slip] = [(); 3].map(|()| vec![0.0; offsets.len()]);
-        let around = self.surroundings(state.ground.as_ref());
+        let around = self.surroundings(state.ground.as_deref());
         if let Some(whole) = self.whole(gross, &around, &state.compression) {
             let mesh = &gross.mesh;
             let loading = self.loading_in(state, self.schedule.loading_in_block(state.cycles, state.cycles));

@@ -486,7 +486,7 @@ impl Model {
     /// What acts in a state. Under a balance of forces the amplitude is that at which springs at the edge of stick begin to slip.
     pub fn loading_in(&self, state: &State, loading: CycleLoading) -> CycleLoading {
         let loading = self.after_energy(self.held_at_rest(state, loading), state.dissipated_energy);
-        let loading = self.on_ground(state.ground.as_deref(), loading);
+        let loading = loading.on_ground(state.ground.as_deref());
         if loading.is_pause() {
             return loading;
         }

@@ -42,11 +42,9 @@ impl Model {
         }
         let (schedule, now) = (&self.schedule, state.cycles);
         // All blocks on one mesh: that at the largest indentation.
-        let deepest = match self.gross() {
-            Some(gross) => self.lifted_to(gross, state.clone(), 0.0).ok()?,
-            None => state.clone(),
-        };
-        let (state, fields) = (&deepest, self.fields(&deepest));
+        let deepest = self.lifted_to(0.0, state).ok()?;
+        let state = deepest.as_ref().unwrap_or(state);
+        let fields = self.fields(state);
         // In gross slip growth is over the indentation.
         let scale = |i: usize| fields.slip_depth.get(i).copied().unwrap_or(self.contact.indentation());
         let durations: Vec<f64> = schedule.durations().collect();

@@ -4,6 +4,7 @@ mod pauses;
 
 use std::sync::{Arc, OnceLock};
 
+use super::WornGround;
 use super::first_force::first_force;
 use crate::contact::InitialContact;
 use crate::contact::spring::{Response, Steps, stick_compression};
@@ -130,6 +131,15 @@ impl CycleLoading {
         if let Some(steps) = &mut self.steps {
             Arc::make_mut(steps).lift(lift);
         }
+    }
+
+    /// The same, seen from the indentation of the block under way in gross slip.
+    pub fn on_ground(self, ground: Option<&WornGround>) -> Self {
+        let Some(ground) = ground else { return self };
+        self.each(|mut it| {
+            it.lift_by(-ground.lift);
+            it
+        })
     }
 
     /// The same to and fro by an amplitude of the contact, m, that a balance of forces has decided.

@@ -37,12 +37,7 @@ impl Simulation {
         let most = SHRINKS * error / largest_magnitude(&state.compression);
         let keeps = |area: f64| 1.0 - state.slip_area / area <= most;
         // Where a first contact is none of them either, as at a sharp tip, a first step of any length brings it to where they have its edge.
-        settles
-            || keeps(now.slip_area)
-            || self
-                .model
-                .gross_area(gross, &self.model.surroundings(now.ground.as_ref()), &now.compression)
-                .is_ok_and(keeps)
+        settles || keeps(now.slip_area) || self.model.gross_area_in(gross, now).is_ok_and(keeps)
     }
 
     /// Whether compressions fall to zero at the contact edge. Where the ground wears there as well, the equations have another root: the edge stays or recedes, and

@@ -185,7 +185,7 @@ impl Stepper for GrossBdf {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let gross = mesh(model)?;
         // What no smaller step can cure.
-        model.gross_area(gross, &model.surroundings(state.ground.as_ref()), &state.compression)?;
+        model.gross_area_in(gross, state)?;
         let mut evaluations = 0;
         let trial = self.try_step(model, gross, state, cycles, &mut evaluations);
         Ok(trial.unwrap_or_else(|| Trial::failed(evaluations)))
@@ -211,8 +211,7 @@ impl Stepper for GrossBdf {
     fn between(&self, model: &Model, state: &State, cycles: f64) -> Option<State> {
         let between =
             state_of(state, TimesBefore::new(model, cycles, &state.past).guess(&state.past), cycles);
-        let slip_area =
-            model.gross_area(model.gross()?, &model.surroundings(None), &between.compression).ok()?;
+        let slip_area = model.gross_area_in(model.gross()?, &between).ok()?;
         Some(State { slip_area, ..between })
     }
 }
@@ -347,7 +346,7 @@ impl Stepper for GrossSdirk {
     fn step(&mut self, model: &Model, state: &State, cycles: f64) -> Result<Trial> {
         let gross = mesh(model)?;
         // What no smaller step can cure.
-        model.gross_area(gross, &model.surroundings(state.ground.as_ref()), &state.compression)?;
+        model.gross_area_in(gross, state)?;
         let mut evaluations = 1;
         Ok(step(model, gross, state, cycles, self.tolerance, &mut evaluations)
             .unwrap_or_else(|| Trial::failed(evaluations)))
@@ -370,11 +369,10 @@ fn step(
     tolerance: f64,
     evaluations: &mut u64,
 ) -> Option<Trial> {
-    let (start, ground) = (&state.compression, state.ground.as_ref());
+    let (start, ground) = (&state.compression, state.ground.as_deref());
     let around = model.surroundings(ground);
     let loading = |at: f64, energy: f64| {
-        let loading = model.schedule().loading(state.cycles, at);
-        model.after_energy(model.on_ground(ground.map(|it| &**it), loading), energy)
+        model.after_energy(model.schedule().loading(state.cycles, at).on_ground(ground), energy)
     };
     let rates = |at: f64, energy: f64, compression: &[f64], evaluations: &mut u64| {
         *evaluations += 1;

@@ -214,14 +214,15 @@ impl Model {
         let (ratio, nu) = (half_space.stiffness_ratio(), 1.0 - self.mu());
         let coefficient = friction.reference_coefficient();
         let lift = loading.lift;
-        let lifted: Vec<f64> = compression.iter().map(|q| q - lift).collect();
+        let lifted = || compression.iter().map(|q| q - lift);
         let plain = friction.coefficient().is_some() && lift == 0.0;
-        let resisting = |q: &f64| match lift {
+        let resisting = |q: f64| match lift {
             // Springs lose contact by round-off only.
-            0.0 => friction.kinetic_strength(q.abs()).copysign(*q) / coefficient,
-            _ => friction.kinetic_strength(*q) / coefficient,
+            0.0 => friction.kinetic_strength(q.abs()).copysign(q) / coefficient,
+            _ => friction.kinetic_strength(q) / coefficient,
         };
-        let mut borne: Vec<f64> = if plain { lifted.clone() } else { lifted.iter().map(resisting).collect() };
+        let mut borne: Vec<f64> =
+            if plain { compression.to_vec() } else { lifted().map(resisting).collect() };
         let per_depth = coefficient / ratio;
         let force = coefficient * half_space.normal_stiffness() * whole.area.powf(nu);
         // Exactly where slip sets in with a jump, or the edge of stick is to be followed from there on.
@@ -230,6 +231,7 @@ impl Model {
         let (amplitude, stick) = match presses {
             true => {
                 let level = loading.amplitude / per_depth;
+                let lifted: Vec<f64> = lifted().collect();
                 (loading.amplitude, self.pressed_to_stick(gross, loading, &lifted, level, &mut borne))
             }
             false => self.sticking(gross, loading, force, &mut borne),

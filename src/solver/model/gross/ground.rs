@@ -33,17 +33,19 @@ const TRIES: i32 = 150;
 pub struct WornGround {
     /// By how much the block lifts the indenter from its largest indentation of the run, m.
     pub lift: f64,
-    /// Squared radii, m², increasing from zero on the axis to where nothing is worn, shape `(place,)`; empty where nothing is at all.
-    pub squared: Vec<f64>,
-    /// Depth worn there, m, shape `(place,)`.
-    pub worn: Vec<f64>,
+    /// Depth worn by the squared radius; none where nothing is.
+    depth: Option<Cubic>,
 }
 
 impl WornGround {
-    /// Depth worn by the squared radius.
-    fn depth(&self) -> Option<Cubic> {
-        let (squared, worn) = (&self.squared, &self.worn);
-        let last = squared.len().checked_sub(1).filter(|last| *last > 0)?;
+    /// # Arguments
+    /// * `lift` -- by how much the block lifts the indenter from its largest indentation of the run, m
+    /// * `squared` -- squared radii, m², increasing from zero on the axis to where nothing is worn, shape `(place,)`; empty where nothing is at all
+    /// * `worn` -- depth worn there, m, shape `(place,)`
+    pub fn new(lift: f64, squared: Vec<f64>, worn: &[f64]) -> Self {
+        let Some(last) = squared.len().checked_sub(1).filter(|last| *last > 0) else {
+            return Self { lift, depth: None };
+        };
         let rate = |i: usize| (worn[i + 1] - worn[i]) / (squared[i + 1] - squared[i]);
         // Of the parabola through each place and those next to it. Beyond the last nothing is worn.
         let slope = |i: usize| match i {
@@ -54,15 +56,22 @@ impl WornGround {
                 (after * rate(i - 1) + before * rate(i)) / (before + after)
             }
         };
-        Some(Cubic::new(squared.clone(), worn, (0..=last).map(slope).collect()))
+        let slopes = (0..=last).map(slope).collect();
+        Self { lift, depth: Some(Cubic::new(squared, worn, slopes)) }
+    }
+
+    /// Squared radii at which it is known, m², and the depth worn there, m.
+    pub fn places(&self) -> impl Iterator<Item = (f64, f64)> {
+        let curves = self.depth.iter();
+        curves.flat_map(|it| it.knots().iter().enumerate().map(|(i, squared)| (*squared, it.at_knot(i))))
     }
 }
 
 /// What surrounds a contact in gross slip.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct Surroundings<'a> {
     indenter: &'a Indenter,
-    worn: Option<Cubic>,
+    worn: Option<&'a Cubic>,
     /// Indentation of the block under way where it is held, else that of the first contact, m.
     pub(super) indentation: f64,
 }
@@ -70,7 +79,7 @@ pub struct Surroundings<'a> {
 impl Surroundings<'_> {
     /// Depth worn before the block under way at a squared radius, m.
     pub(super) fn worn(&self, squared: f64) -> f64 {
-        self.worn.as_ref().map_or(0.0, |worn| worn.value(squared))
+        self.worn.map_or(0.0, |worn| worn.value(squared))
     }
 
     /// `f(r)`, m.
@@ -80,7 +89,7 @@ impl Surroundings<'_> {
 
     /// `f'(r)`.
     pub(super) fn slope(&self, radius: f64) -> f64 {
-        let worn = self.worn.as_ref().map_or(0.0, |worn| worn.derivative(radius * radius));
+        let worn = self.worn.map_or(0.0, |worn| worn.derivative(radius * radius));
         self.indenter.profile_derivative(radius) + 2.0 * radius * worn
     }
 
@@ -100,7 +109,7 @@ impl Surroundings<'_> {
     pub(super) fn radius_at_height(&self, height: f64) -> f64 {
         // Worn ground is higher than unworn.
         let most = self.indenter.radius_at_height(height);
-        match &self.worn {
+        match self.worn {
             None => most,
             Some(_) if self.profile(most) <= height => most,
             Some(_) => bracketed(|r| self.profile(r) - height, 0.0, most, 0.0).unwrap_or(f64::NAN),
@@ -116,26 +125,11 @@ impl Model {
     }
 
     /// What surrounds the contact, on ground that blocks before have worn.
-    pub fn surroundings(&self, ground: Option<&Arc<WornGround>>) -> Surroundings<'_> {
+    pub fn surroundings<'a>(&'a self, ground: Option<&'a WornGround>) -> Surroundings<'a> {
         Surroundings {
             indenter: self.contact.indenter(),
-            worn: ground.and_then(|it| it.depth()),
+            worn: ground.and_then(|it| it.depth.as_ref()),
             indentation: self.contact.indentation() - ground.map_or(0.0, |it| it.lift),
-        }
-    }
-
-    /// What acts, seen from the indentation of the block under way.
-    pub(in crate::solver) fn on_ground(
-        &self,
-        ground: Option<&WornGround>,
-        loading: CycleLoading,
-    ) -> CycleLoading {
-        match ground {
-            None => loading,
-            Some(ground) => loading.each(|mut it| {
-                it.lift_by(-ground.lift);
-                it
-            }),
         }
     }
 
@@ -143,15 +137,12 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::NotConverged`] where no contact edge is found.
-    pub(in crate::solver) fn in_block_of(&self, gross: &Gross, state: State) -> Result<State> {
-        if !self.follows_blocks() {
-            return Ok(state);
-        }
-        let lift = self.schedule.loading(state.cycles, state.cycles).least_lift();
-        self.lifted_to(gross, state, lift)
+    pub(in crate::solver) fn in_block_of(&self, state: State) -> Result<State> {
+        let loading = self.schedule.loading(state.cycles, state.cycles);
+        Ok(self.at_indentation_of(&loading, &state)?.unwrap_or(state))
     }
 
-    /// A state at the indentation of a loading, where the mesh ends at the contact edge of each block.
+    /// A state at the indentation of a loading, where the mesh ends at the contact edge of each block; none where it serves as it is.
     ///
     /// # Errors
     /// [`Error::NotConverged`] where no contact edge is found.
@@ -159,25 +150,18 @@ impl Model {
         &self,
         loading: &CycleLoading,
         state: &State,
-    ) -> Result<State> {
-        match self.gross() {
-            Some(gross) if self.follows_blocks() => {
-                self.lifted_to(gross, state.clone(), loading.least_lift())
-            }
-            _ => Ok(state.clone()),
-        }
+    ) -> Result<Option<State>> {
+        if self.follows_blocks() { self.lifted_to(loading.least_lift(), state) } else { Ok(None) }
     }
 
-    /// The same contact with the indenter lifted by so much, m, from its largest indentation of the run.
+    /// A contact in gross slip with the indenter lifted by so much, m, from its largest indentation of the run; none where it is so already or touches nothing then, and out of gross slip.
     ///
     /// # Errors
     /// [`Error::NotConverged`] where no contact edge is found.
-    pub(in crate::solver) fn lifted_to(&self, gross: &Gross, state: State, lift: f64) -> Result<State> {
+    pub(in crate::solver) fn lifted_to(&self, lift: f64, state: &State) -> Result<Option<State>> {
         let before = state.ground.as_ref().map_or(0.0, |it| it.lift);
-        if lift == before {
-            return Ok(state);
-        }
-        let ground = Arc::new(WornGround { lift, ..self.ground_left(gross, &state) });
+        let Some(gross) = self.gross().filter(|_| lift != before) else { return Ok(None) };
+        let ground = Arc::new(self.ground_left(gross, state, lift));
         let around = self.surroundings(Some(&ground));
         let mesh = &gross.mesh;
         let place =
@@ -186,10 +170,10 @@ impl Model {
             // Where the block does not touch what was worn deeper, nothing bears.
             true => match place(lift - before) {
                 Some(squared) => Some(squared.sqrt()),
-                None => return Ok(state),
+                None => return Ok(None),
             },
             false => {
-                let reached = ground.squared.last().map_or(0.0, |squared| squared.sqrt());
+                let reached = ground.places().last().map_or(0.0, |(squared, _)| squared.sqrt());
                 let unworn = self.contact.equivalent_profile().radius_at(around.indentation).ok();
                 unworn.map(|radius| radius.max(reached))
             }
@@ -199,40 +183,38 @@ impl Model {
                 what: "contact edge",
                 why: "no contact is found at the indentation of the block that begins (loading.blocks, indentation_factor)".into(),
             })?;
-        Ok(State {
+        Ok(Some(State {
             slip_area,
             compression_rate: vec![0.0; compression.len()],
             compression,
             slip_area_rate: 0.0,
             ground: Some(ground),
             past: Past::default(),
-            ..state
-        })
+            ..state.clone()
+        }))
     }
 
-    /// The ground that a state leaves.
-    fn ground_left(&self, gross: &Gross, state: &State) -> WornGround {
-        let fields = self.gross_fields(gross, state);
-        let mut ground = WornGround::default();
+    /// The ground that a state leaves to a block that lifts the indenter by so much, m.
+    fn ground_left(&self, gross: &Gross, state: &State, lift: f64) -> WornGround {
         if state.cycles == 0.0 {
-            return ground;
+            return WornGround::new(lift, vec![], &[]);
         }
+        let fields = self.gross_fields(gross, state);
         let axis = gross.mesh.value(&fields.wear_depth, gross.mesh.coordinate(0.0));
         let nodes = gross.mesh.fractions().iter().map(|fraction| fraction * state.slip_area);
         let within = std::iter::once((0.0, axis)).chain(nodes.zip(fields.wear_depth.iter().copied()));
-        let before =
-            state.ground.iter().flat_map(|it| it.squared.iter().copied().zip(it.worn.iter().copied()));
+        let before = state.ground.iter().flat_map(|it| it.places());
         let beyond = before.filter(|(squared, _)| *squared > state.slip_area * (1.0 + SAME_PLACE));
-        (ground.squared, ground.worn) =
-            within.chain(beyond).map(|(squared, worn)| (squared, worn.max(0.0))).unzip();
-        ground
+        let places = within.chain(beyond).map(|(squared, worn)| (squared, worn.max(0.0)));
+        let (squared, worn): (Vec<f64>, Vec<f64>) = places.unzip();
+        WornGround::new(lift, squared, &worn)
     }
 
     /// Volume worn outside the contact before the block under way, m³.
     pub(super) fn volume_around(&self, fields: &Fields) -> f64 {
         let Some(ground) = &fields.ground else { return 0.0 };
         let around = self.surroundings(Some(ground));
-        let places = ground.squared.iter().copied().filter(|squared| *squared > fields.slip_area);
+        let places = ground.places().map(|(squared, _)| squared).filter(|it| *it > fields.slip_area);
         let places: Vec<f64> = std::iter::once(fields.slip_area).chain(places).collect();
         // Simpson's rule has cubics exactly.
         let part = |ends: &[f64]| {
@@ -244,8 +226,8 @@ impl Model {
 
     /// Radius up to which ground is worn, m.
     pub fn worn_radius(&self, state: &State) -> f64 {
-        let before = state.ground.as_ref().and_then(|it| it.squared.last().copied());
-        self.contact_radius(state).max(before.unwrap_or_default().sqrt())
+        let before = state.ground.as_ref().and_then(|it| it.places().last());
+        self.contact_radius(state).max(before.map_or(0.0, |(squared, _)| squared.sqrt()))
     }
 }
 

@@ -105,8 +105,8 @@ impl Model {
         if !self.schedule.begins_block(before, state.cycles) {
             return Ok(state);
         }
-        if let Some(gross) = self.gross() {
-            return self.in_block_of(gross, state);
+        if self.gross().is_some() {
+            return self.in_block_of(state);
         }
         state = self.with_resting_area(state);
         let (Some(moving), Some(stick)) = (self.moving(), &state.stick) else { return Ok(state) };
