@@ -32,6 +32,7 @@ mod spreading;
 mod stage;
 mod surface;
 mod whole;
+mod worn_ground;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -44,7 +45,7 @@ use crate::numerics::linear::in_parallel;
 use crate::numerics::roots::{bracketed, next_to};
 pub use construction::{FEWEST_SPRINGS, MOST_IN_GROSS_SLIP};
 pub use cycle::CycleFields;
-pub use gross::{Gross, GrossRates, Surroundings, WornGround};
+pub use gross::{Gross, GrossRates};
 pub use jacobian::StageFactors;
 pub use loops::FrettingLoop;
 use meter::Meter;
@@ -57,6 +58,7 @@ pub use passes::PassSwing;
 pub use past::{Linearised, Past, PastPoint};
 pub use schedule::{AmplitudeControl, CycleLoading, Resolution, Schedule};
 pub use stage::{Target, Unknowns};
+pub use worn_ground::{Surroundings, WornGround};
 
 /// Part of the annulus, next to the edge of stick, whose springs the output of a mesh that [`Clustering::follows_front`] leaves out. Wear proceeds towards the
 /// edge in a front, which is followed well as long as some springs are left before it.

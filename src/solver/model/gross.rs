@@ -21,11 +21,11 @@ use std::f64::consts::PI;
 
 use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
 use ground::pressed_on;
-pub use ground::{Surroundings, WornGround};
 use hand_over::BEGINS_BELOW;
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
 use super::whole::{LEAST_STICK, LEAST_STICK_LATER, carries, is_smooth, slides_on, spares_edge};
+use super::worn_ground::Surroundings;
 use super::{CycleFields, Fields, Model, RadialFields, SpringMesh, State, StickZone};
 use crate::contact::InitialContact;
 use crate::contact::transforms::Transforms;

@@ -4,8 +4,8 @@ mod pauses;
 
 use std::sync::{Arc, OnceLock};
 
-use super::WornGround;
 use super::first_force::first_force;
+use super::worn_ground::WornGround;
 use crate::contact::InitialContact;
 use crate::contact::spring::{Response, Steps, stick_compression};
 use crate::error::Result;
