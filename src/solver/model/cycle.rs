@@ -191,17 +191,20 @@ impl Model {
         })
     }
 
-    /// Slip over slip depth, `μ_f/M`, if the amplitude is that for which the mesh was made and the law is Coulomb's.
+    /// Slip over slip depth, `μ_f/M`, where the mesh begins at the edge of stick and the law is Coulomb's.
     pub(super) fn slip_per_depth(&self, loading: &CycleLoading, fields: &Fields) -> Option<f64> {
         let coefficient = loading.friction.coefficient()?;
-        let ratio = self.contact.half_space().stiffness_ratio();
-        let compression = ratio * loading.amplitude / coefficient;
-        let same = (compression / fields.stick_zone.slip_compression - 1.0).abs() < SAME;
-        (same
-            && loading.path.is_none()
+        self.slips_from_edge(loading, fields)
+            .then(|| coefficient / self.contact.half_space().stiffness_ratio())
+    }
+
+    /// Whether the mesh begins where slip does, in tangential oscillation at the largest indentation.
+    pub(super) fn slips_from_edge(&self, loading: &CycleLoading, fields: &Fields) -> bool {
+        let compression = || loading.slip_compression(self.contact.half_space().stiffness_ratio());
+        loading.path.is_none()
             && loading.lift == 0.0
-            && loading.control == AmplitudeControl::Displacement)
-            .then_some(coefficient / ratio)
+            && loading.control == AmplitudeControl::Displacement
+            && (compression() / fields.stick_zone.slip_compression - 1.0).abs() < SAME
     }
 
     /// `k_w` where wear is in proportion to pressure and slip.

@@ -124,9 +124,15 @@ impl Model {
         let lifted: Vec<f64> = compression.iter().map(|q| q - loading.lift).collect();
         let amplitude = self.amplitude(loading, &lifted, fields);
         let (law, keeps) = (&*loading.friction, self.keeps_slipping(loading));
+        let resistance = self.resistance(loading, &lifted, fields);
         let slip: Vec<(f64, f64)> = lifted
             .iter()
-            .map(|q| {
+            .enumerate()
+            .map(|(j, q)| {
+                if resistance.is_straight(j) {
+                    let slope = -self.slope(|q| resistance.of(j, q), *q) / ratio;
+                    return (amplitude - resistance.of(j, *q) / ratio, slope);
+                }
                 if keeps && 2.0 * ratio * amplitude > law.static_strength(*q) + law.kinetic_strength(*q) {
                     let slope = -law.kinetic_strength_slope(*q) / ratio;
                     return (amplitude - law.kinetic_strength(*q) / ratio, slope);
@@ -134,9 +140,13 @@ impl Model {
                 slip_amplitude_of_spring(law, ratio, amplitude, *q)
             })
             .collect();
-        let energies = |(q, slip): (&f64, &(f64, f64))| -> Energies {
+        let energies = |(j, (q, slip)): (usize, (&f64, &(f64, f64)))| -> Energies {
             if slip.0 == 0.0 {
                 return Energies::default();
+            }
+            if resistance.is_straight(j) {
+                let dissipation = 4.0 * resistance.of(j, *q) * slip.0;
+                return Energies { dissipation, jump_loss: 0.0, work: dissipation };
             }
             let held = loading.friction.static_strength(*q);
             let dragged = loading.friction.kinetic_strength(*q);
@@ -151,6 +161,10 @@ impl Model {
         };
         let inner = compression.len();
         let bearing = self.bearing_in(loading);
+        let borne = |j, q| match bearing.traction.is_some() && resistance.behind().is_some() {
+            true => resistance.of(j, q),
+            false => bearing.of(q, loading.lift),
+        };
         let amplitude_slope = (slopes && loading.control != AmplitudeControl::Displacement)
             .then(|| self.amplitude_slope(loading, &lifted, &slip, fields));
         let rows = if slopes { inner } else { 0 };
@@ -161,12 +175,10 @@ impl Model {
             components: 1,
             ways: vec![],
             paired: false,
-            load: Mat::from_fn(inner, 1, |j, _| bearing.of(compression[j], loading.lift)),
-            energies: lifted.iter().zip(&slip).map(energies).collect(),
+            load: Mat::from_fn(inner, 1, |j, _| borne(j, compression[j])),
+            energies: lifted.iter().zip(&slip).enumerate().map(energies).collect(),
             slip_slope: Mat::from_fn(rows, 1, |j, _| 4.0 * slip[j].1),
-            load_slope: Mat::from_fn(rows, 1, |j, _| {
-                self.slope(|q| bearing.of(q, loading.lift), compression[j])
-            }),
+            load_slope: Mat::from_fn(rows, 1, |j, _| self.slope(|q| borne(j, q), compression[j])),
             follows: vec![],
             amplitude_slope,
             at_rest: AtRest::default(),
@@ -372,7 +384,7 @@ impl Model {
         fields: &Fields,
     ) -> AmplitudeSlope {
         let half_space = self.contact.half_space();
-        let grading = half_space.grading();
+        let resistance = self.resistance(loading, lifted, fields);
         let slips: Vec<f64> = slip.iter().map(|(value, _)| f64::from(u8::from(*value > 0.0))).collect();
         let weights: Vec<f64> = self
             .annulus()
@@ -389,7 +401,7 @@ impl Model {
         let by_amplitude = self.stuck_force(fields, 1.0) + sticking;
         let [by_force, direct] = loading.control.factors();
         let by_compression = (0..lifted.len()).map(|j| {
-            let strength = slips[j] * self.slope(|q| resistance(loading, grading, q), lifted[j]);
+            let strength = slips[j] * self.slope(|q| resistance.of(j, q), lifted[j]);
             -by_force * weights[j] * strength / (by_force * by_amplitude + direct)
         });
         AmplitudeSlope { by_compression: by_compression.collect(), slips: slips.clone() }
@@ -404,11 +416,17 @@ impl Model {
         amplitude: f64,
     ) -> f64 {
         let half_space = self.contact.half_space();
-        let (ratio, grading) = (half_space.stiffness_ratio(), half_space.grading());
+        let resistance = self.resistance(loading, lifted, fields);
+        let sticks = half_space.stiffness_ratio() * amplitude;
+        let bears = |j, q| match resistance.is_straight(j) {
+            true => resistance.of(j, q),
+            false => resistance.of(j, q).min(sticks),
+        };
         let borne: Vec<f64> = lifted
             .iter()
             .zip(&fields.density_factor)
-            .map(|(q, factor)| factor * (ratio * amplitude).min(resistance(loading, grading, *q)))
+            .enumerate()
+            .map(|(j, (q, factor))| factor * bears(j, *q))
             .collect();
         self.stuck_force(fields, amplitude)
             + half_space.normal_stiffness()
@@ -551,19 +569,6 @@ impl PathSprings<'_> {
             }
         }
         Energies { dissipation: cycle.dissipation, jump_loss: cycle.jump_loss, work: cycle.work }
-    }
-}
-
-/// What resists the slip of a spring lifted to a compression, over its normal stiffness, m.
-///
-/// Next to an edge of stick in a medium whose modulus falls with depth, `k < 0`, compressions swing about zero as they do in the balance of normal forces: a
-/// spring that is never lifted resists by the odd function of its compression there, so that swings cancel and the balance of tangential forces has no kink.
-/// Elsewhere a spring that pulls resists nothing.
-pub(super) fn resistance(loading: &CycleLoading, grading: f64, lifted: f64) -> f64 {
-    if loading.lift == 0.0 && grading < 0.0 {
-        loading.friction.kinetic_strength(lifted.abs()).copysign(lifted)
-    } else {
-        loading.friction.kinetic_strength(lifted)
     }
 }
 

@@ -6,7 +6,6 @@ use faer::Mat;
 
 use super::{Cause, MovingStick, StickEdge, held_stick_radius};
 use crate::numerics::grid::lagrange;
-use crate::solver::model::motion::resistance;
 use crate::solver::model::schedule::CycleLoading;
 use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
 
@@ -151,6 +150,13 @@ impl StickStage<'_> {
         let size = trial.residual.len();
         let mut matrix = Mat::zeros(size, size);
         self.fill_by_compressions(at, trial, &mut matrix);
+        // What resists the springs next to the edge follows from that one besides.
+        if let Some(j) = self.model.resistance(&self.loading(at), &at.compression, &trial.fields).behind() {
+            let mut moved = at.clone();
+            moved.compression[j] += DIFFERENCE * trial.stick_zone.slip_compression;
+            let step = moved.compression[j] - at.compression[j];
+            self.fill_by_difference(j, step, &moved, trial, &mut matrix)?;
+        }
         let step = DIFFERENCE * at.slip_area;
         let moved = Unknowns { slip_area: at.slip_area + step, ..at.clone() };
         self.fill_by_difference(n - 1, step, &moved, trial, &mut matrix)?;
@@ -457,11 +463,11 @@ impl StickStage<'_> {
                 let slope = self.extrapolated(|i| (-fields.log_slip[i]).exp() * slopes[i]);
                 matrix[(n, j)] = passed.risen * slope / trial.stick_zone.slip_compression;
             }
-            matrix[(n + 1, j)] = self.balance_by_compression(j, at.compression[j], &loading, trial);
+            matrix[(n + 1, j)] = self.balance_by_compression(j, at, &loading, trial);
             if let Cause::TwoBalances(_) = self.moving.cause
                 && loading.friction.coefficient().is_none()
             {
-                matrix[(n + 2, j)] = self.excess_by_compression(j, at.compression[j], &loading, trial);
+                matrix[(n + 2, j)] = self.excess_by_compression(j, at, &loading, trial);
             }
         }
     }
@@ -477,13 +483,16 @@ impl StickStage<'_> {
     fn excess_by_compression(
         &self,
         spring: usize,
-        q: f64,
+        at: &Unknowns,
         loading: &CycleLoading,
         trial: &StickTrial,
     ) -> f64 {
         let half_space = self.model.contact.half_space();
-        let strength = |q: f64| resistance(loading, half_space.grading(), q);
-        if strength(q) >= half_space.stiffness_ratio() * loading.amplitude {
+        let resistance = self.model.resistance(loading, &at.compression, &trial.fields);
+        let strength = |q: f64| resistance.of(spring, q);
+        let q = at.compression[spring];
+        let sticks = half_space.stiffness_ratio() * loading.amplitude;
+        if strength(q) >= sticks && !resistance.is_straight(spring) {
             return 0.0;
         }
         let step = DIFFERENCE * trial.stick_zone.slip_compression;
@@ -496,7 +505,7 @@ impl StickStage<'_> {
     fn balance_by_compression(
         &self,
         spring: usize,
-        q: f64,
+        at: &Unknowns,
         loading: &CycleLoading,
         trial: &StickTrial,
     ) -> f64 {
@@ -507,7 +516,7 @@ impl StickStage<'_> {
             | Cause::BothForces(force)
             | Cause::ReleasedForces(force)
             | Cause::TwoBalances(force) => weight / force,
-            Cause::Tangential => self.excess_by_compression(spring, q, loading, trial),
+            Cause::Tangential => self.excess_by_compression(spring, at, loading, trial),
         }
     }
 
