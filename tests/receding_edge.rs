@@ -117,3 +117,20 @@ fn falling_friction_is_followed_to_its_limit() {
         assert!(results.accuracy_met() == Some(true) && off.abs() < 1e-4, "{final_factor}, {tau}: {off:e}");
     }
 }
+
+/// Traction that falls with a small power of the load wears springs to zero in a finite time; steps used to get ever smaller from there on, at k = -0.3 from τ = 8 on.
+#[test]
+fn wear_that_is_over_in_a_finite_time_ends_at_the_limit() {
+    for (grading, exponent) in [(-0.3, -0.2), (-0.3, -0.5), (0.0, -0.3), (0.5, -0.2)] {
+        let scene =
+            Receding { grading, exponent, wear: "dissipated-energy", control: "", tau: 100.0, ..PARABOLOID };
+        let results = scene.run("accuracy = 1e-4");
+        let last = results.last();
+        let off = last.wear_volume / results.limit().expect("a limit").wear_volume() - 1.0;
+        let balance = last.wear_volume / (1e-13 * last.dissipated_energy) - 1.0;
+        println!("k = {grading}, {exponent}: off {off:e}, V/(α ΣE) - 1 = {balance:e}");
+        assert_eq!(results.accuracy_met(), Some(true), "k = {grading}, {exponent}");
+        assert!(off.abs() < 1e-6, "k = {grading}, {exponent}: {off:e}");
+        assert!(balance.abs() < 1e-4, "k = {grading}, {exponent}: {balance:e}");
+    }
+}

@@ -3,6 +3,7 @@
 use faer::Mat;
 
 use super::edge_in_block::AtRest;
+use super::resistance::strength;
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::slipping::Slipping;
 use super::{Fields, Model, State};
@@ -140,6 +141,7 @@ impl Model {
                 slip_amplitude_of_spring(law, ratio, amplitude, *q)
             })
             .collect();
+        let least = self.least_compression(law);
         let energies = |(j, (q, slip)): (usize, (&f64, &(f64, f64)))| -> Energies {
             if slip.0 == 0.0 {
                 return Energies::default();
@@ -148,8 +150,8 @@ impl Model {
                 let dissipation = 4.0 * resistance.of(j, *q) * slip.0;
                 return Energies { dissipation, jump_loss: 0.0, work: dissipation };
             }
-            let held = loading.friction.static_strength(*q);
-            let dragged = loading.friction.kinetic_strength(*q);
+            let dragged = strength(law, least, *q);
+            let held = if law.remembers_slip() { law.static_strength(*q) } else { dragged };
             // Each way from the kinetic limit on one side to the static one on the other, and from there on at the kinetic one.
             let stuck = 0.5 * (held * held - dragged * dragged) / ratio;
             let slides = 2.0 * amplitude - (held + dragged) / ratio;
@@ -161,7 +163,7 @@ impl Model {
         };
         let inner = compression.len();
         let bearing = self.bearing_in(loading);
-        let borne = |j, q| match bearing.traction.is_some() && resistance.behind().is_some() {
+        let borne = |j, q| match bearing.traction.is_some() && resistance.is_straight(j) {
             true => resistance.of(j, q),
             false => bearing.of(q, loading.lift),
         };
@@ -444,8 +446,10 @@ impl Model {
 
     /// What the law of wear takes for the load of springs.
     pub(super) fn bearing_in<'a>(&self, loading: &'a CycleLoading) -> Bearing<'a> {
+        let law = &*loading.friction;
         Bearing {
-            traction: loading.wear.takes_traction().then_some(&*loading.friction),
+            traction: loading.wear.takes_traction().then_some(law),
+            least: self.least_compression(law),
             spreads: loading.wear.spreading().is_some(),
             pulls_lifted: loading.path.is_some() || self.contact.half_space().grading() > SWINGING_ALL_OVER,
         }
@@ -576,6 +580,8 @@ impl PathSprings<'_> {
 pub(super) struct Bearing<'a> {
     /// The law that says what resists slip, where wear takes the traction.
     traction: Option<&'a dyn FrictionLaw>,
+    /// See [`strength`], m.
+    least: f64,
     spreads: bool,
     /// Whether what pulls at the largest indentation does so wherever it is lifted to.
     pulls_lifted: bool,
@@ -595,8 +601,8 @@ impl<'a> Bearing<'a> {
         // it pulls all the time, wherever it is lifted to, for so it wears back. One that presses there may lose contact.
         let pulls = compression < 0.0 && (self.pulls_lifted || lift == 0.0);
         match self.traction {
-            Some(law) if pulls => -law.kinetic_strength(-compression),
-            Some(law) => law.kinetic_strength(compression - lift),
+            Some(law) if pulls => -strength(law, self.least, -compression),
+            Some(law) => strength(law, self.least, compression - lift),
             None if pulls && !self.spreads => compression,
             None => (compression - lift).max(0.0),
         }

@@ -20,8 +20,8 @@ use crate::laws::friction::FrictionLaw;
 const STRAIGHT: usize = 4;
 const OWN: usize = 12;
 
-/// Compression, over that at the edge of stick, below which resistance is in proportion to it beside such a line: where it falls with a small power of the compression, and wears too, springs come to
-/// zero in a finite time and swing about it with no end. With 1e-4 and 1e-3 worn volumes are the same within 6e-5.
+/// Compression, over that at the edge of stick, below which what falls with a small power of it is in proportion to it: springs whose wear does so come to zero in a finite time, and
+/// swing about it with no end. With 1e-4 and 1e-3 worn volumes are the same within 6e-5.
 const LEAST: f64 = 3e-4;
 
 /// Least fall of the compression, over that at the edge of stick, by which the line is drawn.
@@ -37,6 +37,8 @@ pub(super) struct Resistance<'a> {
     law: &'a dyn FrictionLaw,
     /// Whether springs that pull resist by the odd function of their compression.
     odd: bool,
+    /// See [`strength`].
+    least: f64,
     line: Option<Line>,
 }
 
@@ -52,14 +54,8 @@ struct Line {
 impl Resistance<'_> {
     /// By the law itself.
     fn own(&self, compression: f64) -> f64 {
-        let least = self.line.as_ref().map_or(0.0, |line| LEAST * line.compression);
-        if compression.abs() < least {
-            self.law.kinetic_strength(least) * compression / least
-        } else if self.odd {
-            self.law.kinetic_strength(compression.abs()).copysign(compression)
-        } else {
-            self.law.kinetic_strength(compression)
-        }
+        let strength = |compression: f64| strength(self.law, self.least, compression);
+        if self.odd { strength(compression.abs()).copysign(compression) } else { strength(compression) }
     }
 
     /// Of a spring of a compression after all lifts, m.
@@ -86,7 +82,23 @@ impl Resistance<'_> {
     }
 }
 
+/// Strength of friction of a compression, m, in proportion to it below the least, m.
+pub(super) fn strength(law: &dyn FrictionLaw, least: f64, compression: f64) -> f64 {
+    if compression < least {
+        law.kinetic_strength(least) * compression.max(0.0) / least
+    } else {
+        law.kinetic_strength(compression)
+    }
+}
+
 impl Model {
+    /// Compression, m, below which strength is in proportion to it, see [`strength`]: none in gross slip, where all of them fall as the contact grows.
+    pub(super) fn least_compression(&self, law: &dyn FrictionLaw) -> f64 {
+        let least = LEAST * self.contact.slip_compression();
+        let falls_slowly = law.kinetic_strength_slope(least) * least < law.kinetic_strength(least);
+        if falls_slowly && law.coefficient().is_none() && self.gross().is_none() { least } else { 0.0 }
+    }
+
     /// What resists the slip of springs.
     ///
     /// Next to an edge of stick in a medium whose modulus falls with depth compressions swing about zero as they do in the balance of normal forces: a spring that is never lifted resists
@@ -104,13 +116,14 @@ impl Model {
         let odd = loading.lift == 0.0 && grading < 0.0;
         let recedes = || self.moving().is_some_and(|moving| moving.recedes());
         if !straightens(law, grading) || !recedes() || !self.slips_from_edge(loading, fields) {
-            return Resistance { law, odd, line: None };
+            return Resistance { law, odd, least: 0.0, line: None };
         }
         let edge = fields.stick_zone.slip_compression;
         let behind = OWN.min(lifted.len() - 1);
         let outer = lifted[behind].clamp(0.0, edge * (1.0 - LEAST_FALL));
         let strength = law.kinetic_strength(edge);
         let slope = (strength - law.kinetic_strength(outer)) / (edge - outer);
-        Resistance { law, odd, line: Some(Line { compression: edge, strength, slope, behind }) }
+        let line = Line { compression: edge, strength, slope, behind };
+        Resistance { law, odd, least: self.least_compression(law), line: Some(line) }
     }
 }
