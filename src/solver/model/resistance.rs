@@ -82,10 +82,10 @@ impl Resistance<'_> {
     }
 }
 
-/// Strength of friction of a compression, m, in proportion to it below the least, m.
+/// Strength of friction of a compression, m, in proportion to it from zero to the least, m; none where that is zero.
 pub(super) fn strength(law: &dyn FrictionLaw, least: f64, compression: f64) -> f64 {
-    if compression < least {
-        law.kinetic_strength(least) * compression.max(0.0) / least
+    if (0.0..least).contains(&compression) {
+        law.kinetic_strength(least) * compression / least
     } else {
         law.kinetic_strength(compression)
     }
