@@ -61,6 +61,17 @@ pub(super) struct Energies {
     pub work: f64,
 }
 
+impl Energies {
+    /// A part of all.
+    fn times(self, part: f64) -> Self {
+        Self {
+            dissipation: part * self.dissipation,
+            jump_loss: part * self.jump_loss,
+            work: part * self.work,
+        }
+    }
+}
+
 /// How the amplitude follows the compressions.
 pub(super) struct AmplitudeSlope {
     /// Derivatives of the amplitude by the compressions.
@@ -141,7 +152,7 @@ impl Model {
                 slip_amplitude_of_spring(law, ratio, amplitude, *q)
             })
             .collect();
-        let least = self.least_compression(law);
+        let bearing = self.bearing_in(loading);
         let energies = |(j, (q, slip)): (usize, (&f64, &(f64, f64)))| -> Energies {
             if slip.0 == 0.0 {
                 return Energies::default();
@@ -150,8 +161,8 @@ impl Model {
                 let dissipation = 4.0 * resistance.of(j, *q) * slip.0;
                 return Energies { dissipation, jump_loss: 0.0, work: dissipation };
             }
-            let dragged = strength(law, least, *q);
-            let held = if law.remembers_slip() { law.static_strength(*q) } else { dragged };
+            let held = law.static_strength(*q);
+            let dragged = law.kinetic_strength(*q);
             // Each way from the kinetic limit on one side to the static one on the other, and from there on at the kinetic one.
             let stuck = 0.5 * (held * held - dragged * dragged) / ratio;
             let slides = 2.0 * amplitude - (held + dragged) / ratio;
@@ -160,9 +171,9 @@ impl Model {
                 jump_loss: (held - dragged).powi(2) / ratio,
                 work: 2.0 * (stuck + dragged * slides),
             }
+            .times(bearing.part_borne(*q))
         };
         let inner = compression.len();
-        let bearing = self.bearing_in(loading);
         let borne = |j, q| match bearing.traction.is_some() && resistance.is_straight(j) {
             true => resistance.of(j, q),
             false => bearing.of(q, loading.lift),
@@ -229,10 +240,13 @@ impl Model {
             amplitude_slope: None,
             at_rest: AtRest::default(),
         };
+        let bearing = self.bearing_in(loading);
         let slipping = (!path.is_level()).then(|| Slipping::new(compression));
         let by = slipping.as_ref().map_or(compression, Slipping::compressions);
         for (j, q) in by.iter().enumerate() {
-            motion.energies.push(springs.pass(q.max(0.0), &mut values, &mut slope));
+            let energies = springs.pass(q.max(0.0), &mut values, &mut slope);
+            let part = if path.is_level() { bearing.part_borne(q - path.points[0].lift) } else { 1.0 };
+            motion.energies.push(energies.times(part));
             for (m, value) in values.iter().enumerate() {
                 motion.slip[(j, m)] = *value;
             }
@@ -244,7 +258,6 @@ impl Model {
         self.count_substeps(springs.passed, path, &*loading.friction);
         let count = path.points.len();
         let lifts = |m: usize| [path.points[m].lift, path.points[(m + 1) % count].lift];
-        let bearing = self.bearing_in(loading);
         let different = if path.is_level() { 1 } else { steps };
         let mean = |q: f64, m: usize| lifts(m).map(|lift| 0.5 * bearing.of(q, lift)).iter().sum::<f64>();
         motion.load = Mat::from_fn(inner, different, |j, m| mean(compression[j], m));
@@ -593,6 +606,16 @@ impl<'a> Bearing<'a> {
         let Some(law) = self.traction else { return Some(1.0) };
         let factor = law.kinetic_strength(1.0);
         (law.kinetic_strength_slope(0.0) == factor).then_some(factor)
+    }
+
+    /// Part that wear takes of what resists the slip of a spring, by its compression after a lift that stays, m.
+    fn part_borne(&self, compression: f64) -> f64 {
+        match self.traction {
+            Some(law) if compression > 0.0 && compression < self.least => {
+                strength(law, self.least, compression) / law.kinetic_strength(compression)
+            }
+            _ => 1.0,
+        }
     }
 
     /// Of a spring of this compression at the largest indentation, lifted by `lift`, m: its compression, or what resists its slip.
