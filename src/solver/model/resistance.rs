@@ -24,12 +24,15 @@ const OWN: usize = 12;
 /// swing about it with no end. With 1e-4 and 1e-3 worn volumes are the same within 6e-5.
 const LEAST: f64 = 3e-4;
 
+/// Grading below which the law is left as it is: of scenes under friction by a power of 2.3 of the load one at -0.967 found no step on the line. It is measured down to -0.7.
+const SOFTEST: f64 = -0.9;
+
 /// Least fall of the compression, over that at the edge of stick, by which the line is drawn.
 const LEAST_FALL: f64 = 1e-6;
 
 /// Whether a law of friction is a straight line next to an edge of stick that recedes.
 pub fn straightens(law: &dyn FrictionLaw, grading: f64) -> bool {
-    grading < 0.0 && law.coefficient().is_none() && !law.remembers_slip()
+    (SOFTEST..0.0).contains(&grading) && law.coefficient().is_none() && !law.remembers_slip()
 }
 
 /// What resists slip in a cycle without lifts, over the normal stiffness of a spring, m.
