@@ -90,16 +90,18 @@ pub(in crate::run) fn springs_for(
     if Gross::follows(contact, schedule).unwrap_or_default() {
         return springs_in_gross_slip(contact, schedule, accuracy);
     }
-    let creeps = schedule.conditions().holds_normal_force && contact.regime() == Regime::PartialSlip;
-    let moves = creeps || !(schedule.is_steady() || schedule.resolves());
     let conditions = schedule.conditions();
+    let creeps = conditions.holds_normal_force && contact.regime() == Regime::PartialSlip;
+    let moves = creeps || !(schedule.is_steady() || schedule.resolves());
     let straightened = !conditions.holds_normal_force
         && conditions.tangential_control == TangentialControl::Force
         && straightens(&*conditions.friction, contact.half_space().grading());
-    let fewest = match moves {
-        _ if straightened => FEWEST_STRAIGHTENED,
-        true => fewest_beside_small_stick(contact),
-        false => 0,
+    let fewest = if straightened {
+        FEWEST_STRAIGHTENED
+    } else if moves {
+        fewest_beside_small_stick(contact)
+    } else {
+        0
     };
     let by_error = match clustering {
         Clustering::Smooth => springs_on_smooth_mesh(contact, accuracy),

@@ -97,9 +97,12 @@ pub(super) fn strength(law: &dyn FrictionLaw, least: f64, compression: f64) -> f
 impl Model {
     /// Compression, m, below which strength is in proportion to it, see [`strength`]: none in gross slip, where all of them fall as the contact grows.
     pub(super) fn least_compression(&self, law: &dyn FrictionLaw) -> f64 {
+        if law.coefficient().is_some() || self.gross().is_some() {
+            return 0.0;
+        }
         let least = LEAST * self.contact.slip_compression();
         let falls_slowly = law.kinetic_strength_slope(least) * least < law.kinetic_strength(least);
-        if falls_slowly && law.coefficient().is_none() && self.gross().is_none() { least } else { 0.0 }
+        if falls_slowly { least } else { 0.0 }
     }
 
     /// What resists the slip of springs.

@@ -6,6 +6,7 @@ use faer::Mat;
 
 use super::{Cause, MovingStick, StickEdge, held_stick_radius};
 use crate::numerics::grid::lagrange;
+use crate::solver::model::resistance::Resistance;
 use crate::solver::model::schedule::CycleLoading;
 use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
 
@@ -149,9 +150,11 @@ impl StickStage<'_> {
         let n = self.model.springs();
         let size = trial.residual.len();
         let mut matrix = Mat::zeros(size, size);
-        self.fill_by_compressions(at, trial, &mut matrix);
+        let loading = self.loading(at);
+        let resistance = self.model.resistance(&loading, &at.compression, &trial.fields);
+        self.fill_by_compressions(at, &loading, &resistance, trial, &mut matrix);
         // What resists the springs next to the edge follows from that one besides.
-        if let Some(j) = self.model.resistance(&self.loading(at), &at.compression, &trial.fields).behind() {
+        if let Some(j) = resistance.behind() {
             let mut moved = at.clone();
             moved.compression[j] += DIFFERENCE * trial.stick_zone.slip_compression;
             let step = moved.compression[j] - at.compression[j];
@@ -435,13 +438,20 @@ impl StickStage<'_> {
         weights.iter().enumerate().map(|(i, weight)| weight * value(i)).sum()
     }
 
-    fn fill_by_compressions(&self, at: &Unknowns, trial: &StickTrial, matrix: &mut Mat<f64>) {
+    fn fill_by_compressions(
+        &self,
+        at: &Unknowns,
+        loading: &CycleLoading,
+        resistance: &Resistance,
+        trial: &StickTrial,
+        matrix: &mut Mat<f64>,
+    ) {
         let (model, fields) = (self.model, &trial.fields);
         let (n, inner) = (model.springs(), model.springs() - 1);
-        let (passed, loading) = (self.passed(at), self.loading(at));
+        let passed = self.passed(at);
         let mut growth = Mat::zeros(n, n);
         let step = self.target.springs.step;
-        model.add_growth_slopes(&loading, &at.compression, fields, &trial.cycle, -step, &mut growth);
+        model.add_growth_slopes(loading, &at.compression, fields, &trial.cycle, -step, &mut growth);
         let scale = fields.slip_area.powf(model.mu());
         let behind = fields.slip_depth[inner] - fields.unworn[inner].slip * trial.residual[inner].exp();
         let singular = |i| 1.0 - per_slip(fields, i) * passed.risen * (-fields.log_slip[i]).exp();
@@ -463,11 +473,12 @@ impl StickStage<'_> {
                 let slope = self.extrapolated(|i| (-fields.log_slip[i]).exp() * slopes[i]);
                 matrix[(n, j)] = passed.risen * slope / trial.stick_zone.slip_compression;
             }
-            matrix[(n + 1, j)] = self.balance_by_compression(j, at, &loading, trial);
+            let q = at.compression[j];
+            matrix[(n + 1, j)] = self.balance_by_compression(j, q, loading, resistance, trial);
             if let Cause::TwoBalances(_) = self.moving.cause
                 && loading.friction.coefficient().is_none()
             {
-                matrix[(n + 2, j)] = self.excess_by_compression(j, at, &loading, trial);
+                matrix[(n + 2, j)] = self.excess_by_compression(j, q, loading, resistance, trial);
             }
         }
     }
@@ -483,14 +494,13 @@ impl StickStage<'_> {
     fn excess_by_compression(
         &self,
         spring: usize,
-        at: &Unknowns,
+        q: f64,
         loading: &CycleLoading,
+        resistance: &Resistance,
         trial: &StickTrial,
     ) -> f64 {
         let half_space = self.model.contact.half_space();
-        let resistance = self.model.resistance(loading, &at.compression, &trial.fields);
         let strength = |q: f64| resistance.of(spring, q);
-        let q = at.compression[spring];
         let sticks = half_space.stiffness_ratio() * loading.amplitude;
         if strength(q) >= sticks && !resistance.is_straight(spring) {
             return 0.0;
@@ -505,8 +515,9 @@ impl StickStage<'_> {
     fn balance_by_compression(
         &self,
         spring: usize,
-        at: &Unknowns,
+        q: f64,
         loading: &CycleLoading,
+        resistance: &Resistance,
         trial: &StickTrial,
     ) -> f64 {
         let weight = self.weight(spring, trial);
@@ -516,7 +527,7 @@ impl StickStage<'_> {
             | Cause::BothForces(force)
             | Cause::ReleasedForces(force)
             | Cause::TwoBalances(force) => weight / force,
-            Cause::Tangential => self.excess_by_compression(spring, at, loading, trial),
+            Cause::Tangential => self.excess_by_compression(spring, q, loading, resistance, trial),
         }
     }
 
