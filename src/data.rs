@@ -227,17 +227,26 @@ pub struct Checkpoint {
     pub attempt: Attempt,
 }
 
+/// What an attempt takes finer than the accuracy asks for, besides its springs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fineness {
+    /// Tolerance of the time stepping where that is smaller, else zero.
+    pub tolerance: f64,
+    /// Substeps of a period where those are more, else zero.
+    pub substeps: u64,
+}
+
 /// How a run came to be made anew, so that one that was interrupted takes the same way.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attempt {
-    /// How often it was made anew on more springs or in finer steps, or need not be any more.
+    /// How often it was made anew on more springs or more finely, or need not be any more.
     pub refinements: u64,
-    /// Tolerance of its time stepping where that is smaller than the accuracy asks for, else zero.
-    pub tolerance: f64,
+    /// What it takes finer.
+    pub fineness: Fineness,
     /// Springs on which it came to an end, if less accurately than was asked for; zero where it did not.
     pub ended_on: u64,
-    /// [`Attempt::tolerance`] there.
-    pub ended_with: f64,
+    /// [`Attempt::fineness`] there.
+    pub ended_with: Fineness,
     /// Its estimated error there, relative; 1 where nothing is known of it, and zero where it did not.
     pub ended_within: f64,
     /// Work of the attempts before, nanoseconds of one core, about.

@@ -13,8 +13,8 @@ use std::time::Duration;
 use fretwear::contact::stick_slip::Regime;
 use fretwear::data::quantity::quantity;
 use fretwear::data::{
-    Attempt, Checkpoint, Dataset, Format, LimitCurves, ResultPath, ResultTables, RunFile, RunHeader,
-    RunWriter, Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
+    Attempt, Checkpoint, Dataset, Fineness, Format, LimitCurves, ResultPath, ResultTables, RunFile,
+    RunHeader, RunWriter, Snapshot, StopReason, SweepFile, SweepHeader, Values, Variable, Words, column,
 };
 use fretwear::laws::motion::RecordedPath;
 use fretwear::solver::model::{Linearised, Past, PastPoint, State, StickEdge, WornGround};
@@ -143,6 +143,7 @@ fn checkpoint() -> Checkpoint {
             first_rate: 1e-15,
             busy_until: 0.7 / 3.0,
             averages_from: 0.1 / 3.0,
+            rejected_at: 0.2 / 3.0,
             steps: u64::MAX,
             rejected_steps: 1 << 53 | 1,
             rate_evaluations: 3,
@@ -154,9 +155,9 @@ fn checkpoint() -> Checkpoint {
         accuracy: Some(1e-4),
         attempt: Attempt {
             refinements: 2,
-            tolerance: 3e-5,
+            fineness: Fineness { tolerance: 3e-5, substeps: 256 },
             ended_on: 57,
-            ended_with: 1e-4,
+            ended_with: Fineness { tolerance: 1e-4, substeps: 0 },
             ended_within: 0.02,
             work: 3_000_000_000,
         },
@@ -448,7 +449,7 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
     let loops = file.group("loops").expect("the group");
     let in_groups = [group, loops].map(|it| it.datasets().expect("datasets")).concat();
     let all = [file.datasets().expect("datasets"), in_groups].concat();
-    assert_eq!(all.len(), 24 + 4 + 29 + 5, "{all:?}");
+    assert_eq!(all.len(), 24 + 4 + 32 + 5, "{all:?}");
     for dataset in all {
         for attribute in ["units", "long_name"] {
             let found = text(&dataset, attribute).unwrap_or_default();

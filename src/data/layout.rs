@@ -125,15 +125,19 @@ pub const REFINEMENTS: Quantity =
     quantity("refinements", "1", "how often the run was made anew on more springs, or need not be any more");
 pub const TOLERANCE: Quantity =
     quantity("tolerance", "1", "tolerance of the time stepping where it was made smaller for that, or 0");
+pub const SUBSTEPS: Quantity =
+    quantity("substeps", "1", "substeps of a period where they were made more for that, or 0");
 pub const ENDED_ON: Quantity = quantity(
     "ended_on",
     "1",
     "springs on which an attempt came to an end less accurately than was asked for, or 0",
 );
 
-/// Tolerance and error of the attempt that came to an end, scalars.
+/// Tolerance, substeps and error of the attempt that came to an end, scalars.
 pub const ENDED_WITH: Quantity =
     quantity("ended_with", "1", "tolerance of that attempt where it had been made smaller, or 0");
+pub const ENDED_IN: Quantity =
+    quantity("ended_in", "1", "substeps of a period of that attempt where they had been made more, or 0");
 pub const ENDED_WITHIN: Quantity =
     quantity("ended_within", "1", "estimated error of that attempt, or 1 where nothing is known of it");
 
@@ -258,7 +262,7 @@ pub(super) const LOOP_CURVES: [Field<Snapshot, Vec<f64>>; 4] = [
 ];
 
 /// Scalars of the checkpoint, real.
-pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 12] = [
+pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 13] = [
     field(
         quantity("cycles", "1", "number of fretting cycles done"),
         |it| &it.state.cycles,
@@ -305,6 +309,11 @@ pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 12] = [
         ),
         |it| &it.progress.averages_from,
         |it| &mut it.progress.averages_from,
+    ),
+    field(
+        quantity("rejected_at", "1", "cycles done when two hundred more steps had been rejected"),
+        |it| &it.progress.rejected_at,
+        |it| &mut it.progress.rejected_at,
     ),
     field(
         quantity("next_step", "1", "number of cycles to be tried in the next step"),

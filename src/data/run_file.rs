@@ -9,7 +9,9 @@ use super::layout::*;
 use super::reader::{OpenFile, Wanted};
 use super::save::Save;
 use super::seal::ResultPath;
-use super::{Attempt, Checkpoint, Format, LimitCurves, RunHeader, Snapshot, StopReason, fretting_regimes};
+use super::{
+    Attempt, Checkpoint, Fineness, Format, LimitCurves, RunHeader, Snapshot, StopReason, fretting_regimes,
+};
 use crate::contact::indenter::TabulatedProfile;
 use crate::contact::stick_slip::{FrettingRegime, Regime};
 use crate::error::Result;
@@ -230,9 +232,11 @@ fn put_checkpoint(checkpoint: &Checkpoint) -> Dataset {
     }
     if checkpoint.attempt != Attempt::default() {
         stored.scalar(REFINEMENTS, checkpoint.attempt.refinements);
-        stored.scalar(TOLERANCE, checkpoint.attempt.tolerance);
+        stored.scalar(TOLERANCE, checkpoint.attempt.fineness.tolerance);
+        stored.scalar(SUBSTEPS, checkpoint.attempt.fineness.substeps);
         stored.scalar(ENDED_ON, checkpoint.attempt.ended_on);
-        stored.scalar(ENDED_WITH, checkpoint.attempt.ended_with);
+        stored.scalar(ENDED_WITH, checkpoint.attempt.ended_with.tolerance);
+        stored.scalar(ENDED_IN, checkpoint.attempt.ended_with.substeps);
         stored.scalar(ENDED_WITHIN, checkpoint.attempt.ended_within);
         stored.scalar(WORK, checkpoint.attempt.work);
     }
@@ -422,9 +426,15 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
     if stored.has(REFINEMENTS.name) {
         checkpoint.attempt = Attempt {
             refinements: stored.take_scalar(REFINEMENTS)?,
-            tolerance: stored.take_scalar(TOLERANCE)?,
+            fineness: Fineness {
+                tolerance: stored.take_scalar(TOLERANCE)?,
+                substeps: stored.take_scalar(SUBSTEPS)?,
+            },
             ended_on: stored.take_scalar(ENDED_ON)?,
-            ended_with: stored.take_scalar(ENDED_WITH)?,
+            ended_with: Fineness {
+                tolerance: stored.take_scalar(ENDED_WITH)?,
+                substeps: stored.take_scalar(ENDED_IN)?,
+            },
             ended_within: stored.take_scalar(ENDED_WITHIN)?,
             work: stored.take_scalar(WORK)?,
         };

@@ -1,19 +1,19 @@
 //! A run that is made anew: on more springs where its error is larger than was asked for, in finer steps where those do not help, on fewer where it takes too long or finds no end.
 
-use std::cell::OnceCell;
+use std::collections::BTreeMap;
 use std::mem;
 
 use super::attempt::{
-    LAST_RESORT, ON_SPRINGS_THAT_STAY, REFINEMENTS, SPRINGS_THAT_STAY, springs_of_last_resort,
+    Kind, LAST_RESORT, ON_SPRINGS_THAT_STAY, REFINEMENTS, SPRINGS_THAT_STAY, springs_of_last_resort,
 };
 use super::budget::{self, TIGHTER, UNKNOWN};
 use super::cost;
 use super::limit::header;
 use super::onlookers::Onlookers;
-use super::parts::{Known, Parts};
+use super::parts::{Known, Parts, resolution};
 use super::recorder::Recorder;
 use crate::contact::closed_form::LimitingShape;
-use crate::data::{Attempt, Checkpoint, RunHeader, Snapshot};
+use crate::data::{Attempt, Checkpoint, Fineness, RunHeader, Snapshot};
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Stepper};
 use crate::solver::model::{MovingStick, OperatorStore};
@@ -27,7 +27,7 @@ pub(super) struct Attempts<'a> {
     pub stepping: Simulation,
     pub limit: Option<LimitingShape>,
     /// Of attempts by their [kind](Attempt::kind).
-    pub known: [OnceCell<Known>; 3],
+    pub known: BTreeMap<Kind, Known>,
     /// That which ended and may be taken after all, if it was made in this process.
     pub ended: Option<Ended>,
 }
@@ -105,7 +105,7 @@ impl Attempts<'_> {
         self.first_of(attempts).map(|begun| self.take_up(begun)).is_some()
     }
 
-    fn first_of(&self, attempts: &[Anew]) -> Option<Begun> {
+    fn first_of(&mut self, attempts: &[Anew]) -> Option<Begun> {
         attempts.iter().find_map(|it| self.begun(it))
     }
 
@@ -121,7 +121,7 @@ impl Attempts<'_> {
 
     /// Whether the attempt under way is the one that ended, as another counts.
     fn is_end_of(&self, counted: &Attempt) -> bool {
-        let now = (self.springs() as u64, self.recorder.attempt.tolerance);
+        let now = (self.springs() as u64, self.recorder.attempt.fineness);
         (counted.ended_on, counted.ended_with) == now
     }
 
@@ -137,11 +137,12 @@ impl Attempts<'_> {
         end
     }
 
-    fn begun(&self, anew: &Anew) -> Option<Begun> {
+    fn begun(&mut self, anew: &Anew) -> Option<Begun> {
         let Anew { springs, on_fewer, counted } = *anew;
-        let known = &self.known[counted.kind()];
-        let mut parts = Parts::of_attempt(self.scene, &counted, springs, known.get(), self.store).ok()?;
-        known.get_or_init(|| Known::of(&parts));
+        let kind = counted.kind();
+        let known = self.known.get(&kind);
+        let mut parts = Parts::of_attempt(self.scene, &counted, springs, known, self.store).ok()?;
+        self.known.entry(kind).or_insert_with(|| Known::of(&parts));
         let limit = parts.limit.take();
         let stepping = parts.begin().ok()?;
         (!on_fewer || stepping.model().springs() < self.springs()).then_some((counted, stepping, limit))
@@ -173,7 +174,7 @@ impl Attempts<'_> {
         let (model, attempt) = (self.stepping.model(), self.recorder.attempt);
         if let Some(springs) = budget::enough_for_a_rim(model) {
             return match attempt.refinements {
-                0 => vec![self.finer(springs, attempt.tolerance, None, work)],
+                0 => vec![self.finer(springs, attempt.fineness, None, work)],
                 _ => self.last_resort(work),
             };
         }
@@ -198,10 +199,14 @@ impl Attempts<'_> {
         let ends = outcome.as_ref().is_ok_and(|it| *it != Outcome::Interrupted);
         if ends && self.is_too_coarse_in_time() {
             let (_, tolerance) = self.stepping.first();
-            return vec![self.finer(self.springs(), TIGHTER * tolerance, Some(error), work)];
+            let finer = Fineness { tolerance: TIGHTER * tolerance, ..attempt.fineness };
+            return vec![self.finer(self.springs(), finer, Some(error), work)];
         }
         if let Some(springs) = self.more_springs(outcome, checkpoint) {
-            return vec![self.finer(springs, attempt.tolerance, outcome.is_ok().then_some(error), work)];
+            let substeps =
+                if error < UNKNOWN { self.substeps_on(springs) } else { attempt.fineness.substeps };
+            let finer = Fineness { substeps, ..attempt.fineness };
+            return vec![self.finer(springs, finer, outcome.is_ok().then_some(error), work)];
         }
         if ends && error >= UNKNOWN && attempt.may_end_again() && attempt.knows_error() {
             return vec![self.end_again(work)];
@@ -219,30 +224,37 @@ impl Attempts<'_> {
     /// Finer ones do not end, or know nothing of their error: that which did, once more, if it is not in memory any more.
     fn end_again(&self, work: u64) -> Anew {
         let before = self.recorder.attempt;
-        let counted = Attempt { refinements: REFINEMENTS + 1, tolerance: before.ended_with, work, ..before };
+        let counted = Attempt { refinements: REFINEMENTS + 1, fineness: before.ended_with, work, ..before };
         Anew { springs: counted.ended_on as usize, on_fewer: false, counted }
     }
 
     /// # Arguments
-    /// * `tolerance` -- as [`Attempt::tolerance`]
+    /// * `fineness` -- as [`Attempt::fineness`]
     /// * `error` -- estimated, of this attempt, if it came to its end
-    fn finer(&self, springs: usize, tolerance: f64, error: Option<f64>, work: u64) -> Anew {
+    fn finer(&self, springs: usize, fineness: Fineness, error: Option<f64>, work: u64) -> Anew {
         let now = self.recorder.attempt;
         let ended = match error {
             Some(error) if error < UNKNOWN || !now.knows_error() => {
                 let ended_on = self.springs() as u64;
-                Attempt { ended_on, ended_with: now.tolerance, ended_within: error, ..now }
+                Attempt { ended_on, ended_with: now.fineness, ended_within: error, ..now }
             }
             _ => now,
         };
-        let counted = Attempt { refinements: now.refinements + 1, tolerance, work, ..ended };
+        let counted = Attempt { refinements: now.refinements + 1, fineness, work, ..ended };
         Anew { springs, on_fewer: false, counted }
     }
 
     /// Coarser ones may come to an end where this does not, and tell that nothing is known of the error.
     fn for_an_end(&self, work: u64) -> Vec<Anew> {
         let (begun, _) = self.stepping.first();
-        let asked = Parts::new(self.scene, self.scene.numerics(), None, self.known[0].get(), self.store).ok();
+        let asked = Parts::new(
+            self.scene,
+            self.scene.numerics(),
+            None,
+            self.known.get(&Attempt::default().kind()),
+            self.store,
+        )
+        .ok();
         let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
         let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
         let counted = Attempt { refinements: REFINEMENTS + 1, work, ..Attempt::default() };
@@ -297,6 +309,16 @@ impl Attempts<'_> {
         let is_met = outcome.is_ok() && checkpoint.error_estimate.is_some_and(|error| error <= accuracy);
         let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, attempt.work, is_met));
         if simulation.sticks_after_gross_slip() { wanted.map(budget::springs_before) } else { wanted }
+    }
+
+    /// Substeps of a run on more springs: more in proportion where companions have fewer, and the program chooses them.
+    fn substeps_on(&self, springs: usize) -> u64 {
+        let (scene, attempt) = (self.scene, &self.recorder.attempt);
+        let chosen = scene.numerics().substeps.is_none() && self.stepping.model().schedule().takes_steps();
+        let now = resolution(scene, &attempt.numerics(scene)).substeps.filter(|_| chosen);
+        now.map_or(attempt.fineness.substeps, |now| {
+            budget::more_substeps(now, springs as f64 / self.springs() as f64) as u64
+        })
     }
 
     /// Whether a run may be repeated on other springs, or in other steps: the program chose the springs, and it is not a stick zone that is about to be lost.

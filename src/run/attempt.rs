@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::budget::{UNKNOWN, may_bear_at_rim};
 use super::cost;
-use crate::data::Attempt;
+use crate::data::{Attempt, Fineness};
 use crate::scene::{Numerics, Scene};
 use crate::solver::model::Model;
 use crate::solver::stepper::Sdirk;
@@ -40,6 +40,15 @@ pub(super) const SPRINGS_THAT_STAY: [usize; 2] = [96, 60];
 /// Parts of the work of a run that one on fewer springs may take: after one that took too long, and after those that found no end.
 const OF_LAST_ATTEMPTS: [f64; 2] = [0.2, 0.05];
 
+/// What decides the schedule of an attempt at a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Kind {
+    /// As in [`Fineness::substeps`].
+    substeps: u64,
+    is_last_resort: bool,
+    is_on_springs_that_stay: bool,
+}
+
 impl Attempt {
     /// Whether it is made in coarse steps, since no other found an end.
     pub(super) fn is_last_resort(&self) -> bool {
@@ -51,9 +60,13 @@ impl Attempt {
         self.refinements >= ON_SPRINGS_THAT_STAY
     }
 
-    /// Which of those it is that share a schedule: with the substeps of the scene, with coarse ones, on springs that stay.
-    pub(super) fn kind(&self) -> usize {
-        usize::from(self.is_last_resort()) + usize::from(self.is_on_springs_that_stay())
+    /// What those have in common that share a schedule.
+    pub(super) fn kind(&self) -> Kind {
+        Kind {
+            substeps: self.fineness.substeps,
+            is_last_resort: self.is_last_resort(),
+            is_on_springs_that_stay: self.is_on_springs_that_stay(),
+        }
     }
 
     /// Whether one before came to an end, so that it would do so again.
@@ -80,8 +93,14 @@ impl Attempt {
     pub(super) fn numerics(&self, scene: &Scene) -> Numerics {
         let numerics = *scene.numerics();
         if !self.is_last_resort() {
-            let tightened = (self.tolerance > 0.0).then_some(self.tolerance);
-            return Numerics { tolerance: tightened.or(numerics.tolerance), ..numerics };
+            let Fineness { tolerance, substeps } = self.fineness;
+            let (tightened, more) =
+                ((tolerance > 0.0).then_some(tolerance), (substeps > 0).then_some(substeps));
+            return Numerics {
+                tolerance: tightened.or(numerics.tolerance),
+                substeps: more.map(|it| it as usize).or(numerics.substeps),
+                ..numerics
+            };
         }
         let sampled = !scene.conditions().mode.is_tangential();
         let substeps = numerics.substeps.or(sampled.then_some(COARSE_SUBSTEPS));

@@ -233,7 +233,7 @@ impl Recorder {
         (self.takes_too_long, self.would_take_too_long) = (false, Arc::default());
         // Nothing is told of the error of the last resort.
         let compares = compared && !self.attempt.is_last_resort();
-        let coarsening = compares.then(|| Coarsening::new(scene, simulation, self.attempt.part_of_work()));
+        let coarsening = compares.then(|| Coarsening::new(scene, simulation, &self.attempt));
         let (stop, too_long) = (Arc::clone(&self.stop), Arc::clone(&self.would_take_too_long));
         let leaves = chosen && !self.attempt.has_end();
         let run_companions = || {
@@ -355,10 +355,10 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
 }
 
 /// Whether the two volumes tell the error: where the edge of stick moves neither sees that of its place, nor that of an amplitude which follows from a balance
-/// of forces, nor that of kinks in gross slip: where springs begin to slip, and of all that cubics carry.
+/// of forces, nor that of kinks: where springs begin to slip in gross slip, of all that cubics carry there, and where the contact edge comes to lie while the contact lifts.
 fn has_balance(simulation: &Simulation) -> bool {
     let (model, _) = simulation.first();
     let tangential = model.schedule().conditions().tangential_control != TangentialControl::Displacement;
     let has_kink = model.gross().is_some_and(|gross| gross.sticks() || gross.is_on_cubics());
-    !tangential && model.moving().is_none() && !has_kink
+    !tangential && model.moving().is_none() && !has_kink && !model.schedule().lifts()
 }

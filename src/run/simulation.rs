@@ -1,6 +1,6 @@
 //! A scene simulated in memory: no file, no signal, nothing printed.
 
-use std::cell::OnceCell;
+use std::collections::BTreeMap;
 
 use super::anew::{Attempts, End};
 use super::cost::{self, Expected};
@@ -177,13 +177,11 @@ impl<'a> Simulation<'a> {
         (recorder.saves_result, recorder.detail) = (saves_result, detail);
         recorder.attempt = attempt;
         let mut onlookers = Onlookers { watchers, observer };
-        let mut found = [const { OnceCell::new() }; 3];
-        found[attempt.kind()] = OnceCell::from(known);
         let attempts = Attempts {
             scene: &scene,
             store: &shared.operators,
             recorder: &mut recorder,
-            known: found,
+            known: BTreeMap::from([(attempt.kind(), known)]),
             stepping,
             limit,
             ended: None,

@@ -29,6 +29,11 @@ const CERTAIN_WEAR: f64 = 0.5;
 /// zone, the edge of stick is followed in ever smaller steps.
 const MOST_REJECTED: u64 = 4000;
 
+/// Rejected steps in which the cycles done have to grow by a part of themselves where the contact lifts within each period: runs that were stuck there grew by 1e-9 to 1e-4, and went on so until they were
+/// given up. Elsewhere stick may be lost in a finite time, next to which steps are as small.
+const REJECTED_AT_ONCE: u64 = 200;
+const LEAST_GROWTH: f64 = 1e-4;
+
 /// Dimensionless time at which a run ends that would last until its rate has fallen, where wear goes on without end.
 const SHOWN_UNENDING: f64 = 1.0;
 
@@ -115,6 +120,8 @@ pub struct Progress {
     pub busy_until: f64,
     /// Cycles from which on steps see the mean cycle of a pass, where its blocks were stepped through before; else zero.
     pub averages_from: f64,
+    /// Cycles done when [`REJECTED_AT_ONCE`] steps were rejected since the last time.
+    pub rejected_at: f64,
     /// Index of the next entry of the plan's outputs.
     pub next_output: u64,
     /// Steps accepted.
@@ -540,7 +547,12 @@ impl Simulation {
     fn reject(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Flow> {
         self.progress.rejected_steps += 1;
         let rejected = self.progress.rejected_steps;
-        if rejected > MOST_REJECTED && 2 * rejected > self.progress.steps {
+        let mut is_stuck = rejected > MOST_REJECTED && 2 * rejected > self.progress.steps;
+        if self.model.schedule().lifts() && rejected.is_multiple_of(REJECTED_AT_ONCE) {
+            is_stuck |= self.state.cycles <= (1.0 + LEAST_GROWTH) * self.progress.rejected_at;
+            self.progress.rejected_at = self.state.cycles;
+        }
+        if is_stuck {
             return Err(self.stuck("wear goes on in ever smaller steps, of which most are rejected"));
         }
         let mut flow = Flow::Continue;

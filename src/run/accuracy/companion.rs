@@ -122,7 +122,7 @@ impl Companion {
         let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_work };
         let outcome = simulation.run(&mut [&mut seen]);
         if work_so_far(&simulation) > most_work {
-            return Err(Lost::Dear(Dear::of(&simulation)));
+            return Err(if is_stuck(&simulation) { Lost::NoEnd } else { Lost::Dear(Dear::of(&simulation)) });
         }
         match outcome {
             Ok(Outcome::Interrupted) | Err(_) => Err(Lost::NoEnd),
@@ -134,6 +134,12 @@ impl Companion {
             }),
         }
     }
+}
+
+/// Whether more than half as many steps were rejected as accepted where the contact lifts within each period: it is the springs that are too few, not the work too much.
+fn is_stuck(simulation: &Simulation) -> bool {
+    let progress = simulation.progress();
+    simulation.model().schedule().lifts() && 2 * progress.rejected_steps > progress.steps
 }
 
 /// Work of what is seen of the substeps at the outputs, by that of the cycles with which a simulation begins: two at least.

@@ -14,7 +14,7 @@ use super::super::parts::resolution;
 use super::super::passes;
 use super::companion::{Coarser, Companion, Dear, Lost, Worn};
 use super::substeps::larger;
-use crate::data::{Snapshot, same_cycles};
+use crate::data::{Attempt, Snapshot, same_cycles};
 use crate::laws::loading::TangentialControl;
 use crate::numerics::curve::distance_from_curve;
 use crate::numerics::grid::Clustering;
@@ -100,8 +100,8 @@ pub(in crate::run) struct Coarsening {
     alone: bool,
     /// Whether that is a finer one.
     finer: bool,
-    /// Whether springs are given by hand, so that companions take as long as they take.
-    by_hand: bool,
+    /// Those of the run.
+    numerics: Numerics,
     /// Whether springs stick again after gross slip, so that it is the springs over the slip annulus that are to be fewer.
     sticks_again: bool,
     /// Of the work of a run that this one may take.
@@ -120,12 +120,12 @@ impl Coarsening {
     /// That of a run.
     ///
     /// # Arguments
-    /// * `part` -- of the work of a run that this one may take
-    pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, part: f64) -> Self {
-        let ((model, tolerance), numerics) = (simulation.first(), scene.numerics());
+    /// * `attempt` -- which of the attempts at it
+    pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, attempt: &Attempt) -> Self {
+        let ((model, tolerance), numerics) = (simulation.first(), attempt.numerics(scene));
         let sticks_again = model.gross().is_some() && simulation.sticks_again();
         let smooth = is_smooth(scene, model);
-        let substeps = resolution(scene, numerics).substeps.filter(|_| model.schedule().takes_steps());
+        let substeps = resolution(scene, &numerics).substeps.filter(|_| model.schedule().takes_steps());
         let finer = compares_with_finer(scene, model);
         Self {
             springs: model.springs(),
@@ -133,9 +133,9 @@ impl Coarsening {
             smooth,
             alone: smooth || finer || always_slides(model) && !sticks_again,
             finer,
-            by_hand: numerics.springs.is_some(),
             sticks_again,
-            part,
+            part: attempt.part_of_work(),
+            numerics,
             offsets: model.offsets().into_iter().step_by(every(model)).collect(),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
             substeps,
@@ -145,8 +145,9 @@ impl Coarsening {
 
     /// Runs the companions.
     pub(in crate::run) fn run(&self, scene: &Scene, store: &OperatorStore, stop: &Arc<AtomicBool>) -> Found {
-        let numerics = scene.numerics();
-        let [most_work, most_steps] = match self.by_hand {
+        let numerics = &self.numerics;
+        // Where springs are given by hand, companions take as long as they take.
+        let [most_work, most_steps] = match numerics.springs.is_some() {
             true => [f64::INFINITY, f64::INFINITY],
             false => [self.part * MOST_WORK * OF_COMPANION, MOST_STEPS[usize::from(!self.smooth)]],
         };
