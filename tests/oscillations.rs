@@ -1,4 +1,4 @@
-//! Normal oscillations of any strength and frequency: what is told of their error, and the resume of runs with more substeps than the accuracy asks for.
+//! Normal oscillations and orbits of any strength and frequency: what is told of their error, and the resume of runs with more substeps than the accuracy asks for.
 
 mod support;
 
@@ -13,13 +13,24 @@ use support::resume::whole_and_in_parts;
 /// * `phase` -- degrees
 fn scene(grading: f64, ratios: (f64, f64), phase: f64, tau: f64, numerics: &str) -> Scene {
     let (amplitude, frequency) = ratios;
+    let motion = format!(
+        "[loading.normal_oscillation]\namplitude_ratio = {amplitude}\nfrequency_ratio = {frequency}\nphase = \"{phase} deg\"\n"
+    );
+    moved(grading, (COULOMB, ARCHARD), &motion, tau, numerics)
+}
+
+const COULOMB: &str = "[friction.coulomb]\ncoefficient = 0.7\n";
+const ARCHARD: &str = "[wear.archard]\ncoefficient = \"1e-8 1/MPa\"\n";
+
+/// The same under other laws and on another path.
+fn moved(grading: f64, (friction, wear): (&str, &str), motion: &str, tau: f64, numerics: &str) -> Scene {
     let driven = if grading < 0.0 { 0.12 } else { 0.325 };
     let reference = if grading == 0.0 { "" } else { "reference_depth = \"100 um\"" };
     let text = format!(
         "[indenter.paraboloid]\nradius = \"10 mm\"\n[half_space]\ngrading = {grading}\n{reference}\nmodulus = \"210 GPa\"\npoisson_ratio = 0.3\n\
-         [friction.coulomb]\ncoefficient = 0.7\n[wear.archard]\ncoefficient = \"1e-8 1/MPa\"\n\
+         {friction}{wear}\
          [loading]\ninitial_force = \"10 N\"\namplitude = \"{driven} um\"\ntau = {tau}\n\
-         [loading.normal_oscillation]\namplitude_ratio = {amplitude}\nfrequency_ratio = {frequency}\nphase = \"{phase} deg\"\n\
+         {motion}\
          [numerics]\n{numerics}\n[output]\nsnapshots = 12\n"
     );
     Scene::from_toml(&text, "scene.toml").expect("a scene")
@@ -48,6 +59,32 @@ fn strong_oscillations_are_as_accurate_as_is_asked() {
         let name = format!("k = {grading}, {ratios:?}, {phase} deg, tau = {tau}");
         println!("{name}: off by {missed:.1e}, told {estimate:.1e} and {below:.1e}");
         assert!(estimate <= 1e-2 && missed < 1e-2, "{name}: off by {missed:e}, told {estimate:e}");
+    }
+}
+
+/// The substeps of a period left out more than the accuracy has room for, or took the room of the springs; friction that remembers was told as unknown, since what its substeps leave out took too long to see.
+#[test]
+fn substeps_are_raised_where_they_are_what_is_short() {
+    let orbit = |ratio: f64, phase: f64| {
+        format!("[loading.orbit]\ntransverse_ratio = {ratio}\nphase = \"{phase} deg\"\n")
+    };
+    let oscillation =
+        "[loading.normal_oscillation]\namplitude_ratio = 0.2\nfrequency_ratio = 2\nphase = \"20 deg\"\n";
+    let falling = "[friction.load-dependent]\ncoefficient = 0.7\nexponent = -0.2\n";
+    let remembers = "[friction.static-kinetic]\nstatic_coefficient = 0.7\nkinetic_coefficient = 0.6\n";
+    let energy = "[wear.dissipated-energy]\ncoefficient = 1.5e-14\n";
+    for (name, grading, laws, motion, accuracy) in [
+        ("a wide orbit", 0.0, (COULOMB, ARCHARD), orbit(0.6, 70.0), 1e-3),
+        ("an orbit with static friction", 0.5, (remembers, ARCHARD), orbit(0.2, 20.0), 2e-3),
+        ("an oscillation under friction that falls", -0.5, (falling, energy), oscillation.into(), 1e-2),
+    ] {
+        let simulate = |numerics: &str| run(&moved(grading, laws, &motion, 60.0, numerics));
+        let found = simulate(&format!("accuracy = {accuracy:e}"));
+        let finer = simulate("springs = 96\nsubsteps = 1024");
+        let missed = (found.last().wear_volume / finer.last().wear_volume - 1.0).abs();
+        let estimate = found.error_estimate().expect("springs were chosen");
+        println!("{name}: off by {missed:.1e}, told {estimate:.1e}");
+        assert!(estimate <= accuracy && missed < accuracy, "{name}: off by {missed:e}, told {estimate:e}");
     }
 }
 

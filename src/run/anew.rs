@@ -6,7 +6,7 @@ use std::mem;
 use super::attempt::{
     Kind, LAST_RESORT, ON_SPRINGS_THAT_STAY, REFINEMENTS, SPRINGS_THAT_STAY, springs_of_last_resort,
 };
-use super::budget::{self, TIGHTER, UNKNOWN};
+use super::budget::{self, Shares, TIGHTER, UNKNOWN};
 use super::cost;
 use super::limit::header;
 use super::onlookers::Onlookers;
@@ -202,9 +202,7 @@ impl Attempts<'_> {
             let finer = Fineness { tolerance: TIGHTER * tolerance, ..attempt.fineness };
             return vec![self.finer(self.springs(), finer, Some(error), work)];
         }
-        if let Some(springs) = self.more_springs(outcome, checkpoint) {
-            let substeps =
-                if error < UNKNOWN { self.substeps_on(springs) } else { attempt.fineness.substeps };
+        if let Some((springs, substeps)) = self.more(outcome, checkpoint) {
             let finer = Fineness { substeps, ..attempt.fineness };
             return vec![self.finer(springs, finer, outcome.is_ok().then_some(error), work)];
         }
@@ -287,11 +285,12 @@ impl Attempts<'_> {
         all
     }
 
-    /// Springs with which to repeat a run, where the program chose them and the run found no end or may be off by more than was asked for.
-    fn more_springs(&self, outcome: &Result<Outcome>, checkpoint: &Checkpoint) -> Option<usize> {
-        let (scene, simulation, attempt) = (self.scene, &self.stepping, &self.recorder.attempt);
-        let (accuracy, springs) = (scene.numerics().accuracy, simulation.springs());
+    /// Springs and [substeps](Fineness::substeps) with which to repeat a run, where the program chose the springs and the run found no end or may be off by more than was asked for.
+    fn more(&self, outcome: &Result<Outcome>, checkpoint: &Checkpoint) -> Option<(usize, u64)> {
+        let (simulation, attempt) = (&self.stepping, &self.recorder.attempt);
+        let (accuracy, springs) = (self.scene.numerics().accuracy, simulation.springs());
         let companions = self.recorder.companions().filter(|_| self.may_be_finer())?;
+        let mut times = 1.0;
         let wanted = match outcome {
             Ok(Outcome::Interrupted) => None,
             // The companion of a finer run may come to an end.
@@ -299,7 +298,9 @@ impl Attempts<'_> {
             Ok(_) if companions.is_smooth() => budget::refined(springs, checkpoint.error_estimate, accuracy),
             Ok(_) => {
                 let shares = self.recorder.shares(simulation)?;
-                budget::refined_by_order(springs, shares, accuracy, simulation.model())
+                let (wanted, of_substeps) = self.more_by_order(shares);
+                times = of_substeps;
+                wanted
             }
             // More springs may find an end where few do not.
             Err(Error::NotConverged { .. }) => budget::enough_for_a_rim(simulation.model())
@@ -307,18 +308,36 @@ impl Attempts<'_> {
             Err(_) => None,
         };
         let is_met = outcome.is_ok() && checkpoint.error_estimate.is_some_and(|error| error <= accuracy);
-        let wanted = wanted.filter(|springs| cost::allows(simulation, *springs, attempt.work, is_met));
-        if simulation.sticks_after_gross_slip() { wanted.map(budget::springs_before) } else { wanted }
+        let allowed = |springs: &usize| cost::allows(simulation, *springs, times, attempt.work, is_met);
+        let wanted = wanted.filter(allowed)?;
+        let substeps = self.chosen_substeps().filter(|_| times > 1.0);
+        let substeps =
+            substeps.map_or(attempt.fineness.substeps, |now| budget::more_substeps(now, times) as u64);
+        let goes_over = simulation.sticks_after_gross_slip();
+        Some((if goes_over { budget::springs_before(wanted) } else { wanted }, substeps))
     }
 
-    /// Substeps of a run on more springs: more in proportion where companions have fewer, and the program chooses them.
-    fn substeps_on(&self, springs: usize) -> u64 {
+    /// Springs that are wanted by the order that was observed, and how many times the substeps.
+    fn more_by_order(&self, shares: Shares) -> (Option<usize>, f64) {
+        let (model, springs) = (self.stepping.model(), self.stepping.springs());
+        let accuracy = self.scene.numerics().accuracy;
+        if model.schedule().takes_steps() {
+            let wanted = budget::refined_by_order(springs, shares, accuracy, model);
+            // Companions have fewer substeps in proportion.
+            let known = shares.springs < UNKNOWN && self.chosen_substeps().is_some();
+            return (wanted, wanted.filter(|_| known).map_or(1.0, |it| it as f64 / springs as f64));
+        }
+        let times = self.chosen_substeps().map_or(1.0, |now| budget::times_substeps(shares, accuracy, now));
+        let wanted = budget::refined_by_order(springs, shares.with_substeps(times), accuracy, model);
+        let only_substeps = (times > 1.0 && !shares.is_surely_within(accuracy)).then_some(springs);
+        (wanted.or(only_substeps), times)
+    }
+
+    /// Substeps of a period, where the program chooses them.
+    fn chosen_substeps(&self) -> Option<usize> {
         let (scene, attempt) = (self.scene, &self.recorder.attempt);
-        let chosen = scene.numerics().substeps.is_none() && self.stepping.model().schedule().takes_steps();
-        let now = resolution(scene, &attempt.numerics(scene)).substeps.filter(|_| chosen);
-        now.map_or(attempt.fineness.substeps, |now| {
-            budget::more_substeps(now, springs as f64 / self.springs() as f64) as u64
-        })
+        let chosen = scene.numerics().substeps.is_none() && !scene.conditions().mode.is_tangential();
+        resolution(scene, &attempt.numerics(scene)).substeps.filter(|_| chosen)
     }
 
     /// Whether a run may be repeated on other springs, or in other steps: the program chose the springs, and it is not a stick zone that is about to be lost.
@@ -339,7 +358,7 @@ impl Attempts<'_> {
         let before = (attempt.ended_on as usize, attempt.ended_within);
         let shares = self.recorder.shares(&self.stepping);
         shares.is_some_and(|it| it.stand_still(self.springs(), before, numerics.accuracy))
-            && cost::allows(&self.stepping, self.springs(), attempt.work, false)
+            && cost::allows(&self.stepping, self.springs(), 1.0, attempt.work, false)
     }
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.

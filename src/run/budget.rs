@@ -362,9 +362,24 @@ pub(in crate::run) fn substeps_of_steps(accuracy: f64, peaks: u32) -> usize {
     wanted.min(MOST_SUBSTEPS_OF_STEPS).ceil() as usize
 }
 
-/// So many times as many of them.
-pub(in crate::run) fn more_substeps(now: usize, factor: f64) -> usize {
-    ((now as f64 * factor).ceil() as usize).min(MOST_SUBSTEPS_OF_STEPS as usize).max(now)
+/// Substeps, so many times as many as now.
+pub(in crate::run) fn more_substeps(now: usize, times: f64) -> usize {
+    ((now as f64 * times).ceil() as usize).min(MOST_SUBSTEPS_OF_STEPS as usize).max(now)
+}
+
+/// Parts of the accuracy that substeps may leave out in a run that is repeated anyway, and to which they are then brought, to second order.
+const OF_SUBSTEPS: [f64; 2] = [0.3, 0.25];
+
+/// Factor on the substeps of a period with which to repeat a run.
+///
+/// # Arguments
+/// * `now` -- substeps of the run
+pub(in crate::run) fn times_substeps(shares: Shares, accuracy: f64, now: usize) -> f64 {
+    let [most, aim] = OF_SUBSTEPS;
+    if shares.substeps <= most * accuracy {
+        return 1.0;
+    }
+    (shares.substeps / (aim * accuracy)).sqrt().min(MOST_SUBSTEPS_OF_STEPS / now as f64).max(1.0)
 }
 
 /// The estimate where nothing is known: as much as all that wears.
@@ -389,6 +404,16 @@ impl Shares {
         self.springs + self.substeps + self.left_out
     }
 
+    /// Whether it is so far within the accuracy that no run is repeated.
+    pub fn is_surely_within(&self, accuracy: f64) -> bool {
+        self.error() <= SURE * accuracy
+    }
+
+    /// The same with so many times the substeps, to second order.
+    pub fn with_substeps(self, times: f64) -> Self {
+        Self { substeps: self.substeps / times.powi(2), ..self }
+    }
+
     /// Whether more springs have not helped, so that it is the steps that companions differ by: no order is seen.
     ///
     /// # Arguments
@@ -397,7 +422,7 @@ impl Shares {
     pub fn stand_still(&self, springs: usize, before: (usize, f64), accuracy: f64) -> bool {
         let (fewer, error) = before;
         let helped = self.order >= SEEN || self.error() <= STANDS_STILL * error;
-        let beyond = self.springs < UNKNOWN && self.error() > SURE * accuracy;
+        let beyond = self.springs < UNKNOWN && !self.is_surely_within(accuracy);
         beyond && springs as f64 > MANY_MORE * fewer as f64 && !helped
     }
 }
@@ -458,7 +483,7 @@ pub(in crate::run) fn refined_by_order(
     }
     let rest = shares.substeps + shares.left_out;
     let aim = AIM * accuracy - rest;
-    if shares.error() <= SURE * accuracy || aim <= 0.0 {
+    if shares.is_surely_within(accuracy) || aim <= 0.0 {
         return None;
     }
     let wanted = |order: f64| {

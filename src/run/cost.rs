@@ -229,12 +229,13 @@ pub(super) fn steps_of_attempt(model: &Model) -> f64 {
 /// Whether a run that came to its end, after others that took so much, can be made anew on so many springs.
 ///
 /// # Arguments
+/// * `times` -- as many substeps of a period as now
 /// * `is_met` -- whether its estimate is within the accuracy already, if not surely
-pub(super) fn allows(simulation: &Simulation, springs: usize, work: u64, is_met: bool) -> bool {
+pub(super) fn allows(simulation: &Simulation, springs: usize, times: f64, work: u64, is_met: bool) -> bool {
     let (model, progress) = (simulation.model(), simulation.progress());
     let before = (work + work_of(simulation)) as f64;
     let (springs, now) = (springs as f64, model.springs() as f64);
-    let resolved = (springs / now).powf(OF_RESOLVED) * progress.resolved_work as f64;
+    let resolved = times * (springs / now).powf(OF_RESOLVED) * progress.resolved_work as f64;
     let wanted = work_on(model, springs, progress) + resolved;
     let most = if is_met { TO_BE_SURE * MOST_WORK } else { MOST_WORK };
     wanted <= most && before + WITH_COMPANION * wanted <= MOST_WORK_OF_ALL

@@ -11,6 +11,10 @@ use crate::scene::{Numerics, Scene, Stepper};
 use crate::solver::model::{OperatorStore, Schedule};
 use crate::solver::simulation::{End, Flow, Observer, Outcome, Simulation};
 
+/// Part of its work that a companion may take for what it sees of the substeps, and how many times as much that may be at all outputs, of which it then sees one in so many.
+const OF_LOOKS: f64 = 0.5;
+const MOST_SKIPPED: f64 = 8.0;
+
 /// Worn volume and depth at one time.
 #[derive(Debug)]
 pub(super) struct Worn {
@@ -115,11 +119,13 @@ impl Companion {
         let implicit = numerics.stepper == Stepper::Implicit;
         let most_steps = if implicit { coarser.most_steps } else { f64::INFINITY };
         let most_work = if implicit { coarser.most_work } else { f64::INFINITY };
-        if unsampled.is_some() && work_of_looks(&simulation) > most_work {
+        let looks = work_of_looks(&simulation) / (OF_LOOKS * most_work);
+        if unsampled.is_some() && looks > MOST_SKIPPED {
             return Err(Lost::Dear(Dear::of(&simulation)));
         }
         let stop = Arc::clone(coarser.stop);
-        let mut seen = Seen { worn: vec![], unsampled, stop, most_steps, most_work };
+        let every = looks.max(1.0).ceil() as usize;
+        let mut seen = Seen { worn: vec![], unsampled, every, stop, most_steps, most_work };
         let outcome = simulation.run(&mut [&mut seen]);
         if work_so_far(&simulation) > most_work {
             return Err(if is_stuck(&simulation) { Lost::NoEnd } else { Lost::Dear(Dear::of(&simulation)) });
@@ -154,6 +160,8 @@ fn work_of_looks(simulation: &Simulation) -> f64 {
 struct Seen {
     worn: Vec<Worn>,
     unsampled: Option<Unsampled>,
+    /// One in so many outputs tells what substeps leave out.
+    every: usize,
     stop: Arc<AtomicBool>,
     most_steps: f64,
     most_work: f64,
@@ -170,7 +178,8 @@ impl Seen {
 impl Observer for Seen {
     fn output(&mut self, simulation: &Simulation) -> crate::Result<()> {
         self.worn.push(Worn::of(simulation));
-        if let Some(unsampled) = &mut self.unsampled {
+        let left = simulation.plan().outputs.len().saturating_sub(self.worn.len());
+        if let Some(unsampled) = self.unsampled.as_mut().filter(|_| left.is_multiple_of(self.every)) {
             unsampled.see(simulation);
         }
         Ok(())

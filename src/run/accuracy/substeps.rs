@@ -8,13 +8,15 @@ use crate::solver::model::{Model, Schedule};
 use crate::solver::simulation::Simulation;
 
 /// Substeps of a period with which those of a run are compared, over these. Halves would tell little: as more substeps come next to a reversal,
-/// the error may stand still and then fall at once. At constant indentation the error is of second order, and a fifteenth of it is left out.
+/// the error may stand still and then fall at once. At constant indentation the error is of second order, and a fifteenth of it is left out where they are four times as many, as beyond the last number.
 const FINER: usize = 8;
-const FINER_IN_TABLE: usize = 4;
+const FINER_OF_MANY: usize = 4;
+const MANY: usize = 384;
 
 /// The same for a run with this schedule.
 pub(super) fn finer_than(schedule: &Schedule) -> usize {
-    if schedule.is_tabulated() { FINER_IN_TABLE } else { FINER }
+    let are_many = schedule.is_tabulated() || schedule.loop_steps(1) > MANY;
+    if are_many { FINER_OF_MANY } else { FINER }
 }
 
 /// The larger of two numbers; infinite where one is not a number.
