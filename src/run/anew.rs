@@ -290,26 +290,29 @@ impl Attempts<'_> {
         let (simulation, attempt) = (&self.stepping, &self.recorder.attempt);
         let (accuracy, springs) = (self.scene.numerics().accuracy, simulation.springs());
         let companions = self.recorder.companions().filter(|_| self.may_be_finer())?;
-        let mut times = 1.0;
-        let wanted = match outcome {
-            Ok(Outcome::Interrupted) => None,
+        let alone = |springs: Option<usize>| springs.map(|it| (it, 1.0)).into_iter().collect();
+        let wanted: Vec<(usize, f64)> = match outcome {
+            Ok(Outcome::Interrupted) => vec![],
             // The companion of a finer run may come to an end.
-            _ if companions.is_smooth() && companions.is_lost() => budget::refined(springs, None, accuracy),
-            Ok(_) if companions.is_smooth() => budget::refined(springs, checkpoint.error_estimate, accuracy),
-            Ok(_) => {
-                let shares = self.recorder.shares(simulation)?;
-                let (wanted, of_substeps) = self.more_by_order(shares);
-                times = of_substeps;
-                wanted
+            _ if companions.is_smooth() && companions.is_lost() => {
+                alone(budget::refined(springs, None, accuracy))
             }
+            Ok(_) if companions.is_smooth() => {
+                alone(budget::refined(springs, checkpoint.error_estimate, accuracy))
+            }
+            Ok(_) => self.more_by_order(self.recorder.shares(simulation)?),
             // More springs may find an end where few do not.
-            Err(Error::NotConverged { .. }) => budget::enough_for_a_rim(simulation.model())
-                .or_else(|| budget::refined(springs, None, accuracy)),
-            Err(_) => None,
+            Err(Error::NotConverged { .. }) => alone(
+                budget::enough_for_a_rim(simulation.model())
+                    .or_else(|| budget::refined(springs, None, accuracy)),
+            ),
+            Err(_) => vec![],
         };
         let is_met = outcome.is_ok() && checkpoint.error_estimate.is_some_and(|error| error <= accuracy);
-        let allowed = |springs: &usize| cost::allows(simulation, *springs, times, attempt.work, is_met);
-        let wanted = wanted.filter(allowed)?;
+        let allowed = |(springs, times): &(usize, f64)| {
+            cost::allows(simulation, *springs, *times, attempt.work, is_met)
+        };
+        let (wanted, times) = wanted.into_iter().find(allowed)?;
         let substeps = self.chosen_substeps().filter(|_| times > 1.0);
         let substeps =
             substeps.map_or(attempt.fineness.substeps, |now| budget::more_substeps(now, times) as u64);
@@ -317,20 +320,21 @@ impl Attempts<'_> {
         Some((if goes_over { budget::springs_before(wanted) } else { wanted }, substeps))
     }
 
-    /// Springs that are wanted by the order that was observed, and how many times the substeps.
-    fn more_by_order(&self, shares: Shares) -> (Option<usize>, f64) {
+    /// Springs that are wanted by the order that was observed, with how many times the substeps, the best first.
+    fn more_by_order(&self, shares: Shares) -> Vec<(usize, f64)> {
         let (model, springs) = (self.stepping.model(), self.stepping.springs());
         let accuracy = self.scene.numerics().accuracy;
         if model.schedule().takes_steps() {
             let wanted = budget::refined_by_order(springs, shares, accuracy, model);
             // Companions have fewer substeps in proportion.
             let known = shares.springs < UNKNOWN && self.chosen_substeps().is_some();
-            return (wanted, wanted.filter(|_| known).map_or(1.0, |it| it as f64 / springs as f64));
+            let times = |wanted: usize| if known { wanted as f64 / springs as f64 } else { 1.0 };
+            return wanted.into_iter().map(|it| (it, times(it))).collect();
         }
         let times = self.chosen_substeps().map_or(1.0, |now| budget::times_substeps(shares, accuracy, now));
         let wanted = budget::refined_by_order(springs, shares.with_substeps(times), accuracy, model);
         let only_substeps = (times > 1.0 && !shares.is_surely_within(accuracy)).then_some(springs);
-        (wanted.or(only_substeps), times)
+        wanted.into_iter().chain(only_substeps).map(|it| (it, times)).collect()
     }
 
     /// Substeps of a period, where the program chooses them.

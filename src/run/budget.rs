@@ -462,7 +462,7 @@ pub(in crate::run) fn enough_for_a_rim(model: &Model) -> Option<usize> {
     (may_bear_at_rim(model) && model.springs() < ENOUGH_FOR_A_RIM).then_some(ENOUGH_FOR_A_RIM)
 }
 
-/// As [`refined`] where the order of convergence was observed: the first that a run may take of the springs that this order asks for, those that the full one does, and twice as many.
+/// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, and twice as many, of which the first serve that a run may take.
 ///
 /// # Arguments
 /// * `model` -- of the run: in gross slip more springs are of no use, and where the normal load changes along the period they take long
@@ -471,7 +471,7 @@ pub(in crate::run) fn refined_by_order(
     shares: Shares,
     accuracy: f64,
     model: &Model,
-) -> Option<usize> {
+) -> Vec<usize> {
     let most = match model.gross() {
         Some(_) => MOST_IN_GROSS_SLIP,
         None if model.schedule().lifts() => MOST_REFINED_LIFTING,
@@ -479,12 +479,12 @@ pub(in crate::run) fn refined_by_order(
     };
     if shares.springs >= UNKNOWN {
         // Companions of a finer run may tell.
-        return refined(springs, None, accuracy).filter(|springs| *springs <= most);
+        return refined(springs, None, accuracy).filter(|springs| *springs <= most).into_iter().collect();
     }
     let rest = shares.substeps + shares.left_out;
     let aim = AIM * accuracy - rest;
     if shares.is_surely_within(accuracy) || aim <= 0.0 {
-        return None;
+        return vec![];
     }
     let wanted = |order: f64| {
         let factor = (shares.springs / aim).powf(order.recip()).max(RAISES[0]);
@@ -494,5 +494,5 @@ pub(in crate::run) fn refined_by_order(
     // On few springs the order may not show yet, nor may the estimate be one: more tell.
     let by_order = (shares.order >= SEEN).then(|| wanted(shares.order));
     let by_others = [wanted(FULL_ORDER), RAISES[1] * springs as f64];
-    by_order.into_iter().chain(by_others).find(|springs| *springs <= most).map(|springs| springs as usize)
+    by_order.into_iter().chain(by_others).filter(|it| *it <= most).map(|it| it as usize).collect()
 }
