@@ -6,7 +6,7 @@ use fretwear::Results;
 use fretwear::scene::Scene;
 use support::resume::whole_and_in_parts;
 
-/// A steel ball on a graded flat, `1` being elastic from one depth to the next as the ball is.
+/// A rigid ball on a graded flat of steel, under a normal oscillation.
 ///
 /// # Arguments
 /// * `ratios` -- amplitude of the oscillation over the indentation, and its frequency over that of slip
@@ -22,7 +22,7 @@ fn scene(grading: f64, ratios: (f64, f64), phase: f64, tau: f64, numerics: &str)
 const COULOMB: &str = "[friction.coulomb]\ncoefficient = 0.7\n";
 const ARCHARD: &str = "[wear.archard]\ncoefficient = \"1e-8 1/MPa\"\n";
 
-/// The same under other laws and on another path.
+/// That ball under any laws and on any path.
 fn moved(grading: f64, (friction, wear): (&str, &str), motion: &str, tau: f64, numerics: &str) -> Scene {
     let driven = if grading < 0.0 { 0.12 } else { 0.325 };
     let reference = if grading == 0.0 { "" } else { "reference_depth = \"100 um\"" };

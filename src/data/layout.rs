@@ -311,7 +311,11 @@ pub(super) const CHECKPOINT_REALS: [Field<Checkpoint, f64>; 13] = [
         |it| &mut it.progress.averages_from,
     ),
     field(
-        quantity("rejected_at", "1", "cycles done when two hundred more steps had been rejected"),
+        quantity(
+            "rejected_at",
+            "1",
+            "cycles done when it was last seen whether steps that are rejected lead on",
+        ),
         |it| &it.progress.rejected_at,
         |it| &mut it.progress.rejected_at,
     ),

@@ -202,9 +202,8 @@ impl Attempts<'_> {
             let finer = Fineness { tolerance: TIGHTER * tolerance, ..attempt.fineness };
             return vec![self.finer(self.springs(), finer, Some(error), work)];
         }
-        if let Some((springs, substeps)) = self.more(outcome, checkpoint) {
-            let finer = Fineness { substeps, ..attempt.fineness };
-            return vec![self.finer(springs, finer, outcome.is_ok().then_some(error), work)];
+        if let Some((springs, fineness)) = self.more(outcome, checkpoint) {
+            return vec![self.finer(springs, fineness, outcome.is_ok().then_some(error), work)];
         }
         if ends && error >= UNKNOWN && attempt.may_end_again() && attempt.knows_error() {
             return vec![self.end_again(work)];
@@ -245,14 +244,8 @@ impl Attempts<'_> {
     /// Coarser ones may come to an end where this does not, and tell that nothing is known of the error.
     fn for_an_end(&self, work: u64) -> Vec<Anew> {
         let (begun, _) = self.stepping.first();
-        let asked = Parts::new(
-            self.scene,
-            self.scene.numerics(),
-            None,
-            self.known.get(&Attempt::default().kind()),
-            self.store,
-        )
-        .ok();
+        let known = self.known.get(&Attempt::default().kind());
+        let asked = Parts::new(self.scene, self.scene.numerics(), None, known, self.store).ok();
         let asked = asked.map(|parts| parts.model).filter(|it| it.springs() < begun.springs());
         let fewer = cost::fewer_for_an_end(asked.as_ref().unwrap_or(begun));
         let counted = Attempt { refinements: REFINEMENTS + 1, work, ..Attempt::default() };
@@ -285,8 +278,8 @@ impl Attempts<'_> {
         all
     }
 
-    /// Springs and [substeps](Fineness::substeps) with which to repeat a run, where the program chose the springs and the run found no end or may be off by more than was asked for.
-    fn more(&self, outcome: &Result<Outcome>, checkpoint: &Checkpoint) -> Option<(usize, u64)> {
+    /// Springs with which to repeat a run, and how finely, where the program chose the springs and the run found no end or may be off by more than was asked for.
+    fn more(&self, outcome: &Result<Outcome>, checkpoint: &Checkpoint) -> Option<(usize, Fineness)> {
         let (simulation, attempt) = (&self.stepping, &self.recorder.attempt);
         let (accuracy, springs) = (self.scene.numerics().accuracy, simulation.springs());
         let companions = self.recorder.companions().filter(|_| self.may_be_finer())?;
@@ -313,11 +306,12 @@ impl Attempts<'_> {
             cost::allows(simulation, *springs, *times, attempt.work, is_met)
         };
         let (wanted, times) = wanted.into_iter().find(allowed)?;
-        let substeps = self.chosen_substeps().filter(|_| times > 1.0);
-        let substeps =
-            substeps.map_or(attempt.fineness.substeps, |now| budget::more_substeps(now, times) as u64);
+        let mut fineness = attempt.fineness;
+        if let Some(now) = self.chosen_substeps().filter(|_| times > 1.0) {
+            fineness.substeps = budget::more_substeps(now, times) as u64;
+        }
         let goes_over = simulation.sticks_after_gross_slip();
-        Some((if goes_over { budget::springs_before(wanted) } else { wanted }, substeps))
+        Some((if goes_over { budget::springs_before(wanted) } else { wanted }, fineness))
     }
 
     /// Springs that are wanted by the order that was observed, with how many times the substeps, the best first.
@@ -340,8 +334,8 @@ impl Attempts<'_> {
     /// Substeps of a period, where the program chooses them.
     fn chosen_substeps(&self) -> Option<usize> {
         let (scene, attempt) = (self.scene, &self.recorder.attempt);
-        let chosen = scene.numerics().substeps.is_none() && !scene.conditions().mode.is_tangential();
-        resolution(scene, &attempt.numerics(scene)).substeps.filter(|_| chosen)
+        let by_hand = scene.numerics().substeps.is_some();
+        resolution(scene, &attempt.numerics(scene)).substeps.filter(|_| !by_hand)
     }
 
     /// Whether a run may be repeated on other springs, or in other steps: the program chose the springs, and it is not a stick zone that is about to be lost.

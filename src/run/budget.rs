@@ -151,8 +151,7 @@ pub(in crate::run) fn springs_in_gross_slip(
 fn springs_that_slide(contact: &InitialContact, schedule: &Schedule, accuracy: f64) -> usize {
     if !Gross::is_smooth(contact, schedule) {
         let [at, power] = CUBICS_IN_GROSS_SLIP;
-        let lifts = schedule.lifts() && bears_at_rim(contact);
-        let least = if lifts { FEWEST_WITH_A_RIM } else { FEWEST_CUBICS } as f64;
+        let least = if lifts_at_rim(contact, schedule) { FEWEST_WITH_A_RIM } else { FEWEST_CUBICS } as f64;
         // Debris leaves a layer at the contact edge as wide as it spreads.
         let layer =
             schedule.conditions().wear.spreading().map_or(0.0, |it| contact.contact_radius() / it.length);
@@ -350,7 +349,7 @@ pub(in crate::run) fn substeps_for(accuracy: f64, lifts: bool) -> usize {
 /// Substeps for every peak of the indentation where slip is taken by steps, the accuracy that they serve, and the power with which they grow:
 /// twice as many for a tenth of the error. The most in a period.
 const SUBSTEPS_OF_STEPS: [f64; 3] = [64.0, 1e-2, 0.3011];
-const MOST_SUBSTEPS_OF_STEPS: f64 = 1024.0;
+const MOST_SUBSTEPS: f64 = 1024.0;
 
 /// Substeps of a period whose slip is taken by [`Steps`](crate::contact::spring::Steps).
 ///
@@ -359,12 +358,12 @@ const MOST_SUBSTEPS_OF_STEPS: f64 = 1024.0;
 pub(in crate::run) fn substeps_of_steps(accuracy: f64, peaks: u32) -> usize {
     let [substeps, at, power] = SUBSTEPS_OF_STEPS;
     let wanted = f64::from(peaks) * substeps * (at / accuracy).powf(power).max(1.0);
-    wanted.min(MOST_SUBSTEPS_OF_STEPS).ceil() as usize
+    wanted.min(MOST_SUBSTEPS).ceil() as usize
 }
 
 /// Substeps, so many times as many as now.
 pub(in crate::run) fn more_substeps(now: usize, times: f64) -> usize {
-    ((now as f64 * times).ceil() as usize).min(MOST_SUBSTEPS_OF_STEPS as usize).max(now)
+    ((now as f64 * times).ceil() as usize).min(MOST_SUBSTEPS as usize).max(now)
 }
 
 /// Parts of the accuracy that substeps may leave out in a run that is repeated anyway, and to which they are then brought, to second order.
@@ -379,7 +378,7 @@ pub(in crate::run) fn times_substeps(shares: Shares, accuracy: f64, now: usize) 
     if shares.substeps <= most * accuracy {
         return 1.0;
     }
-    (shares.substeps / (aim * accuracy)).sqrt().min(MOST_SUBSTEPS_OF_STEPS / now as f64).max(1.0)
+    (shares.substeps / (aim * accuracy)).sqrt().min(MOST_SUBSTEPS / now as f64).max(1.0)
 }
 
 /// The estimate where nothing is known: as much as all that wears.
@@ -447,14 +446,15 @@ const GRADINGS_WITH_A_RIM: [f64; 2] = [-0.5, 0.25];
 /// Fewest springs there: of companions on 15 some got stuck, of those on 24 fewer.
 const FEWEST_WITH_A_RIM: usize = 40;
 
-fn bears_at_rim(contact: &InitialContact) -> bool {
+/// Whether the contact may come to bear at a rim that hardly wears, where it is in gross slip.
+fn lifts_at_rim(contact: &InitialContact, schedule: &Schedule) -> bool {
     let (grading, [least, most]) = (contact.half_space().grading(), GRADINGS_WITH_A_RIM);
-    grading > least && grading < most
+    schedule.lifts() && grading > least && grading < most
 }
 
 /// Whether the contact may come to bear at a rim that hardly wears.
 pub(in crate::run) fn may_bear_at_rim(model: &Model) -> bool {
-    model.gross().is_some() && model.schedule().lifts() && bears_at_rim(model.contact())
+    model.gross().is_some() && lifts_at_rim(model.contact(), model.schedule())
 }
 
 /// More springs for a run that found no end on these, or whose companion did not, where the contact may bear at its rim.

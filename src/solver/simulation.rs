@@ -25,7 +25,7 @@ const WORN_OUT: f64 = 1e-13;
 /// are negative, and where only the ground next to the edge of stick still wears its sum may vanish.
 const CERTAIN_WEAR: f64 = 0.5;
 
-/// Rejected steps after which a run is given up if they are more than half of the accepted ones as well. Where a held force loses its stick
+/// Rejected steps after which a run that rejects many is given up. Where a held force loses its stick
 /// zone, the edge of stick is followed in ever smaller steps.
 const MOST_REJECTED: u64 = 4000;
 
@@ -120,7 +120,7 @@ pub struct Progress {
     pub busy_until: f64,
     /// Cycles from which on steps see the mean cycle of a pass, where its blocks were stepped through before; else zero.
     pub averages_from: f64,
-    /// Cycles done when [`REJECTED_AT_ONCE`] steps were rejected since the last time.
+    /// Cycles done when it was last seen whether steps that are rejected lead on.
     pub rejected_at: f64,
     /// Index of the next entry of the plan's outputs.
     pub next_output: u64,
@@ -132,6 +132,13 @@ pub struct Progress {
     pub rate_evaluations: u64,
     /// Work of the periods that steps and outputs resolved, nanoseconds of one core, about, as [`Model::work_counted`].
     pub resolved_work: u64,
+}
+
+impl Progress {
+    /// Whether more than half as many steps were rejected as accepted.
+    pub fn rejects_many(&self) -> bool {
+        2 * self.rejected_steps > self.steps
+    }
 }
 
 /// Where a step led, and what follows from there.
@@ -547,7 +554,7 @@ impl Simulation {
     fn reject(&mut self, observers: &mut [&mut dyn Observer]) -> Result<Flow> {
         self.progress.rejected_steps += 1;
         let rejected = self.progress.rejected_steps;
-        let mut is_stuck = rejected > MOST_REJECTED && 2 * rejected > self.progress.steps;
+        let mut is_stuck = rejected > MOST_REJECTED && self.progress.rejects_many();
         if self.model.schedule().lifts() && rejected.is_multiple_of(REJECTED_AT_ONCE) {
             is_stuck |= self.state.cycles <= (1.0 + LEAST_GROWTH) * self.progress.rejected_at;
             self.progress.rejected_at = self.state.cycles;

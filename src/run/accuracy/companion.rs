@@ -124,7 +124,7 @@ impl Companion {
             return Err(Lost::Dear(Dear::of(&simulation)));
         }
         let stop = Arc::clone(coarser.stop);
-        let every = looks.max(1.0).ceil() as usize;
+        let every = looks.ceil().max(1.0) as usize;
         let mut seen = Seen { worn: vec![], unsampled, every, stop, most_steps, most_work };
         let outcome = simulation.run(&mut [&mut seen]);
         if work_so_far(&simulation) > most_work {
@@ -142,10 +142,9 @@ impl Companion {
     }
 }
 
-/// Whether more than half as many steps were rejected as accepted where the contact lifts within each period: it is the springs that are too few, not the work too much.
+/// Whether it is the springs that are too few, not the work too much, where the contact lifts within each period.
 fn is_stuck(simulation: &Simulation) -> bool {
-    let progress = simulation.progress();
-    simulation.model().schedule().lifts() && 2 * progress.rejected_steps > progress.steps
+    simulation.model().schedule().lifts() && simulation.progress().rejects_many()
 }
 
 /// Work of what is seen of the substeps at the outputs, by that of the cycles with which a simulation begins: two at least.
