@@ -197,15 +197,16 @@ impl Attempts<'_> {
         }
         let error = checkpoint.error_estimate.unwrap_or(UNKNOWN);
         let ends = outcome.as_ref().is_ok_and(|it| *it != Outcome::Interrupted);
-        if ends && self.is_too_coarse_in_time() {
+        if let Some(times) = self.more_tightly().filter(|_| ends) {
             let (_, tolerance) = self.stepping.first();
-            let finer = Fineness { tolerance: TIGHTER * tolerance, ..attempt.fineness };
+            let finer = Fineness { tolerance: times * tolerance, ..attempt.fineness };
             return vec![self.finer(self.springs(), finer, Some(error), work)];
         }
         if let Some((springs, fineness)) = self.more(outcome, checkpoint) {
             return vec![self.finer(springs, fineness, outcome.is_ok().then_some(error), work)];
         }
-        if ends && error >= UNKNOWN && attempt.may_end_again() && attempt.knows_error() {
+        let knew_more = error >= UNKNOWN && attempt.knows_error() || self.was_within(error);
+        if ends && knew_more && attempt.may_end_again() {
             return vec![self.end_again(work)];
         }
         if !(no_end && self.looks_for_an_end()) {
@@ -218,7 +219,13 @@ impl Attempts<'_> {
         }
     }
 
-    /// Finer ones do not end, or know nothing of their error: that which did, once more, if it is not in memory any more.
+    /// Whether one before was within the accuracy and this one, told to be off by `error`, is not: of finer springs, other radii are compared.
+    fn was_within(&self, error: f64) -> bool {
+        let (attempt, accuracy) = (self.recorder.attempt, self.scene.numerics().accuracy);
+        attempt.has_end() && attempt.ended_within <= accuracy && error > accuracy
+    }
+
+    /// Finer ones do not end, or know less of their error: that which did, once more, if it is not in memory any more.
     fn end_again(&self, work: u64) -> Anew {
         let before = self.recorder.attempt;
         let counted = Attempt { refinements: REFINEMENTS + 1, fineness: before.ended_with, work, ..before };
@@ -231,7 +238,7 @@ impl Attempts<'_> {
     fn finer(&self, springs: usize, fineness: Fineness, error: Option<f64>, work: u64) -> Anew {
         let now = self.recorder.attempt;
         let ended = match error {
-            Some(error) if error < UNKNOWN || !now.knows_error() => {
+            Some(error) if !self.was_within(error) && (error < UNKNOWN || !now.knows_error()) => {
                 let ended_on = self.springs() as u64;
                 Attempt { ended_on, ended_with: now.fineness, ended_within: error, ..now }
             }
@@ -346,17 +353,26 @@ impl Attempts<'_> {
         chosen && again && !simulation.model().is_losing_stick(simulation.state())
     }
 
-    /// Whether more springs have not helped, so that it is the steps that its companions differ by, where the program chooses them.
-    fn is_too_coarse_in_time(&self) -> bool {
+    /// Factor on the tolerance with which to repeat a run in finer steps, where the program chooses them: where an edge of stick moves they are tried before more springs, which take longer,
+    /// elsewhere where more springs have not helped, so that it is the steps that companions differ by.
+    fn more_tightly(&self) -> Option<f64> {
         let (numerics, attempt) = (self.scene.numerics(), self.recorder.attempt);
         let chosen = numerics.tolerance.is_none() && numerics.stepper != Stepper::EveryCycle;
-        if !(chosen && attempt.knows_error() && self.may_be_finer()) {
-            return false;
+        if !(chosen && self.may_be_finer()) {
+            return None;
         }
+        let shares = self.recorder.shares(&self.stepping)?;
         let before = (attempt.ended_on as usize, attempt.ended_within);
-        let shares = self.recorder.shares(&self.stepping);
-        shares.is_some_and(|it| it.stand_still(self.springs(), before, numerics.accuracy))
-            && cost::allows(&self.stepping, self.springs(), 1.0, attempt.work, false)
+        let ((first, _), accuracy) = (self.stepping.first(), numerics.accuracy);
+        let springs = first.springs();
+        let by_steps =
+            first.gross().is_none() && first.moving().is_some() && !self.recorder.companions()?.is_smooth();
+        let times = match attempt.fineness.tolerance > 0.0 {
+            false if by_steps => shares.by_steps(accuracy),
+            _ if attempt.knows_error() && shares.stand_still(springs, before, accuracy) => Some(TIGHTER),
+            _ => None,
+        };
+        times.filter(|_| cost::allows(&self.stepping, springs, 1.0, attempt.work, false))
     }
 
     /// Whether a run that found no end may be made anew on fewer springs: the program chose them, and it is not a stick zone that is lost, or about to be.

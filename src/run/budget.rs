@@ -33,6 +33,9 @@ const MARGIN: f64 = 0.35;
 const OF_TIME: f64 = 0.3;
 const OF_TIME_LOSING_STICK: f64 = 0.03;
 
+/// Coarsest accuracy for which steps are chosen where the edge of stick moves: in coarser ones, companions take the same steps as the run, whatever their tolerance, and tell nothing.
+const COARSEST_MOVING: f64 = 1e-3;
+
 /// The same where blocks recur: steps end at the ends of blocks, so that a smaller tolerance takes few more, and what they are off by adds up over the passes.
 const OF_TIME_IN_PASSES: f64 = 0.03;
 
@@ -69,6 +72,10 @@ const FULL_ORDER: f64 = 2.0;
 const STANDS_STILL: f64 = 0.8;
 const MANY_MORE: f64 = 1.2;
 pub(in crate::run) const TIGHTER: f64 = 0.2;
+
+/// Power of the error with which the tolerance has to fall where an edge of stick moves, and most times that it becomes so much tighter at once.
+const OF_EDGE: f64 = 1.5;
+const MOST_TIGHTER: f64 = 3.0;
 
 /// `n ln(a0/c)`: the logarithm of the profile's height at the first contact edge over that at the edge of stick.
 pub(in crate::run) fn smallness(contact: &InitialContact) -> f64 {
@@ -201,6 +208,11 @@ impl Falling {
 /// as many steps again.
 pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
     let loses_stick = model.slides() && model.moving().is_some_and(MovingStick::recedes);
+    let accuracy = if model.moving().is_some() && !model.wears_smoothly() {
+        accuracy.min(COARSEST_MOVING)
+    } else {
+        accuracy
+    };
     accuracy
         * match model.gross() {
             Some(_) => OF_STEPS * OF_TIME,
@@ -413,14 +425,22 @@ impl Shares {
         Self { substeps: self.substeps / times.powi(2), ..self }
     }
 
-    /// Whether more springs have not helped, so that it is the steps that companions differ by: no order is seen.
+    /// Factor on the tolerance that would cure it if all of it were of the steps, next to an edge of stick that moves.
+    pub fn by_steps(&self, accuracy: f64) -> Option<f64> {
+        let aim = AIM * accuracy - self.substeps - self.left_out;
+        let wanted = self.springs < UNKNOWN && !self.is_surely_within(accuracy) && aim > 0.0;
+        let times = || OF_EDGE * (aim / self.springs).ln() / TIGHTER.ln();
+        wanted.then(|| TIGHTER.powf(times().ceil().clamp(1.0, MOST_TIGHTER)))
+    }
+
+    /// Whether more springs have not helped, so that it is the steps that companions differ by.
     ///
     /// # Arguments
     /// * `springs` -- of the run
     /// * `before` -- springs and error of a run before
     pub fn stand_still(&self, springs: usize, before: (usize, f64), accuracy: f64) -> bool {
         let (fewer, error) = before;
-        let helped = self.order >= SEEN || self.error() <= STANDS_STILL * error;
+        let helped = self.error() <= STANDS_STILL * error;
         let beyond = self.springs < UNKNOWN && !self.is_surely_within(accuracy);
         beyond && springs as f64 > MANY_MORE * fewer as f64 && !helped
     }

@@ -22,18 +22,25 @@ pub(super) struct Worn {
     pub volume: f64,
     /// At the radii looked at.
     pub depth: Vec<f64>,
+    /// One in so many of those is a radius of the run.
+    pub every: usize,
 }
 
 impl Worn {
-    fn of(simulation: &Simulation) -> Self {
+    fn of(simulation: &Simulation, every: usize) -> Self {
         let state = simulation.state();
         let volume = simulation.model().worn_volume(state, simulation.fields());
-        Self { cycles: state.cycles, volume, depth: simulation.wear_depth() }
+        Self { cycles: state.cycles, volume, depth: simulation.wear_depth(), every }
     }
 
     pub(super) fn shown(snapshot: &Snapshot, every: usize) -> Self {
         let depth = snapshot.wear_depth.iter().step_by(every).copied().collect();
-        Self { cycles: snapshot.cycles, volume: snapshot.wear_volume, depth }
+        Self { cycles: snapshot.cycles, volume: snapshot.wear_volume, depth, every: 1 }
+    }
+
+    /// At the radii of the run.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = f64> + '_ {
+        self.depth.iter().copied().step_by(self.every)
     }
 
     pub(super) fn deepest(&self) -> f64 {
@@ -46,8 +53,9 @@ pub(super) struct Coarser<'a> {
     pub scene: &'a Scene,
     pub numerics: Numerics,
     pub springs: usize,
-    /// `r² - c²`, m², of the radii looked at.
+    /// `r² - c²`, m², of the radii looked at, and one in how many of those is a radius of the run.
     pub offsets: &'a [f64],
+    pub between: usize,
     /// Whether it tells what the substeps of a period leave out, if periods are sampled.
     pub samples: bool,
     /// The schedule of the run, where that has as many substeps.
@@ -125,7 +133,8 @@ impl Companion {
         }
         let stop = Arc::clone(coarser.stop);
         let every = looks.ceil().max(1.0) as usize;
-        let mut seen = Seen { worn: vec![], unsampled, every, stop, most_steps, most_work };
+        let between = coarser.between;
+        let mut seen = Seen { worn: vec![], between, unsampled, every, stop, most_steps, most_work };
         let outcome = simulation.run(&mut [&mut seen]);
         if work_so_far(&simulation) > most_work {
             return Err(if is_stuck(&simulation) { Lost::NoEnd } else { Lost::Dear(Dear::of(&simulation)) });
@@ -158,6 +167,8 @@ fn work_of_looks(simulation: &Simulation) -> f64 {
 /// What is seen at the outputs.
 struct Seen {
     worn: Vec<Worn>,
+    /// One in so many of the radii looked at is one of the run.
+    between: usize,
     unsampled: Option<Unsampled>,
     /// One in so many outputs tells what substeps leave out.
     every: usize,
@@ -176,7 +187,7 @@ impl Seen {
 
 impl Observer for Seen {
     fn output(&mut self, simulation: &Simulation) -> crate::Result<()> {
-        self.worn.push(Worn::of(simulation));
+        self.worn.push(Worn::of(simulation, self.between));
         let left = simulation.plan().outputs.len().saturating_sub(self.worn.len());
         if let Some(unsampled) = self.unsampled.as_mut().filter(|_| left.is_multiple_of(self.every)) {
             unsampled.see(simulation);

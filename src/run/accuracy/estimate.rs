@@ -15,7 +15,6 @@ use super::super::passes;
 use super::companion::{Coarser, Companion, Dear, Lost, Worn};
 use super::substeps::larger;
 use crate::data::{Attempt, Snapshot, same_cycles};
-use crate::laws::loading::TangentialControl;
 use crate::numerics::curve::distance_from_curve;
 use crate::numerics::grid::Clustering;
 use crate::scene::{Numerics, Scene, Stepper};
@@ -45,14 +44,16 @@ const ORDER_OF_FINER: f64 = 2.0;
 /// would have it.
 const ORDER_BY_HAND: f64 = 1.0;
 
+/// Radii at which companions are looked at for each that is compared, where profiles are compared as curves: next to an edge a curve is steep between two radii of the run.
+const BETWEEN: usize = 4;
+
 /// Least ratio of the springs that tells anything: a mesh may have to be raised to carry the companion.
 const LEAST_RATIO: f64 = 1.2;
 
-/// Orders that are believed: edges that move outwards and kinks of wear are of second order at best, edges of stick that recede of third, others that
-/// may move inwards of first, and below the last number nothing is known.
+/// Orders that are believed: edges that move outwards and kinks of wear are of second order at best, edges of stick that recede of third, and below the
+/// last number nothing is known.
 const ORDER: f64 = 2.0;
 const ORDER_RECEDING: f64 = 3.0;
-const ORDER_INWARDS: f64 = 1.0;
 const LEAST_ORDER: f64 = 0.5;
 
 /// Least order that was seen in gross slip, with a mesh over the whole contact.
@@ -78,7 +79,7 @@ pub(in crate::run) struct Companions {
     finer: bool,
     /// One in so many radii of the run is compared: about as many as there are springs, between which the error varies no faster.
     every: usize,
-    /// Those radii over the contact radius, where the edge of stick moves, or is where a sampled path says.
+    /// Those radii over the contact radius and others between them, where the edge of stick moves, or is where a sampled path says.
     radii: Option<Vec<f64>>,
     /// Volume and depth of the limit, where there is one.
     limit: Option<[f64; 2]>,
@@ -106,8 +107,9 @@ pub(in crate::run) struct Coarsening {
     sticks_again: bool,
     /// Of the work of a run that this one may take.
     part: f64,
-    /// `r² - c²`, m², of the radii compared.
+    /// `r² - c²`, m², of the radii compared, and of so many in all up to the next of them.
     offsets: Vec<f64>,
+    between: usize,
     /// Substeps of a period where they are of a known order, so that coarser companions show what they leave out.
     substeps: Option<usize>,
     /// That of the run, where companions have the same.
@@ -127,6 +129,7 @@ impl Coarsening {
         let smooth = is_smooth(scene, model);
         let substeps = resolution(scene, &numerics).substeps.filter(|_| model.schedule().takes_steps());
         let finer = compares_with_finer(scene, model);
+        let curve = if are_curves(model) { BETWEEN } else { 1 };
         Self {
             springs: model.springs(),
             tolerance,
@@ -136,7 +139,8 @@ impl Coarsening {
             sticks_again,
             part: attempt.part_of_work(),
             numerics,
-            offsets: model.offsets().into_iter().step_by(every(model)).collect(),
+            offsets: between(&model.offsets().into_iter().step_by(every(model)).collect::<Vec<_>>(), curve),
+            between: curve,
             schedule: substeps.is_none().then(|| model.schedule().clone()),
             substeps,
             averages: model.schedule().averages_from() == 0.0,
@@ -170,6 +174,7 @@ impl Coarsening {
                 }
                 .max(FEWEST),
                 offsets: &self.offsets,
+                between: self.between,
                 schedule: self.schedule.as_ref(),
                 averages: self.averages,
                 samples: steps.abs() == 1 && self.substeps.is_none(),
@@ -219,6 +224,22 @@ fn always_slides(model: &Model) -> bool {
     !spreads && model.gross().is_some_and(|gross| !gross.sticks())
 }
 
+/// Whether profiles are compared as curves: they are steep at places that are known to the error of an edge only.
+fn are_curves(model: &Model) -> bool {
+    let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
+    let moves = model.moving().is_some() && !model.bears_both_forces();
+    moves || sampled || model.gross().is_some()
+}
+
+/// Values and so many in all, evenly, from each up to the next.
+fn between(values: &[f64], count: usize) -> Vec<f64> {
+    let to_next = |pair: &[f64]| -> Vec<f64> {
+        let [from, to] = [pair[0], pair[1]];
+        (0..count).map(|i| from + (to - from) * i as f64 / count as f64).collect()
+    };
+    values.windows(2).flat_map(to_next).chain(values.last().copied()).collect()
+}
+
 /// One in so many radii of a run is compared.
 fn every(model: &Model) -> usize {
     (model.offsets().len() / model.springs()).max(1)
@@ -231,18 +252,17 @@ impl Companions {
     /// * `limited` -- whether the scene has a limit in closed form
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, limited: bool) -> Self {
         let (model, _) = simulation.first();
-        let (smooth, gross, every) = (is_smooth(scene, model), model.gross().is_some(), every(model));
+        let (smooth, every) = (is_smooth(scene, model), every(model));
         let radius = model.contact().contact_radius();
-        let shown = model.radii().into_iter().step_by(every);
-        let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
-        let moves = model.moving().is_some() && !model.bears_both_forces();
-        let radii = (moves || sampled || gross).then(|| shown.map(|r| r / radius).collect());
-        let held = scene.conditions().tangential_control != TangentialControl::Displacement;
+        let radii = are_curves(model).then(|| {
+            let squared: Vec<f64> =
+                model.radii().into_iter().step_by(every).map(|r| (r / radius).powi(2)).collect();
+            between(&squared, BETWEEN).into_iter().map(f64::sqrt).collect()
+        });
         let recedes = model.moving().is_some_and(MovingStick::recedes);
-        let order = match held {
+        let order = match recedes {
             _ if scene.numerics().springs.is_some() => ORDER_BY_HAND,
-            _ if recedes => ORDER_RECEDING,
-            true => ORDER_INWARDS,
+            true => ORDER_RECEDING,
             false => ORDER,
         };
         let unseen = || model.unseen_depth().unwrap_or(0.0);
@@ -369,13 +389,13 @@ impl Companions {
     /// the curves, of depth over the largest or of radius over that of the contact, whichever is larger.
     fn apart(&self, one: &Worn, other: &Worn, [volume, depth]: [f64; 2]) -> f64 {
         let of_volume = (one.volume - other.volume).abs() / volume;
-        let count = one.depth.len().min(other.depth.len());
         let of_profile: Vec<f64> = match &self.radii {
-            None => (0..count).map(|i| (one.depth[i] - other.depth[i]).abs() / depth).collect(),
+            None => one.nodes().zip(other.nodes()).map(|(one, other)| (one - other).abs() / depth).collect(),
             Some(radii) => {
-                let [one, other] =
-                    [one, other].map(|it| it.depth.iter().map(|it| it / depth).collect::<Vec<_>>());
-                (0..count).map(|i| distance_from_curve(radii, &other, [radii[i], one[i]], i)).collect()
+                let curve: Vec<f64> = other.depth.iter().map(|it| it / depth).collect();
+                let places = (0..curve.len()).step_by(other.every);
+                let from = |(i, one)| distance_from_curve(radii, &curve, [radii[i], one / depth], i);
+                places.zip(one.nodes()).map(from).collect()
             }
         };
         of_profile.into_iter().fold(of_volume, larger)
