@@ -239,8 +239,11 @@ impl Parts {
 /// What acts on a contact, for the steps of some numerics.
 fn schedule(scene: &Scene, contact: &InitialContact, numerics: &Numerics) -> Result<Schedule> {
     let schedule = Schedule::new(contact, scene.conditions(), resolution(scene, numerics))?;
-    let implicit = numerics.stepper == StepperChoice::Implicit;
-    Ok(if implicit { schedule } else { schedule.for_explicit_steps() })
+    if numerics.stepper != StepperChoice::Implicit {
+        return Ok(schedule.for_explicit_steps());
+    }
+    let span = scene.loading().duration.span(contact.tau_per_cycle())?;
+    Ok(schedule.asked_until(span.map_or(f64::INFINITY, |[cycles, _]| cycles)))
 }
 
 /// The limit in closed form, where there is one.

@@ -228,7 +228,7 @@ fn always_slides(model: &Model) -> bool {
 fn are_curves(model: &Model) -> bool {
     let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
     let moves = model.moving().is_some() && !model.bears_both_forces();
-    moves || sampled || model.gross().is_some()
+    moves || sampled || model.gross().is_some() || model.schedule().changes_between_blocks()
 }
 
 /// Values and so many in all, evenly, from each up to the next.

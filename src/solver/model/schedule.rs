@@ -196,6 +196,8 @@ pub struct Schedule {
     largest_indentation: f64,
     /// Whether steps follow an edge of stick that jumps between blocks.
     follows_jumps: bool,
+    /// Cycles after which nothing is asked for; infinite where that is not known beforehand.
+    asked_until: f64,
     /// Whether springs move with an edge of stick that a balance of tangential forces moves, where they can.
     follows_balance: bool,
     /// Cycles from which on wear goes on as in the mean cycle of a pass, so that no step ends at the end of a block; infinite where each does.
@@ -205,6 +207,11 @@ pub struct Schedule {
 }
 
 impl Schedule {
+    /// The same where nothing is asked for after some cycles.
+    pub fn asked_until(self, cycles: f64) -> Self {
+        Self { asked_until: cycles, ..self }
+    }
+
     /// What acts on a contact under some conditions.
     ///
     /// # Errors
@@ -298,6 +305,7 @@ impl Schedule {
             friction_along_energy,
             largest_indentation,
             follows_jumps: true,
+            asked_until: f64::INFINITY,
             follows_balance: true,
             averages_from: f64::INFINITY,
             envelope: Arc::default(),
@@ -495,9 +503,21 @@ impl Schedule {
 
     /// Everything that acts in the end: the last block that is no pause, or all of them where they are repeated, with friction as it is then.
     pub fn lasting(&self) -> impl Iterator<Item = CycleLoading> {
+        self.last_of(self.loadings.len())
+    }
+
+    /// The same of the blocks that begin before nothing more is asked for.
+    pub(super) fn lasting_until_end(&self) -> impl Iterator<Item = CycleLoading> {
+        let before = &self.ends[..self.ends.len().saturating_sub(1)];
+        self.last_of(1 + before.iter().filter(|end| !has_come(self.asked_until, **end)).count())
+    }
+
+    /// Of the first blocks the last that is no pause, or all of them where they are repeated.
+    fn last_of(&self, begun: usize) -> impl Iterator<Item = CycleLoading> {
         let factor = self.friction_change().last();
-        let last = if self.conditions.repeat { usize::MAX } else { 1 };
-        self.loadings
+        let [begun, last] =
+            if self.conditions.repeat { [self.loadings.len(), usize::MAX] } else { [begun, 1] };
+        self.loadings[..begun]
             .iter()
             .rev()
             .filter(|loading| !loading.is_pause())

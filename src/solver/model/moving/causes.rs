@@ -120,13 +120,13 @@ pub(super) fn at_one_indentation(conditions: &Conditions) -> bool {
     conditions.blocks.iter().all(|block| block.indentation_factor == 1.0)
 }
 
-/// Whether springs slip less far in the end than they did before, so that the edge of stick comes to rest on worn ground.
+/// Whether springs slip less far in the end of what is asked for than in some block, so that the edge of stick comes to rest on worn ground, or farther out than a mesh for that block begins.
 fn rests_on_worn_ground(schedule: &Schedule, contact: &InitialContact) -> bool {
     let ratio = contact.half_space().stiffness_ratio();
     let largest = |loadings: &mut dyn Iterator<Item = CycleLoading>| {
         loadings.map(|loading| loading.slip_compression(ratio)).fold(0.0, f64::max)
     };
-    let [last, most] = [largest(&mut schedule.lasting()), largest(&mut schedule.extremes())];
+    let [last, most] = [largest(&mut schedule.lasting_until_end()), largest(&mut schedule.extremes())];
     last < most * (1.0 - SAME_COMPRESSION)
 }
 
