@@ -85,9 +85,7 @@ fn result(scene: &str) -> fretwear::Result<Results> {
 fn miss(found: &Results, laws: &str, loading: &str, factor: usize) -> Option<f64> {
     let springs = (factor * (found.checkpoint().state.compression.len() + 1)).min(240);
     let finer = scene(laws, loading, &format!("springs = {springs}\ntolerance = 1e-5\nsubsteps = 384"));
-    let finer = result(&finer).ok()?.last().wear_volume;
-    let scale = found.limit().map_or(finer, |limit| limit.wear_volume());
-    Some((found.last().wear_volume - finer).abs() / scale)
+    Some(support::volume_off(found, &result(&finer).ok()?))
 }
 
 /// Whether a run says that springs within the contact pull.

@@ -15,7 +15,7 @@ use fretwear::solver::model::{Model, OperatorStore, Resolution, Schedule};
 use fretwear::solver::simulation::{End, Plan, Simulation};
 use fretwear::solver::stepper::Sdirk;
 use support::command::{run, text};
-use support::{Case, Record, distance, laws};
+use support::{Case, Record, distance, laws, volume_off};
 
 /// Amplitude factors, in blocks of these dimensionless times.
 type Blocks = [(f64, f64)];
@@ -336,12 +336,11 @@ fn a_long_block_before_a_larger_one_wears_as_if_it_were_alone() {
         let of =
             |cycles: Option<f64>, numerics: &str| long_blocks(exponent, grading, ratio, cycles, numerics);
         let alone = of(None, "accuracy = 1e-6");
-        let limit = alone.limit().expect("a limit").wear_volume();
         let wanted = [1e-2, 1e-3, 1e-4].map(|accuracy| (format!("accuracy = {accuracy:e}"), accuracy));
         for (numerics, most) in wanted.into_iter().chain([("springs = 60".to_owned(), 1e-3)]) {
             // None comes to its end within the run.
             let run = of(Some(1e6), &numerics);
-            let off = (run.last().wear_volume - alone.last().wear_volume).abs() / limit;
+            let off = volume_off(&run, &alone);
             let estimate = run.error_estimate().expect("an estimate");
             println!(
                 "r^{exponent}, k {grading}, ratio {ratio}, {numerics}: off by {off:.1e}, estimate {estimate:.1e}"

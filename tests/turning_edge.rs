@@ -182,9 +182,7 @@ fn springs_by_hand_are_told_by_how_much_they_are_off() {
     ] {
         let at = |springs: usize| run(&scene(load, control, friction, "", "tau = 1.5", &on(springs)));
         let (few, many) = (at(springs), at(240));
-        // Estimates are relative to the limit, where a scene has one.
-        let scale = many.limit().map_or(many.last().wear_volume, |limit| limit.wear_volume());
-        let off = (few.last().wear_volume - many.last().wear_volume).abs() / scale;
+        let off = support::volume_off(&few, &many);
         let estimate = few.error_estimate().expect("an estimate");
         println!("{springs} springs, {load} {control}: {estimate:.1e}, volume off by {off:.1e}");
         assert!(estimate > 0.5 * off && estimate < 0.3, "{load} {control}: {estimate:e} for {off:e}");

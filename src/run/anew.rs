@@ -365,8 +365,7 @@ impl Attempts<'_> {
         let before = (attempt.ended_on as usize, attempt.ended_within);
         let ((first, _), accuracy) = (self.stepping.first(), numerics.accuracy);
         let springs = first.springs();
-        let by_steps =
-            first.gross().is_none() && first.moving().is_some() && !self.recorder.companions()?.is_smooth();
+        let by_steps = first.gross().is_none() && budget::follows_edge(first);
         let times = match attempt.fineness.tolerance > 0.0 {
             false if by_steps => shares.by_steps(accuracy),
             _ if attempt.knows_error() && shares.stand_still(springs, before, accuracy) => Some(TIGHTER),

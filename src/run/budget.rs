@@ -208,11 +208,7 @@ impl Falling {
 /// as many steps again.
 pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
     let loses_stick = model.slides() && model.moving().is_some_and(MovingStick::recedes);
-    let accuracy = if model.moving().is_some() && !model.wears_smoothly() {
-        accuracy.min(COARSEST_MOVING)
-    } else {
-        accuracy
-    };
+    let accuracy = if follows_edge(model) { accuracy.min(COARSEST_MOVING) } else { accuracy };
     accuracy
         * match model.gross() {
             Some(_) => OF_STEPS * OF_TIME,
@@ -221,6 +217,11 @@ pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
             None if model.schedule().steps_through_passes() => OF_TIME_IN_PASSES,
             None => OF_TIME,
         }
+}
+
+/// Whether the edge of stick moves and wear is not smooth, so that its error is one of steps before it is one of springs.
+pub(in crate::run) fn follows_edge(model: &Model) -> bool {
+    model.moving().is_some() && !model.wears_smoothly()
 }
 
 /// Part of that where a held normal force lets a small stick zone grow: volumes at τ = 30 change by eight times as much as the amplitude, and so they do by errors of
@@ -425,12 +426,17 @@ impl Shares {
         Self { substeps: self.substeps / times.powi(2), ..self }
     }
 
+    /// What that of springs and steps is to come to in a repeat; none if it is surely within the accuracy, or the rest leaves nothing to it.
+    fn aim(&self, accuracy: f64) -> Option<f64> {
+        let aim = AIM * accuracy - (self.substeps + self.left_out);
+        (!self.is_surely_within(accuracy) && aim > 0.0).then_some(aim)
+    }
+
     /// Factor on the tolerance that would cure it if all of it were of the steps, next to an edge of stick that moves.
     pub fn by_steps(&self, accuracy: f64) -> Option<f64> {
-        let aim = AIM * accuracy - self.substeps - self.left_out;
-        let wanted = self.springs < UNKNOWN && !self.is_surely_within(accuracy) && aim > 0.0;
-        let times = || OF_EDGE * (aim / self.springs).ln() / TIGHTER.ln();
-        wanted.then(|| TIGHTER.powf(times().ceil().clamp(1.0, MOST_TIGHTER)))
+        let aim = self.aim(accuracy).filter(|_| self.springs < UNKNOWN)?;
+        let times = OF_EDGE * (aim / self.springs).ln() / TIGHTER.ln();
+        Some(TIGHTER.powf(times.ceil().clamp(1.0, MOST_TIGHTER)))
     }
 
     /// Whether more springs have not helped, so that it is the steps that companions differ by.
@@ -501,11 +507,7 @@ pub(in crate::run) fn refined_by_order(
         // Companions of a finer run may tell.
         return refined(springs, None, accuracy).filter(|springs| *springs <= most).into_iter().collect();
     }
-    let rest = shares.substeps + shares.left_out;
-    let aim = AIM * accuracy - rest;
-    if shares.is_surely_within(accuracy) || aim <= 0.0 {
-        return vec![];
-    }
+    let Some(aim) = shares.aim(accuracy) else { return vec![] };
     let wanted = |order: f64| {
         let factor = (shares.springs / aim).powf(order.recip()).max(RAISES[0]);
         (springs as f64 * factor).ceil()

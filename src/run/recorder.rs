@@ -358,8 +358,9 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
 /// of forces, nor that of kinks: where springs begin to slip in gross slip, of all that cubics carry there, where the contact edge comes to lie while the contact lifts, and where slip ends in smaller blocks.
 fn has_balance(simulation: &Simulation) -> bool {
     let (model, _) = simulation.first();
-    let tangential = model.schedule().conditions().tangential_control != TangentialControl::Displacement;
-    let has_kink = model.gross().is_some_and(|gross| gross.sticks() || gross.is_on_cubics());
-    let has_kink = has_kink || model.schedule().lifts() || model.schedule().changes_between_blocks();
+    let schedule = model.schedule();
+    let tangential = schedule.conditions().tangential_control != TangentialControl::Displacement;
+    let slides_with_kink = model.gross().is_some_and(|gross| gross.sticks() || gross.is_on_cubics());
+    let has_kink = slides_with_kink || schedule.lifts() || schedule.changes_between_blocks();
     !tangential && model.moving().is_none() && !has_kink
 }

@@ -11,6 +11,7 @@ pub mod results;
 pub mod resume;
 pub mod scenes;
 
+use fretwear::Results;
 use fretwear::contact::InitialContact;
 use fretwear::contact::half_space::HalfSpace;
 use fretwear::contact::indenter::{Indenter, power_law_factor};
@@ -136,4 +137,11 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
 /// Orders that the errors of ever halved steps show.
 pub fn orders(errors: &[f64]) -> Vec<f64> {
     errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect()
+}
+
+/// By how much the worn volume of a run differs from that of a finer one, relative to the limit where there is one, as estimates are.
+pub fn volume_off(run: &Results, finest: &Results) -> f64 {
+    let [volume, expected] = [run, finest].map(|it| it.last().wear_volume);
+    let scale = finest.limit().map_or(expected, |limit| limit.wear_volume());
+    (volume - expected).abs() / scale
 }

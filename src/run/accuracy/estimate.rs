@@ -129,7 +129,6 @@ impl Coarsening {
         let smooth = is_smooth(scene, model);
         let substeps = resolution(scene, &numerics).substeps.filter(|_| model.schedule().takes_steps());
         let finer = compares_with_finer(scene, model);
-        let curve = if are_curves(model) { BETWEEN } else { 1 };
         Self {
             springs: model.springs(),
             tolerance,
@@ -139,8 +138,8 @@ impl Coarsening {
             sticks_again,
             part: attempt.part_of_work(),
             numerics,
-            offsets: between(&model.offsets().into_iter().step_by(every(model)).collect::<Vec<_>>(), curve),
-            between: curve,
+            offsets: looked_at(model.offsets(), model),
+            between: density(model),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
             substeps,
             averages: model.schedule().averages_from() == 0.0,
@@ -231,13 +230,20 @@ fn are_curves(model: &Model) -> bool {
     moves || sampled || model.gross().is_some() || model.schedule().changes_between_blocks()
 }
 
-/// Values and so many in all, evenly, from each up to the next.
-fn between(values: &[f64], count: usize) -> Vec<f64> {
+/// Radii at which companions are looked at for each that is compared.
+fn density(model: &Model) -> usize {
+    if are_curves(model) { BETWEEN } else { 1 }
+}
+
+/// Of values at the radii of a run those at the radii compared, and evenly between them where companions are looked at besides.
+fn looked_at(values: Vec<f64>, model: &Model) -> Vec<f64> {
+    let compared: Vec<f64> = values.into_iter().step_by(every(model)).collect();
+    let count = density(model);
     let to_next = |pair: &[f64]| -> Vec<f64> {
         let [from, to] = [pair[0], pair[1]];
         (0..count).map(|i| from + (to - from) * i as f64 / count as f64).collect()
     };
-    values.windows(2).flat_map(to_next).chain(values.last().copied()).collect()
+    compared.windows(2).flat_map(to_next).chain(compared.last().copied()).collect()
 }
 
 /// One in so many radii of a run is compared.
@@ -255,9 +261,8 @@ impl Companions {
         let (smooth, every) = (is_smooth(scene, model), every(model));
         let radius = model.contact().contact_radius();
         let radii = are_curves(model).then(|| {
-            let squared: Vec<f64> =
-                model.radii().into_iter().step_by(every).map(|r| (r / radius).powi(2)).collect();
-            between(&squared, BETWEEN).into_iter().map(f64::sqrt).collect()
+            let squared = model.radii().into_iter().map(|r| (r / radius).powi(2)).collect();
+            looked_at(squared, model).into_iter().map(f64::sqrt).collect()
         });
         let recedes = model.moving().is_some_and(MovingStick::recedes);
         let order = match recedes {
