@@ -14,6 +14,12 @@ use crate::numerics::roots::bracketed;
 /// Steps in the search for the last stick radius.
 const SEARCH: usize = 400;
 
+/// Contact radius over the first up to which springs that slip are taken to spread what they bear.
+const FARTHEST: f64 = 2.0;
+
+/// Parts of the load that springs that slip may bear at which its friction is looked at.
+const SHED: usize = 24;
+
 impl Schedule {
     /// The contact at the largest indentation of the run, with the edge of stick where springs slip in some cycle of it.
     ///
@@ -150,12 +156,15 @@ impl Schedule {
     }
 }
 
-/// Least radius of stick, m, that a balance of tangential forces under a held normal force leaves: in the first cycle, or when wear has taken all load off the
-/// springs that slip and unworn ground within bears both; zero where the contact slides at once.
+/// Least radius of stick, m, that a balance of tangential forces under a held normal force leaves on the way to where wear has taken all load off the springs that slip and unworn ground within bears both; zero where the
+/// contact slides at once or in the end.
 ///
 /// ```text
-/// F_N = 2 c_N ∫_0^c x^k (d - g_0) dx,    F_x = 2 c_N τ(d - g_0(c)) c^(1+k)/(1+k)
+/// F_N = 2 c_N [∫_0^c x^k (d - g_0) dx + L],    F_x = 2 c_N [τ(d - g_0(c)) c^(1+k)/(1+k) + T]
 /// ```
+///
+/// In the end `L = T = 0`. On the way springs that slip bear `L ≥ 0` at some indentation `d` beyond the first, and by friction no less than `T`: that of the load on as few springs as can
+/// bear it or, where friction rises with the load, spread evenly over as many as there may be.
 ///
 /// # Errors
 /// As [`EquivalentProfile::radius_at`].
@@ -166,15 +175,30 @@ fn least_stick_radius(contact: &InitialContact, loading: &CycleLoading) -> Resul
     let Ok(first) = first_slip_compression(contact, loading, contact.indentation()) else { return Ok(0.0) };
     let first = profile.radius_at(contact.indentation() - first)?;
     let stiffness = half_space.normal_stiffness();
-    let excess = |radius: f64| {
+    let borne = 0.5 * contact.normal_force() / stiffness;
+    let strength = |compression: f64| loading.friction.static_strength(compression);
+    let excess = |radius: f64, shed: f64| {
         let area = radius.powf(exponent) / exponent;
-        let shed = 0.5 * (contact.normal_force() / stiffness - profile.load_integral(radius)) / area;
-        let strength = loading.friction.static_strength(shed);
-        loading.excess(2.0 * stiffness * strength * area, strength / ratio)
+        let most = (borne - 0.5 * profile.load_integral(radius)) / area;
+        let least = (contact.indentation() - profile.value(radius)).min(most);
+        let compression = most - shed * (most - least);
+        let load = area * (most - compression);
+        let beyond = (FARTHEST * edge).powf(exponent) / exponent - area;
+        let slipping = (load / compression * strength(compression)).min(beyond * strength(load / beyond));
+        let stick = strength(compression);
+        loading.excess(2.0 * stiffness * (stick * area + slipping), stick / ratio)
     };
     let inwards = |i: usize| edge * (-16.0 * i as f64 / (SEARCH as f64 * exponent)).exp();
-    Ok(match (1..=SEARCH).find(|i| excess(inwards(*i)) >= 0.0) {
-        Some(i) => bracketed(excess, inwards(i), inwards(i - 1), 0.0)?.min(first),
-        None => 0.0,
-    })
+    let last = |excess: &dyn Fn(f64) -> f64| match (1..=SEARCH).find(|i| excess(inwards(*i)) >= 0.0) {
+        Some(i) => bracketed(excess, inwards(i), inwards(i - 1), 0.0),
+        None => Ok(0.0),
+    };
+    let in_the_end = last(&|radius| excess(radius, 0.0))?;
+    if in_the_end == 0.0 || loading.friction.coefficient().is_some() {
+        return Ok(in_the_end.min(first));
+    }
+    let shed = |i: usize| i as f64 / SHED as f64;
+    let on_the_way =
+        last(&|radius| (0..=SHED).map(|i| excess(radius, shed(i))).fold(f64::INFINITY, f64::min))?;
+    Ok(on_the_way.max(LAST_CORE * edge).min(in_the_end).min(first))
 }
