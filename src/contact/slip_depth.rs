@@ -30,6 +30,9 @@ const MARGIN: f64 = RiseTransform::MARGIN;
 /// Where slip next to the edge of stick is taken, over the logarithm at the end.
 const AT_STICK: f64 = 1e-6;
 
+/// How far in an edge of stick may come in a step that is tried, as a part of the stick area for which the slip is tabulated.
+pub const INNERMOST: f64 = 0.99;
+
 /// Relative difference of stick areas that is rounding.
 const SAME_STICK: f64 = 1e-14;
 
@@ -51,10 +54,10 @@ pub struct UnwornSlip {
     largest_slip_area: f64,
 }
 
-/// `(F(g_0 - g_0(c)))/ℓ^(1+μ)` for edges of stick from that of the tabulated slip outwards.
+/// `(F(g_0 - g_0(c)))/ℓ^(1+μ)` for edges of stick from the [innermost](INNERMOST) outwards.
 #[derive(Debug, Clone)]
 struct SlipElsewhere {
-    /// Of that times `e^(-λℓ - γu)`, over `u`, the logarithm of the stick area over that of the tabulated slip, and `ℓ` over its largest value.
+    /// Of that times `e^(-λℓ - γu)`, over `u`, the logarithm of the stick area over the innermost one, and `ℓ` over its largest value.
     plane: ChebyshevPlane,
     /// The largest `u + ℓ`.
     end: f64,
@@ -302,7 +305,7 @@ impl UnwornSlip {
     /// A power law is the same at every scale; for a sphere there is a series in the stick radius too, for tables the quadrature of `F` runs anew.
     ///
     /// # Arguments
-    /// * `stick_area` -- `c²`, m², at least that for which the slip was tabulated
+    /// * `stick_area` -- `c²`, m², at least [`INNERMOST`] of that for which the slip was tabulated
     /// * `slip_compression` -- `q_c`, m
     pub fn at_stick(&self, stick_area: f64, slip_compression: f64, z: f64) -> UnwornValues {
         let logarithm = (z / stick_area).ln_1p();
@@ -322,7 +325,7 @@ impl UnwornSlip {
             return Slips::Table { transform, stick_area, factor: profile_factor(1.0 - self.mu, self.mu) };
         }
         let elsewhere = self.elsewhere.get_or_init(|| self.slip_elsewhere()).as_ref();
-        elsewhere.and_then(|it| it.slips(ratio.ln())).unwrap_or_else(|| {
+        elsewhere.and_then(|it| it.slips((ratio / INNERMOST).ln())).unwrap_or_else(|| {
             Slips::Quadrature(Transform::with_rule(&self.profile, stick_area.sqrt(), self.rule.clone()))
         })
     }
@@ -346,8 +349,8 @@ impl UnwornSlip {
 
     /// The slip at other edges of stick, as far out as the slip depth holds; none where a series takes too many terms, next to a sphere's equator.
     fn slip_elsewhere(&self) -> Option<SlipElsewhere> {
-        let squared = self.stick_radius_squared;
-        let end = (self.largest_slip_area() / squared).ln_1p();
+        let squared = INNERMOST * self.stick_radius_squared;
+        let end = ((self.stick_radius_squared + self.largest_slip_area()) / squared).ln();
         let growth = match &self.slip {
             SlipSeries::Smooth { growth, .. } => *growth,
             SlipSeries::Table { .. } => 0.0,
@@ -378,7 +381,7 @@ impl UnwornSlip {
 }
 
 impl SlipElsewhere {
-    /// The slip at the stick area that is `e^u` times that of the tabulated slip; none where no series reaches.
+    /// The slip at the stick area that is `e^u` times the innermost one; none where no series reaches.
     fn slips(&self, u: f64) -> Option<Slips<'_>> {
         let length = self.end - u;
         if !(u > 0.0 && length > 0.0) {

@@ -60,12 +60,14 @@ pub struct Shakedown {
     pub max_periods: usize,
     /// Slip per period, over the length of the path while the spring is loaded, below which it sticks.
     pub threshold: f64,
+    /// Whether it is known to slip for ever, as below the [`stick_compression`], so that Newton's method may find what it repeats. On its way to rest it must take all of that way.
+    pub slips: bool,
 }
 
 impl Default for Shakedown {
-    /// 1000 periods, `1e-9`.
+    /// 1000 periods, `1e-9`, of a spring that may come to rest.
     fn default() -> Self {
-        Self { max_periods: 1000, threshold: 1e-9 }
+        Self { max_periods: 1000, threshold: 1e-9, slips: false }
     }
 }
 
@@ -156,19 +158,6 @@ pub fn steady_cycle(
     shakedown: &Shakedown,
     out: &mut SpringCycle,
 ) {
-    periodic(path, law, stiffness_ratio, compression, shakedown, false, out);
-}
-
-/// [`steady_cycle`]; by Newton's method for a spring that is known to slip for ever (`slips`), for one on its way to rest must take that way.
-fn periodic(
-    path: &Path,
-    law: &dyn FrictionLaw,
-    stiffness_ratio: f64,
-    compression: f64,
-    shakedown: &Shakedown,
-    slips: bool,
-    out: &mut SpringCycle,
-) {
     let mut reach = 0.0_f64;
     let mut straight = true;
     let mut last_lift = f64::NAN;
@@ -242,7 +231,7 @@ fn periodic(
         // Where the path is a smooth map of the deflection onto the one a period later, Newton's method finds what repeats itself; from
         // any other deflection the spring comes to rest at the same.
         let waits = out.periods < PLAIN_PERIODS || !out.periods.is_multiple_of(2);
-        if !slips || waits || static_factor != 1.0 || change > 2.0 * last_change {
+        if !shakedown.slips || waits || static_factor != 1.0 || change > 2.0 * last_change {
             last_change = change;
             continue;
         }

@@ -2,7 +2,8 @@
 
 use super::enclosing::{Circle, smallest_enclosing};
 use super::{
-    Passed, Shakedown, SpringCycle, difference, dot, length, onset, periodic, scaled, square, sum, turned_by,
+    Passed, Shakedown, SpringCycle, difference, dot, length, onset, scaled, square, steady_cycle, sum,
+    turned_by,
 };
 use crate::laws::friction::Coulomb;
 use crate::laws::path::Path;
@@ -96,7 +97,8 @@ impl Neighbours {
         });
         let law = Coulomb { coefficient: 1.0 };
         if found.is_none() {
-            periodic(&self.path, &law, 1.0, limit, &Shakedown::default(), true, out);
+            let shakedown = Shakedown { slips: true, ..Shakedown::default() };
+            steady_cycle(&self.path, &law, 1.0, limit, &shakedown, out);
             self.part = 0.0;
         }
         let repeated = found.or_else(|| out.deflection.last().copied()).filter(|_| limit > 0.0);

@@ -17,6 +17,9 @@ use crate::numerics::roots::bracketed;
 /// Change of a compression, relative to the one at the edge of stick, by which slopes are found.
 const DIFFERENCE: f64 = 1e-7;
 
+/// Part of the compression at the edge of stick below which a spring surely slips for ever.
+const SURELY: f64 = 1.0 - 1e-9;
+
 /// Grading up to which compressions swing wherever a block at a smaller indentation has worn, and springs that it lifts out of contact are better taken to bear nothing: with them pulling, no step led on.
 const SWINGING_ALL_OVER: f64 = -0.9;
 
@@ -212,12 +215,17 @@ impl Model {
         let columns = table.map_or_else(|| path.columns(&ways), Response::columns);
         let inner = compression.len();
         let steps = columns / components;
+        let ratio = self.contact.half_space().stiffness_ratio();
+        // Along a line a period repeats the first, and a table has been found already.
+        let searches = components > 1 && table.is_none() && !loading.friction.remembers_slip();
+        let slipping = if searches { SURELY * loading.slip_compression(ratio) } else { 0.0 };
         let mut springs = PathSprings {
             loading,
             path,
             components,
             ways,
-            ratio: self.contact.half_space().stiffness_ratio(),
+            ratio,
+            slipping,
             difference: DIFFERENCE * self.contact.slip_compression(),
             cycle: SpringCycle::default(),
             passed: 0,
@@ -510,6 +518,8 @@ struct PathSprings<'a> {
     ratio: f64,
     /// Change of the compression, m, by which slopes are found.
     difference: f64,
+    /// Compression, m, below which springs slip for ever.
+    slipping: f64,
     cycle: SpringCycle,
     /// Substeps so far.
     passed: usize,
@@ -559,7 +569,7 @@ impl PathSprings<'_> {
             &*self.loading.friction,
             self.ratio,
             compression,
-            &Shakedown::default(),
+            &Shakedown { slips: compression < self.slipping, ..Shakedown::default() },
             cycle,
         );
         self.passed += cycle.substeps;

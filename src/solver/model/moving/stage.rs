@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use faer::Mat;
 
 use super::{Cause, MovingStick, StickEdge, held_stick_radius};
+use crate::contact::slip_depth::INNERMOST;
 use crate::numerics::grid::lagrange;
 use crate::solver::model::resistance::Resistance;
 use crate::solver::model::schedule::CycleLoading;
@@ -228,7 +229,7 @@ impl StickStage<'_> {
     fn is_on_mesh(&self, at: &Unknowns) -> bool {
         let least = self.model.stick_zone.stick_area;
         at.slip_area > 0.0
-            && at.stick_area > 0.99 * least
+            && at.stick_area > INNERMOST * least
             && at.stick_area + at.slip_area < least + self.model.annulus().unworn.largest_slip_area()
     }
 
