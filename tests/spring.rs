@@ -218,6 +218,34 @@ fn springs_stick_from_the_compression_of_the_smallest_circle_on() {
     }
 }
 
+/// Below the stick compression a spring repeats one motion whatever it did before, so that Newton's method finds what passing period after period comes to. Slip next to rest comes to it slowly.
+#[test]
+fn what_a_spring_that_slips_for_ever_repeats_is_found_by_newtons_method() {
+    let mut random = Seeded::new(29);
+    let (mut compared, mut passed) = (0, [0, 0]);
+    for run in 0..60 {
+        let path = random.polygon(3 + run % 8, 1.0, [0.0, 0.2, 0.5][run % 3]);
+        for law in laws().into_iter().filter(|law| !law.remembers_slip()) {
+            let edge = stick_compression(&path, law, M);
+            for level in [0.2, 0.5, 0.8, 0.95, 0.999] {
+                let found = [false, true].map(|slips| {
+                    let mut out = SpringCycle::default();
+                    let shakedown = Shakedown { max_periods: 100_000, slips, ..Shakedown::default() };
+                    steady_cycle(&path, law, M, level * edge, &shakedown, &mut out);
+                    out
+                });
+                let [by_periods, by_newton] = found.each_ref().map(|it| it.slip_path);
+                let off = (by_newton - by_periods).abs() / by_periods;
+                assert!(off < 1e-8, "{run}, {law:?}, {level} of q*: {by_newton}, {by_periods}");
+                passed = [0, 1].map(|i| passed[i] + found[i].substeps);
+                compared += 1;
+            }
+        }
+    }
+    println!("{compared} springs, substeps {passed:?}");
+    assert!(3 * passed[1] < passed[0]);
+}
+
 #[test]
 fn no_other_centre_beats_that_of_the_smallest_circle() {
     let mut random = Seeded::new(5);
