@@ -488,7 +488,10 @@ pub(in crate::run) fn enough_for_a_rim(model: &Model) -> Option<usize> {
     (may_bear_at_rim(model) && model.springs() < ENOUGH_FOR_A_RIM).then_some(ENOUGH_FOR_A_RIM)
 }
 
-/// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, and twice as many, of which the first serve that a run may take.
+/// Most springs of a repeat over those before where no order was seen: an estimate on few springs tells little of how many it takes, and on many of them runs may find no end.
+const UNSEEN: f64 = 4.0;
+
+/// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, at most [four times as many](UNSEEN), and twice as many, of which the first serve that a run may take.
 ///
 /// # Arguments
 /// * `model` -- of the run: in gross slip more springs are of no use, and where the normal load changes along the period they take long
@@ -515,6 +518,7 @@ pub(in crate::run) fn refined_by_order(
     let most = most as f64;
     // On few springs the order may not show yet, nor may the estimate be one: more tell.
     let by_order = (shares.order >= SEEN).then(|| wanted(shares.order));
-    let by_others = [wanted(FULL_ORDER), RAISES[1] * springs as f64];
+    let by_full_order = wanted(FULL_ORDER).min((UNSEEN * springs as f64).ceil());
+    let by_others = [by_full_order, RAISES[1] * springs as f64];
     by_order.into_iter().chain(by_others).filter(|it| *it <= most).map(|it| it as usize).collect()
 }
