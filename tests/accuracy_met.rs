@@ -443,13 +443,13 @@ fn a_run_made_anew_again_and_again_takes_the_same_way_in_parts() {
     assert!(interruptions > 0 && whole == parts);
 }
 
-/// A finer run knows nothing of its error, and the one before does. That is kept in memory; interrupted runs, which make it once more, come to the same, and who looks on sees it last.
+/// A finer run finds no end, and the one before did, with an error that it knew. That is kept in memory; interrupted runs, which make it once more, come to the same, and who looks on sees it last.
 #[test]
-fn a_run_that_knows_nothing_of_its_error_gives_way_to_one_that_does() {
+fn a_run_that_finds_no_end_gives_way_to_one_that_did() {
     let scene = Scene::from_toml(
-        "[indenter.power-law]\ncoefficient = 4.64e36\nexponent = 5.915\n[half_space]\ngrading = 0.99976\nnormal_stiffness = 3.02e10\nstiffness_ratio = 0.42\n\
-         [friction.coulomb]\ncoefficient = 0.5856\n[wear.non-local]\ncoefficient = 8.81e-9\nlength = 4.49e-9\n\
-         [loading]\nnormal_force = 8.03e-18\namplitude = 4.68e-10\nfrequency = 1.0\ntau = 0.01142\n[numerics]\naccuracy = 1e-3\n[output]\nsnapshots = 5\n",
+        "[indenter.paraboloid]\nradius = 1.0\n[half_space]\ngrading = 0.0\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n\
+         [friction.coulomb]\ncoefficient = 0.5\n[wear.power-law]\ncoefficient = 1e-22\npressure_exponent = 1.5\nslip_exponent = 0.5\n\
+         [loading]\nnormal_force = 266.6666666666667\nstick_ratio = 0.4\ntau = 3.0\n[numerics]\naccuracy = 1e-3\n[output]\nsnapshots = 5\n",
         "scene.toml",
     )
     .expect("a scene");

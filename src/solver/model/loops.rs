@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::motion::slips_below;
 use super::schedule::CycleLoading;
 use super::{CycleFields, Fields, Model};
 use crate::contact::spring::{Neighbours, Shakedown, SpringCycle, steady_cycle};
@@ -154,6 +155,7 @@ impl Model {
         let friction = &*loading.friction;
         let turns = !path.is_straight() && friction.static_factor() == 1.0;
         let mut slipping = turns.then(|| Neighbours::new(path)).flatten();
+        let slips_below = slips_below(loading, path, ratio);
         let lift = path.points[0].lift;
         let mut add = |stiffness: f64, compression: f64| {
             let limit = friction.kinetic_strength(compression - lift) / ratio;
@@ -163,7 +165,8 @@ impl Model {
                     spring.work *= ratio;
                 }
                 None => {
-                    steady_cycle(path, friction, ratio, compression, &Shakedown::default(), &mut spring);
+                    let shakedown = Shakedown { slips: compression < slips_below, ..Shakedown::default() };
+                    steady_cycle(path, friction, ratio, compression, &shakedown, &mut spring);
                 }
             }
             work += stiffness * spring.work;

@@ -216,9 +216,8 @@ impl Model {
         let inner = compression.len();
         let steps = columns / components;
         let ratio = self.contact.half_space().stiffness_ratio();
-        // Along a line a period repeats the first, and a table has been found already.
-        let searches = components > 1 && table.is_none() && !loading.friction.remembers_slip();
-        let slipping = if searches { SURELY * loading.slip_compression(ratio) } else { 0.0 };
+        // A table has been found already.
+        let slipping = if table.is_none() { slips_below(loading, path, ratio) } else { 0.0 };
         let mut springs = PathSprings {
             loading,
             path,
@@ -506,6 +505,12 @@ impl Model {
             before = after;
         }
     }
+}
+
+/// Compression, m, below which springs slip for ever on a path in two directions; zero along a line, where a period repeats the first, and for springs with a memory of their slip.
+pub(super) fn slips_below(loading: &CycleLoading, path: &Path, stiffness_ratio: f64) -> f64 {
+    let searches = !path.is_straight() && !loading.friction.remembers_slip();
+    if searches { SURELY * loading.slip_compression(stiffness_ratio) } else { 0.0 }
 }
 
 /// Springs on the path of a cycle.
