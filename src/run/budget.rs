@@ -488,7 +488,7 @@ pub(in crate::run) fn enough_for_a_rim(model: &Model) -> Option<usize> {
     (may_bear_at_rim(model) && model.springs() < ENOUGH_FOR_A_RIM).then_some(ENOUGH_FOR_A_RIM)
 }
 
-/// Most springs of a repeat over those before where no order was seen: an estimate on few springs tells little of how many it takes, and on many of them runs may find no end.
+/// Most springs of a repeat over those before where they do not go by an order that was seen: an estimate on few springs tells little of how many it takes, and on many of them runs may find no end.
 const UNSEEN: f64 = 4.0;
 
 /// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, at most [four times as many](UNSEEN), and twice as many, of which the first serve that a run may take.

@@ -139,17 +139,8 @@ impl Schedule {
                 let force = 2.0 * half_space.normal_stiffness() * strength * radius.powf(exponent) / exponent;
                 loading.excess(force, strength / ratio)
             };
-            // From the contact edge inwards: stick is lost from there.
-            let radius = profile.radius_at(depth)?;
-            let inwards = |i: usize| radius * (-16.0 * i as f64 / (SEARCH as f64 * exponent)).exp();
-            let first = (1..=SEARCH).find(|i| excess(inwards(*i)) >= 0.0);
-            let compression = match first {
-                Some(i) => {
-                    let edge = bracketed(excess, inwards(i), inwards(i - 1), 0.0)?;
-                    depth - profile.value(edge)
-                }
-                None => depth,
-            };
+            let edge = outermost_balance(profile.radius_at(depth)?, exponent, excess)?;
+            let compression = edge.map_or(depth, |edge| depth - profile.value(edge));
             largest = largest.max(compression + loading.lift);
         }
         Ok(largest)
@@ -176,29 +167,43 @@ fn least_stick_radius(contact: &InitialContact, loading: &CycleLoading) -> Resul
     let first = profile.radius_at(contact.indentation() - first)?;
     let stiffness = half_space.normal_stiffness();
     let borne = 0.5 * contact.normal_force() / stiffness;
-    let strength = |compression: f64| loading.friction.static_strength(compression);
     let excess = |radius: f64, shed: f64| {
         let area = radius.powf(exponent) / exponent;
         let most = (borne - 0.5 * profile.load_integral(radius)) / area;
         let least = (contact.indentation() - profile.value(radius)).min(most);
         let compression = most - shed * (most - least);
+        let strength = loading.friction.static_strength(compression);
         let load = area * (most - compression);
         let beyond = (FARTHEST * edge).powf(exponent) / exponent - area;
-        let slipping = (load / compression * strength(compression)).min(beyond * strength(load / beyond));
-        let stick = strength(compression);
-        loading.excess(2.0 * stiffness * (stick * area + slipping), stick / ratio)
+        let spread = beyond * loading.friction.static_strength(load / beyond);
+        let slipping = (load / compression * strength).min(spread);
+        loading.excess(2.0 * stiffness * (strength * area + slipping), strength / ratio)
     };
-    let inwards = |i: usize| edge * (-16.0 * i as f64 / (SEARCH as f64 * exponent)).exp();
-    let last = |excess: &dyn Fn(f64) -> f64| match (1..=SEARCH).find(|i| excess(inwards(*i)) >= 0.0) {
-        Some(i) => bracketed(excess, inwards(i), inwards(i - 1), 0.0),
-        None => Ok(0.0),
+    let Some(in_the_end) = outermost_balance(edge, exponent, |radius| excess(radius, 0.0))? else {
+        return Ok(0.0);
     };
-    let in_the_end = last(&|radius| excess(radius, 0.0))?;
-    if in_the_end == 0.0 || loading.friction.coefficient().is_some() {
+    if loading.friction.coefficient().is_some() {
         return Ok(in_the_end.min(first));
     }
-    let shed = |i: usize| i as f64 / SHED as f64;
-    let on_the_way =
-        last(&|radius| (0..=SHED).map(|i| excess(radius, shed(i))).fold(f64::INFINITY, f64::min))?;
+    let least = |radius: f64| {
+        let by_shed = (0..=SHED).map(|i| excess(radius, i as f64 / SHED as f64));
+        by_shed.fold(f64::INFINITY, f64::min)
+    };
+    let on_the_way = outermost_balance(edge, exponent, least)?.unwrap_or_default();
     Ok(on_the_way.max(LAST_CORE * edge).min(in_the_end).min(first))
+}
+
+/// The first radius, m, from the contact edge inwards at which a balance of forces holds; none down to `e^(-16/(1+k))` of that edge. Stick is lost from there.
+///
+/// # Arguments
+/// * `edge` -- contact radius, m
+/// * `exponent` -- `1+k`
+/// * `excess` -- of the forces over what is asked for, with the edge of stick at a radius, m
+///
+/// # Errors
+/// As [`bracketed`].
+fn outermost_balance(edge: f64, exponent: f64, excess: impl Fn(f64) -> f64) -> Result<Option<f64>> {
+    let inwards = |i: usize| edge * (-16.0 * i as f64 / (SEARCH as f64 * exponent)).exp();
+    let first = (1..=SEARCH).find(|i| excess(inwards(*i)) >= 0.0);
+    first.map(|i| bracketed(excess, inwards(i), inwards(i - 1), 0.0)).transpose()
 }

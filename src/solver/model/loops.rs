@@ -155,7 +155,8 @@ impl Model {
         let friction = &*loading.friction;
         let turns = !path.is_straight() && friction.static_factor() == 1.0;
         let mut slipping = turns.then(|| Neighbours::new(path)).flatten();
-        let slips_below = slips_below(loading, path, ratio);
+        // Neighbours leave only springs that stick or are lifted.
+        let slips_below = if slipping.is_none() { slips_below(loading, path, ratio) } else { 0.0 };
         let lift = path.points[0].lift;
         let mut add = |stiffness: f64, compression: f64| {
             let limit = friction.kinetic_strength(compression - lift) / ratio;
