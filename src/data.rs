@@ -249,6 +249,8 @@ pub struct Attempt {
     pub ended_with: Fineness,
     /// Its estimated error there, relative; 1 where nothing is known of it, and zero where it did not.
     pub ended_within: f64,
+    /// Its worn volume there, m³; zero where it did not, and NaN in files that do not tell.
+    pub ended_volume: f64,
     /// Work of the attempts before, nanoseconds of one core, about.
     pub work: u64,
 }

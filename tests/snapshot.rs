@@ -159,6 +159,7 @@ fn checkpoint() -> Checkpoint {
             ended_on: 57,
             ended_with: Fineness { tolerance: 1e-4, substeps: 0 },
             ended_within: 0.02,
+            ended_volume: 3e-14,
             work: 3_000_000_000,
         },
     }
@@ -449,7 +450,7 @@ fn every_dataset_has_units_a_meaning_and_its_scales() {
     let loops = file.group("loops").expect("the group");
     let in_groups = [group, loops].map(|it| it.datasets().expect("datasets")).concat();
     let all = [file.datasets().expect("datasets"), in_groups].concat();
-    assert_eq!(all.len(), 24 + 4 + 32 + 5, "{all:?}");
+    assert_eq!(all.len(), 24 + 4 + 33 + 5, "{all:?}");
     for dataset in all {
         for attribute in ["units", "long_name"] {
             let found = text(&dataset, attribute).unwrap_or_default();

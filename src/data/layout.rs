@@ -133,13 +133,15 @@ pub const ENDED_ON: Quantity = quantity(
     "springs on which an attempt came to an end less accurately than was asked for, or 0",
 );
 
-/// Tolerance, substeps and error of the attempt that came to an end, scalars.
+/// Tolerance, substeps, error and worn volume of the attempt that came to an end, scalars.
 pub const ENDED_WITH: Quantity =
     quantity("ended_with", "1", "tolerance of that attempt where it had been made smaller, or 0");
 pub const ENDED_IN: Quantity =
     quantity("ended_in", "1", "substeps of a period of that attempt where they had been made more, or 0");
 pub const ENDED_WITHIN: Quantity =
     quantity("ended_within", "1", "estimated error of that attempt, or 1 where nothing is known of it");
+
+pub const ENDED_VOLUME: Quantity = quantity("ended_volume", "m3", "worn volume of that attempt, or 0");
 
 /// Work of the attempts of such a run that came before, scalar.
 pub const WORK: Quantity =

@@ -238,6 +238,7 @@ fn put_checkpoint(checkpoint: &Checkpoint) -> Dataset {
         stored.scalar(ENDED_WITH, checkpoint.attempt.ended_with.tolerance);
         stored.scalar(ENDED_IN, checkpoint.attempt.ended_with.substeps);
         stored.scalar(ENDED_WITHIN, checkpoint.attempt.ended_within);
+        stored.scalar(ENDED_VOLUME, checkpoint.attempt.ended_volume);
         stored.scalar(WORK, checkpoint.attempt.work);
     }
     if !state.past.points.is_empty() {
@@ -436,6 +437,10 @@ fn checkpoint(mut stored: Dataset) -> Result<Checkpoint> {
                 substeps: stored.take_scalar(ENDED_IN)?,
             },
             ended_within: stored.take_scalar(ENDED_WITHIN)?,
+            ended_volume: match stored.has(ENDED_VOLUME.name) {
+                true => stored.take_scalar(ENDED_VOLUME)?,
+                false => f64::NAN,
+            },
             work: stored.take_scalar(WORK)?,
         };
     }

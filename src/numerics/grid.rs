@@ -433,6 +433,13 @@ pub struct Local {
 }
 
 impl Local {
+    /// By how much what is given at its nodes differs.
+    pub fn range(&self, values: &[f64]) -> f64 {
+        let there = &values[self.stencil.start - 1..self.stencil.end - 1];
+        let [least, most] = [f64::min, f64::max].map(|it| there.iter().copied().reduce(it).unwrap_or(0.0));
+        most - least
+    }
+
     /// Its value there for what is given at the nodes.
     pub fn sum(&self, values: &[f64]) -> f64 {
         let there = &values[self.stencil.start - 1..self.stencil.end - 1];

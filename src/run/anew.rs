@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::mem;
 
 use super::attempt::{
-    Kind, LAST_RESORT, ON_SPRINGS_THAT_STAY, REFINEMENTS, SPRINGS_THAT_STAY, springs_of_last_resort,
+    FOR_AN_END, Kind, LAST_RESORT, ON_SPRINGS_THAT_STAY, REFINEMENTS, SPRINGS_THAT_STAY,
+    springs_of_last_resort,
 };
 use super::budget::{self, Shares, TIGHTER, UNKNOWN};
 use super::cost;
@@ -37,6 +38,9 @@ pub(super) struct Ended {
     end: End,
     recorded: Recorded,
 }
+
+/// Estimated error of an attempt over that of a later one, below which the earlier stands.
+const NEARER: f64 = 0.5;
 
 type Recorded = (RunHeader, Vec<Snapshot>);
 
@@ -132,8 +136,12 @@ impl Attempts<'_> {
         self.recorder.attempt = counted;
         self.recorder.writer.restart(header);
         snapshots.into_iter().for_each(|it| self.recorder.writer.push(it));
-        end.checkpoint =
-            Checkpoint { attempt: counted, wall_seconds: self.recorder.wall_seconds(), ..end.checkpoint };
+        end.checkpoint = Checkpoint {
+            attempt: counted,
+            wall_seconds: self.recorder.wall_seconds(),
+            error_estimate: Some(counted.ended_within),
+            ..end.checkpoint
+        };
         end
     }
 
@@ -193,7 +201,7 @@ impl Attempts<'_> {
         let attempt = self.recorder.attempt;
         let no_end = matches!(outcome, Err(Error::NotConverged { .. }));
         if no_end && attempt.may_end_again() {
-            return vec![self.end_again(work)];
+            return vec![self.nearer_than_ended(work).unwrap_or_else(|| self.end_again(work))];
         }
         let error = checkpoint.error_estimate.unwrap_or(UNKNOWN);
         let ends = outcome.as_ref().is_ok_and(|it| *it != Outcome::Interrupted);
@@ -205,8 +213,7 @@ impl Attempts<'_> {
         if let Some((springs, fineness)) = self.more(outcome, checkpoint) {
             return vec![self.finer(springs, fineness, outcome.is_ok().then_some(error), work)];
         }
-        let knew_more = error >= UNKNOWN && attempt.knows_error() || self.was_within(error);
-        if ends && knew_more && attempt.may_end_again() {
+        if ends && self.was_nearer(error) && attempt.may_end_again() {
             return vec![self.end_again(work)];
         }
         if !(no_end && self.looks_for_an_end()) {
@@ -219,16 +226,45 @@ impl Attempts<'_> {
         }
     }
 
-    /// Whether one before was within the accuracy and this one, told to be off by `error`, is not: of finer springs, other radii are compared.
-    fn was_within(&self, error: f64) -> bool {
+    /// Whether one before is to stand rather than this one, told to be off by `error`: it was within the accuracy and this is not, since of finer springs other radii are compared, or it was
+    /// [much nearer](NEARER), or the only one of which an error is known.
+    fn was_nearer(&self, error: f64) -> bool {
         let (attempt, accuracy) = (self.recorder.attempt, self.scene.numerics().accuracy);
-        attempt.has_end() && attempt.ended_within <= accuracy && error > accuracy
+        let within = self.ended_within();
+        let much_nearer = within < if error < UNKNOWN { NEARER * error } else { UNKNOWN };
+        attempt.has_end() && error > accuracy && (within <= accuracy || much_nearer)
+    }
+
+    /// Estimated error of the one before that came to its end, which is no less than what it is apart from this one.
+    fn ended_within(&self) -> f64 {
+        let apart = self.recorder.apart_from_ended(&self.stepping).unwrap_or(0.0);
+        self.recorder.attempt.ended_within.max(apart)
+    }
+
+    /// Where a finer one than that which ended found no end: springs between both, or more in the steps of that which ended.
+    fn nearer_than_ended(&self, work: u64) -> Option<Anew> {
+        let (attempt, accuracy) = (self.recorder.attempt, self.scene.numerics().accuracy);
+        let (ended_on, now) = (attempt.ended_on as f64, self.springs() as f64);
+        let springs = if now > ended_on { (ended_on * now).sqrt() } else { budget::MORE * now };
+        let springs = springs.ceil() as usize;
+        let is_of_use = attempt.ended_within > accuracy && springs as f64 >= budget::MANY_MORE * ended_on;
+        let is_allowed = is_of_use
+            && self.may_be_finer()
+            && cost::allows(&self.stepping, springs, 1.0, attempt.work, false);
+        is_allowed.then(|| self.finer(springs, attempt.ended_with, None, work))
     }
 
     /// Finer ones do not end, or know less of their error: that which did, once more, if it is not in memory any more.
     fn end_again(&self, work: u64) -> Anew {
         let before = self.recorder.attempt;
-        let counted = Attempt { refinements: REFINEMENTS + 1, fineness: before.ended_with, work, ..before };
+        let ended_within = self.ended_within();
+        let counted = Attempt {
+            refinements: REFINEMENTS + 1,
+            fineness: before.ended_with,
+            ended_within,
+            work,
+            ..before
+        };
         Anew { springs: counted.ended_on as usize, on_fewer: false, counted }
     }
 
@@ -238,11 +274,15 @@ impl Attempts<'_> {
     fn finer(&self, springs: usize, fineness: Fineness, error: Option<f64>, work: u64) -> Anew {
         let now = self.recorder.attempt;
         let ended = match error {
-            Some(error) if !self.was_within(error) && (error < UNKNOWN || !now.knows_error()) => {
-                let ended_on = self.springs() as u64;
-                Attempt { ended_on, ended_with: now.fineness, ended_within: error, ..now }
-            }
-            _ => now,
+            Some(error) if !self.was_nearer(error) => Attempt {
+                ended_on: self.springs() as u64,
+                ended_with: now.fineness,
+                ended_within: error,
+                ended_volume: self.recorder.wear_volume(),
+                ..now
+            },
+            Some(_) => Attempt { ended_within: self.ended_within(), ..now },
+            None => now,
         };
         let counted = Attempt { refinements: now.refinements + 1, fineness, work, ..ended };
         Anew { springs, on_fewer: false, counted }
@@ -349,7 +389,9 @@ impl Attempts<'_> {
     fn may_be_finer(&self) -> bool {
         let simulation = &self.stepping;
         let chosen = self.scene.numerics().springs.is_none();
-        let again = self.recorder.attempt.refinements < REFINEMENTS;
+        let has_end = simulation.outcome().is_some() || self.recorder.attempt.has_end();
+        let most = if has_end { REFINEMENTS } else { FOR_AN_END };
+        let again = self.recorder.attempt.refinements < most;
         chosen && again && !simulation.model().is_losing_stick(simulation.state())
     }
 
@@ -366,9 +408,11 @@ impl Attempts<'_> {
         let ((first, _), accuracy) = (self.stepping.first(), numerics.accuracy);
         let springs = first.springs();
         let by_steps = first.gross().is_none() && budget::follows_edge(first);
+        // Steps that are finer already than those of the attempt before did not help.
+        let may_help = attempt.knows_error() && attempt.fineness == attempt.ended_with;
         let times = match attempt.fineness.tolerance > 0.0 {
             false if by_steps => shares.by_steps(accuracy),
-            _ if attempt.knows_error() && shares.stand_still(springs, before, accuracy) => Some(TIGHTER),
+            _ if may_help && shares.stand_still(springs, before, accuracy) => Some(TIGHTER),
             _ => None,
         };
         times.filter(|_| cost::allows(&self.stepping, springs, 1.0, attempt.work, false))

@@ -9,8 +9,9 @@ use crate::scene::{Numerics, Scene};
 use crate::solver::model::Model;
 use crate::solver::stepper::Sdirk;
 
-/// How often a run is repeated on more springs.
-pub(super) const REFINEMENTS: u64 = 3;
+/// How often a run is repeated on more springs or more finely: to be more accurate, and to find an end at all.
+pub(super) const REFINEMENTS: u64 = 5;
+pub(super) const FOR_AN_END: u64 = 3;
 
 /// Attempts at a run, [`REFINEMENTS`] and one on fewer springs included, of which the last is made in coarse steps where all others found no end: it tells what
 /// becomes of the contact, and that nothing is known of the error.

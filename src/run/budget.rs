@@ -70,8 +70,11 @@ const FULL_ORDER: f64 = 2.0;
 
 /// Part of an error that is left by so many times the springs, which shows that it is not one of springs; tolerance over that before with which such a run is repeated.
 const STANDS_STILL: f64 = 0.8;
-const MANY_MORE: f64 = 1.2;
+pub(in crate::run) const MANY_MORE: f64 = 1.2;
 pub(in crate::run) const TIGHTER: f64 = 0.2;
+
+/// Springs over those of a run that ended, where finer steps on as many found no end.
+pub(in crate::run) const MORE: f64 = 1.5;
 
 /// Power of the error with which the tolerance has to fall where an edge of stick moves, and most times that it becomes so much tighter at once.
 const OF_EDGE: f64 = 1.5;
@@ -491,7 +494,7 @@ pub(in crate::run) fn enough_for_a_rim(model: &Model) -> Option<usize> {
 /// Most springs of a repeat over those before where they do not go by an order that was seen: an estimate on few springs tells little of how many it takes, and on many of them runs may find no end.
 const UNSEEN: f64 = 4.0;
 
-/// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, at most [four times as many](UNSEEN), and twice as many, of which the first serve that a run may take.
+/// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, at most [four times as many](UNSEEN), twice as many, and as many as a run may take at all: the first of them serve that it may take.
 ///
 /// # Arguments
 /// * `model` -- of the run: in gross slip more springs are of no use, and where the normal load changes along the period they take long
@@ -519,6 +522,7 @@ pub(in crate::run) fn refined_by_order(
     // On few springs the order may not show yet, nor may the estimate be one: more tell.
     let by_order = (shares.order >= SEEN).then(|| wanted(shares.order));
     let by_full_order = wanted(FULL_ORDER).min((UNSEEN * springs as f64).ceil());
-    let by_others = [by_full_order, RAISES[1] * springs as f64];
+    let as_many = (model.gross().is_none() && most >= MANY_MORE * springs as f64).then_some(most);
+    let by_others = [by_full_order, RAISES[1] * springs as f64].into_iter().chain(as_many);
     by_order.into_iter().chain(by_others).filter(|it| *it <= most).map(|it| it as usize).collect()
 }

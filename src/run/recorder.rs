@@ -268,12 +268,34 @@ impl Recorder {
         }
         let balance = || if companions.is_smooth() { balance_error(simulation) } else { None };
         let found = self.shares(simulation).map(|shares| shares.error()).or_else(balance);
-        found.or(self.accuracy.map(|_| budget::UNKNOWN))
+        let found = found.or(self.accuracy.map(|_| budget::UNKNOWN));
+        match self.attempt.ends_again() {
+            true => found.map(|error| error.max(self.attempt.ended_within)),
+            false => found,
+        }
     }
 
-    /// What the companions tell of the error; as [`Companions::shares`].
+    /// What the companions tell of the error, as [`Companions::shares`], and at its end the attempt before that came to its own: as much as they are apart, beyond the error of that one, is
+    /// of this.
     pub(super) fn shares(&self, simulation: &Simulation) -> Option<Shares> {
-        self.companions.as_ref()?.shares(simulation, self.writer.snapshots())
+        let companions = self.companions.as_ref()?;
+        let shares = companions.shares(simulation, self.writer.snapshots())?;
+        let apart = self.apart_from_ended(simulation).filter(|_| !companions.is_smooth());
+        let beyond = apart.map_or(0.0, |apart| apart - self.attempt.ended_within);
+        Some(Shares { springs: shares.springs.max(beyond), ..shares })
+    }
+
+    /// The difference of worn volume, relative, of an attempt at its end from the one before that came to its own.
+    pub(super) fn apart_from_ended(&self, simulation: &Simulation) -> Option<f64> {
+        let companions = self.companions.as_ref().filter(|_| self.attempt.has_end())?;
+        simulation.outcome()?;
+        let apart = (self.wear_volume() - self.attempt.ended_volume).abs();
+        Some(apart / companions.volume_scale(self.writer.snapshots()))
+    }
+
+    /// Worn volume at the last snapshot, m³; zero before the first.
+    pub(super) fn wear_volume(&self) -> f64 {
+        self.writer.snapshots().last().map_or(0.0, |it| it.wear_volume)
     }
 
     pub(super) fn checkpoint(&self, simulation: &Simulation) -> Checkpoint {

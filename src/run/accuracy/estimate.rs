@@ -312,12 +312,19 @@ impl Companions {
         self.first.is_none()
     }
 
+    /// The worn volume to which errors are relative, m³: the limit's, or the largest of the run where there is none.
+    pub(in crate::run) fn volume_scale(&self, snapshots: &[Snapshot]) -> f64 {
+        let largest = || snapshots.iter().map(|it| it.wear_volume).fold(0.0, f64::max);
+        self.limit.map_or_else(largest, |[volume, _]| volume)
+    }
+
     /// Estimated error at the snapshots of the run: of the worn volume or of the profile at any radius, whichever is larger, relative to the
     /// limit's, or to the largest of the run where there is none. None before the first snapshot that a companion saw.
     pub(in crate::run) fn shares(&self, simulation: &Simulation, snapshots: &[Snapshot]) -> Option<Shares> {
         let worn: Vec<Worn> = snapshots.iter().map(|it| Worn::shown(it, self.every)).collect();
         let own = |value: fn(&Worn) -> f64| worn.iter().map(value).fold(0.0, f64::max);
-        let mut scale = self.limit.unwrap_or_else(|| [own(|it| it.volume), own(Worn::deepest)]);
+        let mut scale =
+            [self.volume_scale(snapshots), self.limit.map_or_else(|| own(Worn::deepest), |it| it[1])];
         if scale[0] > 0.0 && scale[1] == 0.0 {
             // The radii shown lie beyond a contact that wear has hardly let grow.
             scale[1] = f64::INFINITY;

@@ -278,6 +278,16 @@ impl Model {
     }
 }
 
+/// Range of `λ` on the springs of one local polynomial beyond which it swings, where slip jumps at the edge of stick.
+const JUMP: f64 = 2.0;
+
+/// What is given on the springs, on the straight line between two of them, and as on the first one before it.
+fn on_line(y: f64, values: &[f64]) -> f64 {
+    let before = (y.floor() as usize).clamp(1, values.len() - 1);
+    let [from, to] = [values[before - 1], values[before]];
+    from + (y - before as f64).max(0.0) * (to - from)
+}
+
 /// The slip annulus in a state, at any `offset = r² - c²`, m², from the edge of stick at rest.
 struct Annulus<'a> {
     model: &'a Model,
@@ -285,12 +295,15 @@ struct Annulus<'a> {
     fields: &'a Fields,
     /// `λ_∞` on the springs.
     limit_log_slip: Vec<f64>,
+    /// Whether slip jumps at the edge of stick, as under a static coefficient.
+    slip_jumps: bool,
 }
 
 impl<'a> Annulus<'a> {
     fn new(model: &'a Model, state: &'a State, fields: &'a Fields) -> Self {
         let limit_log_slip = fields.unworn.iter().map(UnwornValues::limit_log_slip).collect();
-        Self { model, state, fields, limit_log_slip }
+        let slip_jumps = model.schedule().conditions().friction.static_factor() > 1.0;
+        Self { model, state, fields, limit_log_slip, slip_jumps }
     }
 
     /// A point of the annulus where the unworn slip of the edge at rest is known; none outside the annulus.
@@ -309,7 +322,7 @@ impl<'a> Annulus<'a> {
         }
         let y = model.annulus().operators.abel.mesh().place(x);
         let local = model.annulus().operators.abel.mesh().local(y, model.springs());
-        let log_slip = self.log_slip(&local, &unworn);
+        let log_slip = self.log_slip(y, &local, &unworn);
         Some(AnnulusPoint { x, y, unworn: unworn.slip, grown: unworn.slip * log_slip.exp_m1(), local })
     }
 
@@ -317,11 +330,14 @@ impl<'a> Annulus<'a> {
     ///
     /// On a smooth mesh the local polynomial is corrected by its error for the limit's `λ_∞`, which is known everywhere, in the proportion in
     /// which wear has come to the limit: so the limit is met between the springs as it is at them.
-    fn log_slip(&self, local: &Local, unworn: &UnwornValues) -> f64 {
+    /// Elsewhere a straight line takes its place where it swings, since slip jumps at the edge of stick.
+    fn log_slip(&self, y: f64, local: &Local, unworn: &UnwornValues) -> f64 {
         let mesh = self.model.annulus().operators.abel.mesh();
-        let log_slip = local.sum(&self.fields.log_slip);
+        let values = &self.fields.log_slip;
+        let log_slip = local.sum(values);
         if !mesh.clustering().follows_front() {
-            return log_slip;
+            let swings = self.slip_jumps && local.range(values) > JUMP;
+            return if swings { on_line(y, values) } else { log_slip };
         }
         let between = local.sum(&self.limit_log_slip);
         let worn = if between > 0.0 { (log_slip / between).clamp(0.0, 1.0) } else { 1.0 };
