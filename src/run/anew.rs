@@ -409,10 +409,10 @@ impl Attempts<'_> {
         let springs = first.springs();
         let by_steps = first.gross().is_none() && budget::follows_edge(first);
         // Steps that are finer already than those of the attempt before did not help.
-        let may_help = attempt.knows_error() && attempt.fineness == attempt.ended_with;
+        let steps_may_help = attempt.knows_error() && attempt.fineness == attempt.ended_with;
         let times = match attempt.fineness.tolerance > 0.0 {
             false if by_steps => shares.by_steps(accuracy),
-            _ if may_help && shares.stand_still(springs, before, accuracy) => Some(TIGHTER),
+            _ if steps_may_help && shares.stand_still(springs, before, accuracy) => Some(TIGHTER),
             _ => None,
         };
         times.filter(|_| cost::allows(&self.stepping, springs, 1.0, attempt.work, false))

@@ -76,6 +76,13 @@ pub(in crate::run) const TIGHTER: f64 = 0.2;
 /// Springs over those of a run that ended, where finer steps on as many found no end.
 pub(in crate::run) const MORE: f64 = 1.5;
 
+/// Part of the difference of two attempts that the finer one is off by at least, on so many times the springs, with the full order, or in steps of a [fifth](TIGHTER) of the tolerance, whose error falls in
+/// proportion.
+pub(in crate::run) fn left_of_difference(times: f64) -> f64 {
+    let falls = if times > MANY_MORE { times.powf(FULL_ORDER) } else { TIGHTER.recip() };
+    (falls - 1.0).recip()
+}
+
 /// Power of the error with which the tolerance has to fall where an edge of stick moves, and most times that it becomes so much tighter at once.
 const OF_EDGE: f64 = 1.5;
 const MOST_TIGHTER: f64 = 3.0;
@@ -491,10 +498,10 @@ pub(in crate::run) fn enough_for_a_rim(model: &Model) -> Option<usize> {
     (may_bear_at_rim(model) && model.springs() < ENOUGH_FOR_A_RIM).then_some(ENOUGH_FOR_A_RIM)
 }
 
-/// Most springs of a repeat over those before where they do not go by an order that was seen: an estimate on few springs tells little of how many it takes, and on many of them runs may find no end.
-const UNSEEN: f64 = 4.0;
+/// Most springs of a repeat over those before: an estimate on few springs tells little of how many it takes, and on many of them runs take long or find no end.
+const AT_ONCE: f64 = 2.5;
 
-/// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, at most [four times as many](UNSEEN), twice as many, and as many as a run may take at all: the first of them serve that it may take.
+/// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, at most [so many times as many](AT_ONCE), twice as many, and as many as a run may take at all: the first of them serve that it may take.
 ///
 /// # Arguments
 /// * `model` -- of the run: in gross slip more springs are of no use, and where the normal load changes along the period they take long
@@ -520,8 +527,9 @@ pub(in crate::run) fn refined_by_order(
     };
     let most = most as f64;
     // On few springs the order may not show yet, nor may the estimate be one: more tell.
-    let by_order = (shares.order >= SEEN).then(|| wanted(shares.order));
-    let by_full_order = wanted(FULL_ORDER).min((UNSEEN * springs as f64).ceil());
+    let most_at_once = (AT_ONCE * springs as f64).ceil();
+    let by_order = (shares.order >= SEEN).then(|| wanted(shares.order).min(most_at_once));
+    let by_full_order = wanted(FULL_ORDER).min(most_at_once);
     let as_many = (model.gross().is_none() && most >= MANY_MORE * springs as f64).then_some(most);
     let by_others = [by_full_order, RAISES[1] * springs as f64].into_iter().chain(as_many);
     by_order.into_iter().chain(by_others).filter(|it| *it <= most).map(|it| it as usize).collect()

@@ -275,14 +275,17 @@ impl Recorder {
         }
     }
 
-    /// What the companions tell of the error, as [`Companions::shares`], and at its end the attempt before that came to its own: as much as they are apart, beyond the error of that one, is
-    /// of this.
+    /// What the companions tell of the error, as [`Companions::shares`], and at its end the attempt before that came to its own: of what they are apart, as much is of this one as is beyond the
+    /// error of that one, or as is left where errors fall as fast as they may.
     pub(super) fn shares(&self, simulation: &Simulation) -> Option<Shares> {
         let companions = self.companions.as_ref()?;
         let shares = companions.shares(simulation, self.writer.snapshots())?;
-        let apart = self.apart_from_ended(simulation).filter(|_| !companions.is_smooth());
-        let beyond = apart.map_or(0.0, |apart| apart - self.attempt.ended_within);
-        Some(Shares { springs: shares.springs.max(beyond), ..shares })
+        let Some(apart) = self.apart_from_ended(simulation).filter(|_| !companions.is_smooth()) else {
+            return Some(shares);
+        };
+        let times = simulation.first().0.springs() as f64 / self.attempt.ended_on as f64;
+        let least = (apart - self.attempt.ended_within).max(apart * budget::left_of_difference(times));
+        Some(Shares { springs: shares.springs.max(least), ..shares })
     }
 
     /// The difference of worn volume, relative, of an attempt at its end from the one before that came to its own.
@@ -290,7 +293,9 @@ impl Recorder {
         let companions = self.companions.as_ref().filter(|_| self.attempt.has_end())?;
         simulation.outcome()?;
         let apart = (self.wear_volume() - self.attempt.ended_volume).abs();
-        Some(apart / companions.volume_scale(self.writer.snapshots()))
+        let scale = companions.volume_scale(self.writer.snapshots());
+        // Where nothing wears there is nothing to be relative to.
+        (scale > 0.0).then(|| apart / scale)
     }
 
     /// Worn volume at the last snapshot, m³; zero before the first.
