@@ -140,7 +140,6 @@ pub const ENDED_IN: Quantity =
     quantity("ended_in", "1", "substeps of a period of that attempt where they had been made more, or 0");
 pub const ENDED_WITHIN: Quantity =
     quantity("ended_within", "1", "estimated error of that attempt, or 1 where nothing is known of it");
-
 pub const ENDED_VOLUME: Quantity = quantity("ended_volume", "m3", "worn volume of that attempt, or 0");
 
 /// Work of the attempts of such a run that came before, scalar.

@@ -435,15 +435,17 @@ pub struct Local {
 impl Local {
     /// By how much what is given at its nodes differs.
     pub fn range(&self, values: &[f64]) -> f64 {
-        let there = &values[self.stencil.start - 1..self.stencil.end - 1];
-        let [least, most] = [f64::min, f64::max].map(|it| there.iter().copied().reduce(it).unwrap_or(0.0));
-        most - least
+        let there = self.at_its_nodes(values).iter().copied();
+        there.clone().fold(f64::NEG_INFINITY, f64::max) - there.fold(f64::INFINITY, f64::min)
     }
 
     /// Its value there for what is given at the nodes.
     pub fn sum(&self, values: &[f64]) -> f64 {
-        let there = &values[self.stencil.start - 1..self.stencil.end - 1];
-        self.weights.iter().zip(there).map(|(weight, value)| weight * value).sum()
+        self.weights.iter().zip(self.at_its_nodes(values)).map(|(weight, value)| weight * value).sum()
+    }
+
+    fn at_its_nodes<'a>(&self, values: &'a [f64]) -> &'a [f64] {
+        &values[self.stencil.start - 1..self.stencil.end - 1]
     }
 }
 

@@ -20,6 +20,9 @@ use crate::scene::{Scene, Stepper};
 use crate::solver::model::{MovingStick, OperatorStore};
 use crate::solver::simulation::{Outcome, Simulation};
 
+/// Estimated error of an attempt over that of a later one, below which the earlier stands.
+const NEARER: f64 = 0.5;
+
 /// A run, attempt by attempt; its recorder holds what the one under way counts as.
 pub(super) struct Attempts<'a> {
     pub scene: &'a Scene,
@@ -38,9 +41,6 @@ pub(super) struct Ended {
     end: End,
     recorded: Recorded,
 }
-
-/// Estimated error of an attempt over that of a later one, below which the earlier stands.
-const NEARER: f64 = 0.5;
 
 type Recorded = (RunHeader, Vec<Snapshot>);
 

@@ -522,15 +522,13 @@ pub(in crate::run) fn refined_by_order(
     }
     let Some(aim) = shares.aim(accuracy) else { return vec![] };
     let wanted = |order: f64| {
-        let factor = (shares.springs / aim).powf(order.recip()).max(RAISES[0]);
+        let factor = (shares.springs / aim).powf(order.recip()).clamp(RAISES[0], AT_ONCE);
         (springs as f64 * factor).ceil()
     };
     let most = most as f64;
     // On few springs the order may not show yet, nor may the estimate be one: more tell.
-    let most_at_once = (AT_ONCE * springs as f64).ceil();
-    let by_order = (shares.order >= SEEN).then(|| wanted(shares.order).min(most_at_once));
-    let by_full_order = wanted(FULL_ORDER).min(most_at_once);
+    let by_order = (shares.order >= SEEN).then(|| wanted(shares.order));
     let as_many = (model.gross().is_none() && most >= MANY_MORE * springs as f64).then_some(most);
-    let by_others = [by_full_order, RAISES[1] * springs as f64].into_iter().chain(as_many);
+    let by_others = [wanted(FULL_ORDER), RAISES[1] * springs as f64].into_iter().chain(as_many);
     by_order.into_iter().chain(by_others).filter(|it| *it <= most).map(|it| it as usize).collect()
 }

@@ -322,9 +322,8 @@ impl Companions {
     /// limit's, or to the largest of the run where there is none. None before the first snapshot that a companion saw.
     pub(in crate::run) fn shares(&self, simulation: &Simulation, snapshots: &[Snapshot]) -> Option<Shares> {
         let worn: Vec<Worn> = snapshots.iter().map(|it| Worn::shown(it, self.every)).collect();
-        let own = |value: fn(&Worn) -> f64| worn.iter().map(value).fold(0.0, f64::max);
-        let mut scale =
-            [self.volume_scale(snapshots), self.limit.map_or_else(|| own(Worn::deepest), |it| it[1])];
+        let deepest = || worn.iter().map(Worn::deepest).fold(0.0, f64::max);
+        let mut scale = [self.volume_scale(snapshots), self.limit.map_or_else(deepest, |[_, depth]| depth)];
         if scale[0] > 0.0 && scale[1] == 0.0 {
             // The radii shown lie beyond a contact that wear has hardly let grow.
             scale[1] = f64::INFINITY;
