@@ -53,6 +53,9 @@ pub enum Clustering {
     /// Degree 3, spacing `n^-3` at the contact edge and `n^-2` at an edge of stick that creeps: ground passes through the springs there, and
     /// finer ones amplify what they are off by.
     CreepingStick,
+    /// As [`Clustering::CreepingStick`] with a spacing of `n^-2` at the contact edge as well, for wear that goes by a power of the slip below one: it leaves so much behind next to the edge of stick
+    /// that the contact edge hardly moves at first, and what springs next to that one are off by stays with them, the larger in pressure the finer they are.
+    CreepingStickCoarse,
     /// Degree 3, for an edge of stick that recedes over unworn ground: as [`Clustering::CreepingStick`], but towards that edge nodes lie nearly evenly in
     /// `ln(r² - c²)`. The ground just passed is a layer there, of `ln(S/S_0) = κ p/|d(c²)/dN| (r² - c²)`, the thinner the slower the edge.
     RecedingStick,
@@ -65,6 +68,7 @@ impl Clustering {
             Self::Smooth | Self::Even => (1, 3),
             Self::Cubic => (3, 2),
             Self::Quadratic => (3, 1),
+            Self::CreepingStickCoarse => (1, 1),
             Self::Front | Self::CreepingStick | Self::RecedingStick => (1, 2),
         }
     }
@@ -515,13 +519,14 @@ impl Polynomial {
 mod tests {
     use super::*;
 
-    const ALL: [Clustering; 7] = [
+    const ALL: [Clustering; 8] = [
         Clustering::Smooth,
         Clustering::Even,
         Clustering::Front,
         Clustering::Cubic,
         Clustering::Quadratic,
         Clustering::CreepingStick,
+        Clustering::CreepingStickCoarse,
         Clustering::RecedingStick,
     ];
 

@@ -6,8 +6,11 @@ use faer::Mat;
 
 use super::{CycleFields, Fields, Model};
 use crate::error::{Error, Result};
-use crate::numerics::grid::{MOST_POINTS, Mesh};
+use crate::numerics::grid::{MOST_POINTS, Mesh, lagrange_derivative};
 use crate::numerics::linear::dot;
+
+/// Part of the annulus that is next to the edge of stick.
+const INNER: f64 = 0.5;
 
 /// Weights of a derivative `ξ d/dξ` at one spring.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +38,8 @@ impl Stencil {
 ///
 /// # Arguments
 /// * `back` -- by how many nodes they are moved inwards, for ground that moves outwards past the springs
-pub(super) fn derivative_stencils(mesh: &Mesh, back: usize) -> Vec<Stencil> {
+/// * `power` -- of `ξ`, of which the local polynomials next to the edge of stick are polynomials; on a smooth mesh one
+pub(super) fn derivative_stencils(mesh: &Mesh, back: usize, power: f64) -> Vec<Stencil> {
     let last = mesh.cells();
     let smooth = mesh.clustering().is_even();
     let points = mesh.clustering().degree() + 1;
@@ -45,7 +49,14 @@ pub(super) fn derivative_stencils(mesh: &Mesh, back: usize) -> Vec<Stencil> {
         let place = mesh.node(node);
         // At the contact edge itself the slope of the map is zero, and nothing asks for a derivative there.
         let scale = if node == last { 0.0 } else { place.value / place.slope };
-        let weights = mesh.lagrange_derivative(&nodes, node as f64, &place).map(|w| w * scale);
+        let weights = if power != 1.0 && mesh.node(nodes.start).value < INNER {
+            let raised = |node: usize| mesh.node(node).value.powf(power);
+            let mut weights = [0.0; MOST_POINTS];
+            lagrange_derivative(&nodes.clone().map(raised).collect::<Vec<_>>(), raised(node), &mut weights);
+            weights.map(|w| w * power * raised(node))
+        } else {
+            mesh.lagrange_derivative(&nodes, node as f64, &place).map(|w| w * scale)
+        };
         Stencil { first: nodes.start - 1, count: nodes.end.min(last + 1) - nodes.start, weights }
     };
     (1..=last).map(stencil).collect()

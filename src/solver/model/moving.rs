@@ -22,6 +22,7 @@ mod both_forces;
 mod breakaway;
 mod causes;
 mod jump;
+mod near_edge;
 mod stage;
 
 use std::f64::consts::PI;
@@ -33,12 +34,14 @@ use crate::contact::indenter::EquivalentProfile;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
-use crate::numerics::grid::Clustering;
+use crate::laws::wear::WearLaw;
+use crate::numerics::grid::{Clustering, Mesh};
 use crate::numerics::roots::bracketed;
 use crate::solver::model::whole::slides_on;
 pub use both_forces::Bearing;
 use causes::at_one_indentation;
 pub(super) use causes::check_friction;
+use near_edge::NearEdge;
 pub use stage::{StickStage, StickTarget, StickTrial};
 
 /// Radii at which what was left behind is known, for interpolation over where the contact edge can be.
@@ -118,6 +121,8 @@ pub struct MovingStick {
     span: [f64; 2],
     /// Where the stations are on that interval, from 0 to 1, and their weights in interpolation but for the sign.
     places: Vec<[f64; 2]>,
+    /// How what is given at the springs is seen next to the edge.
+    near_edge: NearEdge,
 }
 
 /// The edge of stick, in a state.
@@ -174,10 +179,11 @@ impl MovingStick {
     }
 
     /// The mesh to use, where `asked` is the one for an edge of stick that rests.
-    pub(super) fn clustering(&self, asked: Clustering) -> Clustering {
+    pub(super) fn clustering(&self, asked: Clustering, wear: &dyn WearLaw) -> Clustering {
         match self.cause {
             _ if self.rests() => asked,
             _ if self.recedes() => Clustering::RecedingStick,
+            _ if wear.path_exponent() < 0.0 => Clustering::CreepingStickCoarse,
             _ => Clustering::CreepingStick,
         }
     }
@@ -216,6 +222,14 @@ impl MovingStick {
         self.span = [first.ln(), last.ln()];
         let angle = |j: usize| PI * (j as f64 + 0.5) / STATIONS as f64;
         self.places = (0..STATIONS).map(|j| [0.5 - 0.5 * angle(j).cos(), angle(j).sin()]).collect();
+        self
+    }
+
+    /// On a mesh, for a law of wear.
+    pub(super) fn over(mut self, mesh: &Mesh, grading: f64, wear: &dyn WearLaw) -> Self {
+        if self.creeps() {
+            self.near_edge = NearEdge::new(mesh, grading, wear);
+        }
         self
     }
 

@@ -217,9 +217,9 @@ impl Operators {
         let mesh = abel.mesh();
         let derivative_inwards = match clustering {
             clustering if clustering.is_even() => vec![],
-            _ => derivative_stencils(mesh, 1),
+            _ => derivative_stencils(mesh, 1, 1.0),
         };
-        Ok(Self { derivative: derivative_stencils(mesh, 0), derivative_inwards, abel, inverse })
+        Ok(Self { derivative: derivative_stencils(mesh, 0, 1.0), derivative_inwards, abel, inverse })
     }
 }
 

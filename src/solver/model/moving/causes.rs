@@ -1,6 +1,7 @@
 //! What moves the edge of stick, and where it is not followed.
 
 use super::breakaway::check_memory;
+use super::near_edge::NearEdge;
 use super::{Cause, MovingStick, first_to_slide, follows_held_force};
 use crate::contact::InitialContact;
 use crate::error::{Error, Result};
@@ -68,6 +69,7 @@ impl MovingStick {
             keeps: false,
             span: [0.0; 2],
             places: vec![],
+            near_edge: NearEdge::default(),
         }
     }
 

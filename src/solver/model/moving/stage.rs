@@ -6,7 +6,6 @@ use faer::Mat;
 
 use super::{Cause, MovingStick, StickEdge, held_stick_radius};
 use crate::contact::slip_depth::INNERMOST;
-use crate::numerics::grid::lagrange;
 use crate::solver::model::resistance::Resistance;
 use crate::solver::model::schedule::CycleLoading;
 use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
@@ -346,7 +345,10 @@ impl StickStage<'_> {
     /// `ξ ∂/∂ξ` at the inner springs. Where an edge recedes, leaning to where the ground comes from: else what springs next to it are off by grows.
     fn along_annulus(&self, values: &[f64], motion: &[f64]) -> Vec<f64> {
         if !self.recedes() {
-            return self.model.along_annulus(values);
+            return match self.moving.near_edge.along(values) {
+                Some(along) => along,
+                None => self.model.along_annulus(values),
+            };
         }
         let operators = &self.model.annulus().operators;
         let stencil = |(i, motion): (usize, &f64)| {
@@ -380,7 +382,7 @@ impl StickStage<'_> {
             return at.stick_area / self.target.stick.area - 1.0;
         }
         if self.target.outwards {
-            let slope = self.extrapolated(|i| (-trial.fields.log_slip[i]).exp());
+            let slope = self.moving.near_edge.at_edge(|i| (-trial.fields.log_slip[i]).exp());
             return (passed.unworn_rise - passed.risen * slope) / q;
         }
         let contact = &self.model.contact;
@@ -430,15 +432,6 @@ impl StickStage<'_> {
         Some((at.stick_depth - self.target.stick.depth - rise) / scale)
     }
 
-    /// A quantity at the edge of stick, by the parabola through the first three springs.
-    ///
-    /// By the first spring alone, what the springs next to it are off by would grow in time on meshes as fine as these.
-    fn extrapolated(&self, value: impl Fn(usize) -> f64) -> f64 {
-        let mut weights = [0.0; 3];
-        lagrange(&self.model.annulus().operators.abel.nodes()[1..4], 0.0, &mut weights);
-        weights.iter().enumerate().map(|(i, weight)| weight * value(i)).sum()
-    }
-
     fn fill_by_compressions(
         &self,
         at: &Unknowns,
@@ -471,7 +464,7 @@ impl StickStage<'_> {
             matrix[(inner, j)] =
                 slopes[inner] * fields.slip_depth[inner] / (fields.slip_depth[inner] - behind);
             if self.target.outwards && !self.moving.jumps {
-                let slope = self.extrapolated(|i| (-fields.log_slip[i]).exp() * slopes[i]);
+                let slope = self.moving.near_edge.at_edge(|i| (-fields.log_slip[i]).exp() * slopes[i]);
                 matrix[(n, j)] = passed.risen * slope / trial.stick_zone.slip_compression;
             }
             let q = at.compression[j];
