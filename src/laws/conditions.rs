@@ -254,6 +254,12 @@ impl Conditions {
         self.holds_normal_force && self.tangential_control == TangentialControl::Force
     }
 
+    /// `∂ ln(wear)/∂ ln(slip)` of a cycle next to the edge of stick, at most one. Where slip sets in with a jump it is not small there.
+    pub fn slip_exponent_at_edge(&self) -> f64 {
+        let jumps = self.friction.remembers_slip() && self.wear.spreading().is_none();
+        if jumps { 1.0 } else { self.wear.slip_exponent().min(1.0) }
+    }
+
     /// Whether nothing differs from plain tangential oscillation under Coulomb's and Archard's laws.
     pub fn is_plain(&self) -> bool {
         self.departures().is_empty()

@@ -53,7 +53,7 @@ pub enum Clustering {
     /// Degree 3, spacing `n^-3` at the contact edge and `n^-2` at an edge of stick that creeps: ground passes through the springs there, and
     /// finer ones amplify what they are off by.
     CreepingStick,
-    /// As [`Clustering::CreepingStick`] with a spacing of `n^-2` at the contact edge as well, for wear that goes by a power of the slip below one: it leaves so much behind next to the edge of stick
+    /// As [`Clustering::CreepingStick`] with a spacing of `n^-2` at the contact edge as well, for wear that goes by a power of the slip below one or comes from elsewhere: it leaves so much behind next to the edge of stick
     /// that the contact edge hardly moves at first, and what springs next to that one are off by stays with them, the larger in pressure the finer they are.
     CreepingStickCoarse,
     /// Degree 3, for an edge of stick that recedes over unworn ground: as [`Clustering::CreepingStick`], but towards that edge nodes lie nearly evenly in

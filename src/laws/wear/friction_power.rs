@@ -246,6 +246,13 @@ impl WearLaw for FrictionPower {
         (!self.local).then_some(1.0)
     }
 
+    fn slip_exponent(&self) -> f64 {
+        match self.coefficient {
+            Coefficient::Power { exponent, largest: None, .. } if self.local => 1.0 + exponent,
+            _ => 1.0,
+        }
+    }
+
     fn takes_traction(&self) -> bool {
         true
     }

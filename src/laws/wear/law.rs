@@ -83,6 +83,11 @@ pub trait WearLaw: Debug + Send + Sync {
         0.0
     }
 
+    /// `∂ ln(wear)/∂ ln(slip)` of a cycle where slip is small: zero where debris comes there from elsewhere.
+    fn slip_exponent(&self) -> f64 {
+        if self.spreading().is_some() { 0.0 } else { 1.0 + self.path_exponent() }
+    }
+
     /// Whether the law takes the frictional traction in place of the pressure.
     fn takes_traction(&self) -> bool {
         false

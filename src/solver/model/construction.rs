@@ -201,8 +201,9 @@ impl Annulus<'_> {
         let stick_radius_squared = stick_radius * stick_radius;
         let first = innermost.contact_radius().powi(2);
         let moving = moving.map(|it| it.with_span(first, stick_radius_squared + unworn.largest_slip_area()));
-        let wear = &*schedule.conditions().wear;
-        let clustering = moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering, wear));
+        let slip_exponent = schedule.conditions().slip_exponent_at_edge();
+        let clustering =
+            moving.as_ref().map_or(clustering, |moving| moving.clustering(clustering, slip_exponent));
         let natural = (unworn.limit_slip_area() / stick_radius_squared).ln_1p();
         let natural = match &moving {
             Some(moving) if moving.creeps() => natural.min(MOST_STRETCHED),
@@ -210,7 +211,7 @@ impl Annulus<'_> {
         };
         let stretch = clustering.stretch(natural, grading);
         let operators = store.get(grading, stretch, springs, clustering, backend)?;
-        let moving = moving.map(|it| it.over(operators.abel.mesh(), grading, wear));
+        let moving = moving.map(|it| it.over(operators.abel.mesh(), grading, slip_exponent));
         let radial_unworn: Vec<_> =
             operators.abel.nodes()[1..].iter().map(|x| unworn.at(unworn.limit_slip_area() * x)).collect();
         let compression = innermost.slip_compression();

@@ -34,7 +34,6 @@ use crate::contact::indenter::EquivalentProfile;
 use crate::error::{Error, Result};
 use crate::laws::history::History;
 use crate::laws::loading::TangentialControl;
-use crate::laws::wear::WearLaw;
 use crate::numerics::grid::{Clustering, Mesh};
 use crate::numerics::roots::bracketed;
 use crate::solver::model::whole::slides_on;
@@ -179,11 +178,11 @@ impl MovingStick {
     }
 
     /// The mesh to use, where `asked` is the one for an edge of stick that rests.
-    pub(super) fn clustering(&self, asked: Clustering, wear: &dyn WearLaw) -> Clustering {
+    pub(super) fn clustering(&self, asked: Clustering, slip_exponent: f64) -> Clustering {
         match self.cause {
             _ if self.rests() => asked,
             _ if self.recedes() => Clustering::RecedingStick,
-            _ if wear.path_exponent() < 0.0 => Clustering::CreepingStickCoarse,
+            _ if slip_exponent < 1.0 => Clustering::CreepingStickCoarse,
             _ => Clustering::CreepingStick,
         }
     }
@@ -225,10 +224,10 @@ impl MovingStick {
         self
     }
 
-    /// On a mesh, for a law of wear.
-    pub(super) fn over(mut self, mesh: &Mesh, grading: f64, wear: &dyn WearLaw) -> Self {
+    /// On a mesh, where wear next to the edge goes by a power of the slip.
+    pub(super) fn over(mut self, mesh: &Mesh, grading: f64, slip_exponent: f64) -> Self {
         if self.creeps() {
-            self.near_edge = NearEdge::new(mesh, grading, wear);
+            self.near_edge = NearEdge::new(mesh, grading, slip_exponent);
         }
         self
     }

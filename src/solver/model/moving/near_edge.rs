@@ -8,7 +8,6 @@
 //!
 //! at the edge: smooth in `z` for `m = 1` alone. For less, polynomials in `z` swing from spring to spring there, and those in `z^β` do not.
 
-use crate::laws::wear::WearLaw;
 use crate::numerics::grid::{Mesh, lagrange};
 use crate::solver::model::derivatives::{Stencil, derivative_stencils};
 
@@ -27,8 +26,8 @@ pub(super) struct NearEdge {
 }
 
 impl NearEdge {
-    pub fn new(mesh: &Mesh, grading: f64, wear: &dyn WearLaw) -> Self {
-        let power = 1.0 + 0.5 * (3.0 - grading) * wear.path_exponent().min(0.0);
+    pub fn new(mesh: &Mesh, grading: f64, slip_exponent: f64) -> Self {
+        let power = 1.0 - 0.5 * (3.0 - grading) * (1.0 - slip_exponent);
         let power = power.max(LEAST_POWER);
         let nodes = [1, 2, 3].map(|node| mesh.nodes()[node].powf(power));
         let mut at_edge = [0.0; 3];
