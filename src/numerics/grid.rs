@@ -384,11 +384,16 @@ impl Mesh {
         self.clustering.is_even() && stencil.len() > 2
     }
 
+    /// Whether the nodes of a local polynomial begin in the half of the annulus next to the edge of stick.
+    pub fn is_next_to_stick(&self, stencil: &Range<usize>) -> bool {
+        self.ends[stencil.start].value < 0.5
+    }
+
     /// What the local polynomial is a polynomial of: `y`, or `ξ` as it is next to the edge of stick and less one next to the contact edge.
     fn coordinate(&self, stencil: &Range<usize>, y: f64, point: &MeshPoint) -> f64 {
         if self.is_even(stencil) {
             y
-        } else if self.ends[stencil.start].value < 0.5 {
+        } else if self.is_next_to_stick(stencil) {
             point.value
         } else {
             -point.complement

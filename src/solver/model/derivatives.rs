@@ -9,9 +9,6 @@ use crate::error::{Error, Result};
 use crate::numerics::grid::{MOST_POINTS, Mesh, lagrange_derivative};
 use crate::numerics::linear::dot;
 
-/// Part of the annulus that is next to the edge of stick.
-const INNER: f64 = 0.5;
-
 /// Weights of a derivative `ξ d/dξ` at one spring.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stencil {
@@ -49,7 +46,7 @@ pub(super) fn derivative_stencils(mesh: &Mesh, back: usize, power: f64) -> Vec<S
         let place = mesh.node(node);
         // At the contact edge itself the slope of the map is zero, and nothing asks for a derivative there.
         let scale = if node == last { 0.0 } else { place.value / place.slope };
-        let weights = if power != 1.0 && mesh.node(nodes.start).value < INNER {
+        let weights = if power != 1.0 && mesh.is_next_to_stick(&nodes) {
             let raised = |node: usize| mesh.node(node).value.powf(power);
             let mut weights = [0.0; MOST_POINTS];
             lagrange_derivative(&nodes.clone().map(raised).collect::<Vec<_>>(), raised(node), &mut weights);
@@ -62,10 +59,15 @@ pub(super) fn derivative_stencils(mesh: &Mesh, back: usize, power: f64) -> Vec<S
     (1..=last).map(stencil).collect()
 }
 
+/// What stencils make of a quantity, one by one.
+pub(super) fn along(stencils: &[Stencil], values: &[f64]) -> Vec<f64> {
+    stencils.iter().map(|stencil| stencil.apply(values)).collect()
+}
+
 impl Model {
     /// `ξ ∂λ/∂ξ` at every spring, for any quantity given there, shape `(springs,)`.
     pub fn along_annulus(&self, values: &[f64]) -> Vec<f64> {
-        self.annulus().operators.derivative.iter().map(|stencil| stencil.apply(values)).collect()
+        along(&self.annulus().operators.derivative, values)
     }
 
     /// Derivative of the elastic depth `F q` by the edge at constant compressions, dimensionless per m, shape `(springs,)`.

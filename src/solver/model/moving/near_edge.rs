@@ -35,10 +35,9 @@ impl NearEdge {
         Self { derivative: (power < 1.0).then(|| derivative_stencils(mesh, 0, power)), at_edge }
     }
 
-    /// `ξ ∂/∂ξ` at every spring, shape `(springs,)`; none where it is that of the mesh.
-    pub fn along(&self, values: &[f64]) -> Option<Vec<f64>> {
-        let stencils = self.derivative.as_ref()?;
-        Some(stencils.iter().map(|stencil| stencil.apply(values)).collect())
+    /// Weights of `ξ ∂/∂ξ` at every spring, where those of the mesh are given.
+    pub fn derivative<'a>(&'a self, of_mesh: &'a [Stencil]) -> &'a [Stencil] {
+        self.derivative.as_deref().unwrap_or(of_mesh)
     }
 
     /// A quantity at the edge.

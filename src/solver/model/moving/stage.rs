@@ -6,6 +6,7 @@ use faer::Mat;
 
 use super::{Cause, MovingStick, StickEdge, held_stick_radius};
 use crate::contact::slip_depth::INNERMOST;
+use crate::solver::model::derivatives::along;
 use crate::solver::model::resistance::Resistance;
 use crate::solver::model::schedule::CycleLoading;
 use crate::solver::model::{CycleFields, Fields, Model, StickZone, Target, Unknowns};
@@ -344,13 +345,10 @@ impl StickStage<'_> {
 
     /// `ξ ∂/∂ξ` at the inner springs. Where an edge recedes, leaning to where the ground comes from: else what springs next to it are off by grows.
     fn along_annulus(&self, values: &[f64], motion: &[f64]) -> Vec<f64> {
-        if !self.recedes() {
-            return match self.moving.near_edge.along(values) {
-                Some(along) => along,
-                None => self.model.along_annulus(values),
-            };
-        }
         let operators = &self.model.annulus().operators;
+        if !self.recedes() {
+            return along(self.moving.near_edge.derivative(&operators.derivative), values);
+        }
         let stencil = |(i, motion): (usize, &f64)| {
             let leaning = if *motion < 0.0 { &operators.derivative_inwards } else { &operators.derivative };
             leaning[i].apply(values)
