@@ -112,6 +112,68 @@ fn a_held_force_breaks_the_contact_away_where_springs_lose_more_than_those_that_
     assert!(refused.contains("breaks away") && refused.contains("loading.stick_ratio"), "{refused}");
 }
 
+/// A soft rig breaks the contact away at once, and goes on to move it: from the stick ratio that is asked for into gross slip.
+#[test]
+fn a_rig_goes_on_to_move_what_it_has_broken_away() {
+    for (grading, tau) in [(-0.3, 6.0), (0.0, 4.0), (0.5, 4.0)] {
+        let loading =
+            |tau: f64| format!("indentation = 1\nstick_ratio = 0.5\nrig_stiffness = 0.5\ntau = {tau}");
+        let run = |tau: f64, springs: usize| {
+            let loading = loading(tau);
+            Case { grading, ..at_rest(STATIC, &loading, springs) }.run()
+        };
+        let [coarse, fine] = [60, 240].map(|springs| run(tau, springs));
+        let first = &fine.snapshots()[0];
+        let radius = first.contact_radius;
+        assert!(
+            (first.stick_radius / radius - 0.5).abs() < 1e-6,
+            "k = {grading}: {}",
+            first.stick_radius / radius
+        );
+        let last = fine.last();
+        assert!(last.stick_radius == 0.0 && last.contact_radius > radius, "k = {grading}");
+        let off = coarse.last().wear_volume / last.wear_volume - 1.0;
+        let by_energy = 1e-3 / 0.5 * last.dissipated_energy / last.wear_volume - 1.0;
+        println!("k = {grading}: 60 springs off by {off:.1e}, energy by {by_energy:.1e}");
+        assert!(off.abs() < 1e-3 && by_energy.abs() < 1e-3, "k = {grading}: {off:e}, {by_energy:e}");
+    }
+}
+
+/// What slides as a whole does not come to its static limit: it is Coulomb's friction with the kinetic coefficient.
+#[test]
+fn gross_slip_on_a_rig_is_that_of_the_kinetic_coefficient() {
+    let coulomb = "[friction.coulomb]\ncoefficient = 0.5";
+    for load in ["indentation = 1", HELD] {
+        for rig in [0.1, 2.0] {
+            // Beyond what both springs and rig bear under the static coefficient.
+            let amplitude = 0.6 + 0.6 * 4.0 / 3.0 / rig;
+            let loading = format!("{load}\namplitude = {amplitude}\nrig_stiffness = {rig}\ncycles = 1250");
+            let [found, same] =
+                [STATIC, coulomb].map(|friction| at_rest(friction, &loading, 24).run().last().wear_volume);
+            println!("{load}, rig {rig}: {:.1e}", found / same - 1.0);
+            assert!((found / same - 1.0).abs() < 2e-5, "{load}, rig {rig}: {found}, {same}");
+        }
+    }
+}
+
+/// Towards k = 1 a contact in gross slip comes to be pressed evenly. A soft rig that just broke a cone away then bears more than it can, for even springs break away
+/// at once, at the mean of both limits.
+#[test]
+fn a_rig_that_no_longer_breaks_all_springs_away_is_told() {
+    let run = |amplitude: f64| {
+        let text = format!(
+            "[indenter.cone]\nslope = 1e-3\n[half_space]\ngrading = 0.9\nnormal_stiffness = 2e11\nstiffness_ratio = 0.8\n[friction.static-kinetic]\n\
+             static_coefficient = 0.36\nkinetic_coefficient = 0.3\n[wear.archard]\ncoefficient = 1e-14\n[loading]\nnormal_force = 188\n\
+             amplitude = {amplitude}\nrig_stiffness = 1e5\nfrequency = 1\ntau = 20\n[output]\nsnapshots = 4\n"
+        );
+        let scene = Scene::from_str(&text).unwrap();
+        Simulation::new(&scene).and_then(Simulation::run)
+    };
+    let words = run(580e-6).expect_err("a run that does not come to its end").to_string();
+    assert!(words.contains("no longer breaks all springs away"), "{words}");
+    assert_eq!(run(640e-6).unwrap().last().stick_radius, 0.0);
+}
+
 #[test]
 fn what_the_past_of_single_springs_would_decide_is_refused() {
     let blocks = "[[loading.blocks]]\ntau = 0.3\n[[loading.blocks]]\ntau = 1\namplitude_factor = 0.7";

@@ -375,6 +375,9 @@ impl Simulation {
             if self.model.loses_stick(&self.state) {
                 return Err(self.slides_off());
             }
+            if self.model.is_held_again(&self.state) {
+                return Err(self.held_again());
+            }
             let advanced = match self.advance(observers) {
                 Err(Error::NotConverged { .. })
                     if self.model.is_losing_stick(&self.state) && self.take_up() =>

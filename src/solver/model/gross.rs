@@ -16,6 +16,7 @@
 mod cycle;
 mod ground;
 mod hand_over;
+mod held_again;
 
 use std::f64::consts::PI;
 

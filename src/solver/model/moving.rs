@@ -373,7 +373,7 @@ pub(super) fn height_of_last_core(contact: &InitialContact) -> f64 {
     contact.equivalent_profile().value(LAST_STICK.sqrt() * contact.contact_radius())
 }
 
-/// Whether springs slip on a rig up to a compression, m, of the unworn contact.
+/// Whether springs slip on a rig up to a compression, m, of the unworn contact; those with a memory of their slip may hold it farther out.
 ///
 /// # Errors
 /// Those of the force of the first cycle.
@@ -382,6 +382,9 @@ pub(super) fn slides_on_rig(
     loading: &CycleLoading,
     compression: f64,
 ) -> Result<bool> {
+    if loading.friction.remembers_slip() && breakaway::holds_at_first(contact, loading)? {
+        return Ok(false);
+    }
     let amplitude = loading.friction.static_strength(compression) / contact.half_space().stiffness_ratio();
     let force =
         super::first_force::first_force(contact, &*loading.friction, amplitude, contact.indentation())?;

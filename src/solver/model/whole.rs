@@ -87,7 +87,6 @@ fn worn_at_edge(contact: &InitialContact, schedule: &Schedule) -> f64 {
 pub(super) fn slides_on(contact: &InitialContact, schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
     let on_rig = conditions.tangential_control.is_rig();
-    let breaks_away = conditions.friction.remembers_slip();
     let fits = contact.half_space().grading() >= SOFT && carries(contact, schedule);
-    on_rig && !conditions.holds_normal_force && !breaks_away && !schedule.resolves() && fits
+    on_rig && !conditions.holds_normal_force && !schedule.resolves() && fits
 }

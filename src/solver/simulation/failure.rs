@@ -121,7 +121,7 @@ impl Simulation {
     pub(super) fn slides_off(&self) -> Error {
         let then = match self.model.schedule().conditions().tangential_control {
             TangentialControl::Rig { .. } => {
-                "moves as a whole with the rig, which is followed at gradings from -0.5 on where friction does not rise and has no memory of slip"
+                "moves as a whole with the rig, which is followed at gradings from -0.5 on where friction does not rise"
             }
             _ => "is in gross slip and no longer bears the tangential force that is asked for",
         };
@@ -130,6 +130,20 @@ impl Simulation {
             why: format!(
                 "{}: from there the contact {then}; end before (loading.tau), or ask for a smaller amplitude",
                 self.moment_of_loss()
+            ),
+        }
+    }
+
+    /// The moment from which on a rig no longer breaks all springs away.
+    pub(super) fn held_again(&self) -> Error {
+        let (model, cycles) = (&self.model, self.state.cycles);
+        let tau = cycles * model.contact().tau_per_cycle();
+        Error::NotConverged {
+            what: STEPPING,
+            why: format!(
+                "at cycle {cycles:.6e} (τ = {tau:.5}) the rig no longer breaks all springs away as its motion reverses: they are held up to the mean of both \
+                 limits of friction, and which of them stick is decided by the past of each; end before (loading.tau), ask for a larger amplitude, or take \
+                 friction.coulomb"
             ),
         }
     }

@@ -76,14 +76,8 @@ pub(super) fn check_memory(schedule: &Schedule, contact: &InitialContact, follow
             ),
         });
     }
-    let depth = contact.indentation();
     for loading in schedule.first_cycles() {
-        let holds = follows && {
-            let compression = first_slip_compression(contact, &loading, depth).unwrap_or(depth);
-            let radius = contact.equivalent_profile().radius_at(depth - compression)?;
-            radius > 0.0 && firmness(contact, &loading, radius, compression) >= BROKEN
-        };
-        if !holds {
+        if !(follows && holds_at_first(contact, &loading)?) {
             return Err(Error::Inconsistent {
                 what: "loading.amplitude",
                 why: format!(
@@ -96,6 +90,17 @@ pub(super) fn check_memory(schedule: &Schedule, contact: &InitialContact, follow
         }
     }
     Ok(())
+}
+
+/// Whether springs with a memory of their slip hold a balance of tangential forces in the first cycle: as the displacement grows, they come to it before the contact breaks away.
+///
+/// # Errors
+/// As [`EquivalentProfile::radius_at`](crate::contact::indenter::EquivalentProfile::radius_at).
+pub(super) fn holds_at_first(contact: &InitialContact, loading: &CycleLoading) -> Result<bool> {
+    let depth = contact.indentation();
+    let compression = first_slip_compression(contact, loading, depth).unwrap_or(depth);
+    let radius = contact.equivalent_profile().radius_at(depth - compression)?;
+    Ok(radius > 0.0 && firmness(contact, loading, radius, compression) >= BROKEN)
 }
 
 impl Model {
