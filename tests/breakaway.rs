@@ -112,6 +112,105 @@ fn a_held_force_breaks_the_contact_away_where_springs_lose_more_than_those_that_
     assert!(refused.contains("breaks away") && refused.contains("loading.stick_ratio"), "{refused}");
 }
 
+/// At k = 0 and d = 1, `g_0 = x²`: the stick radius of springs of compression `q`.
+fn radius_of(compression: f64) -> f64 {
+    (1.0 - compression).sqrt()
+}
+
+/// Springs that have slipped go on to as the amplitude falls or friction rises, by up to `(μ_s + μ_k)/2 μ_s`; those that never did stay. So the edge rests, or moves to
+/// where springs are pressed as hard as that, and the limit is that of Coulomb's friction with the same stick radius. What is worn before counts little.
+#[test]
+fn springs_that_have_slipped_go_on_to_down_to_the_mean_of_both_limits() {
+    let edge = 1.0 - 0.7_f64 * 0.7;
+    let limit = |compression: f64| {
+        let loading =
+            format!("indentation = 1\nstick_ratio = {}\ntau = 1000", radius_of(compression.min(edge)));
+        at_rest("[friction.coulomb]\ncoefficient = 0.6", &loading, 60).run().last().wear_volume
+    };
+    let mean = 0.6 / 0.55;
+    let with_blocks = |factor: f64, cycle: &str| {
+        let blocks = format!(
+            "[[loading.blocks]]\ntau = 1e-3\n[[loading.blocks]]\ntau = 1000\namplitude_factor = {factor}\n"
+        );
+        let loading = format!("indentation = 1\nstick_ratio = 0.7\ntau = 200\n{blocks}");
+        let text =
+            at_rest(STATIC, &loading, 240).scene().text().replace("[output]", &format!("{cycle}[output]"));
+        text.parse::<Scene>().unwrap().simulate().unwrap().last().wear_volume
+    };
+    for factor in [0.95, 0.8] {
+        let (found, exact) = (with_blocks(factor, ""), limit(edge * factor * mean));
+        println!("blocks to {factor}: {:.1e}", found / exact - 1.0);
+        assert!((found / exact - 1.0).abs() < 1e-3, "blocks to {factor}: {found}, {exact}");
+        let resolved = with_blocks(factor, "cycle = \"resolved\"\n");
+        assert!((resolved / found - 1.0).abs() < 1e-9, "blocks to {factor}: {resolved}, {found}");
+    }
+    // Friction that rises no farther than that leaves the edge where it is.
+    let rising = format!("{STATIC}\n[friction.history]\nfinal_factor = 1.08\ntau = 0.1");
+    let loading = "indentation = 1\nstick_ratio = 0.7\ntau = 200";
+    let results = at_rest(&rising, loading, 240).run();
+    let off = results.last().wear_volume / limit(edge) - 1.0;
+    println!("friction to 1.08: {off:.1e}");
+    assert!(off.abs() < 1e-4, "{off:e}");
+    assert!((results.last().stick_radius / 0.7 - 1.0).abs() < 1e-12);
+}
+
+/// Under a held normal force the edge rests, for ground next to it wears from the first cycle on; the limit is that of the first stick radius, as under both forces. Where the coefficients
+/// differ by little, springs beyond the groove next to the edge are pressed so hard in time that they stick again, at the mean of both limits.
+#[test]
+fn under_a_held_normal_force_the_edge_rests_and_springs_stick_again_at_the_mean_of_both_limits() {
+    let scene = |kinetic: f64, grading: f64, tau: f64| {
+        let friction =
+            format!("[friction.static-kinetic]\nstatic_coefficient = 0.6\nkinetic_coefficient = {kinetic}");
+        let loading = format!("{HELD}\nstick_ratio = 0.7\ntau = {tau:e}");
+        let text = Case { grading, friction: &friction, loading: &loading, ..at_rest("", "", 60) }.scene();
+        text.text().replace("snapshots = 4", "snapshots = 40").parse::<Scene>().unwrap()
+    };
+    for kinetic in [0.3, 0.5, 0.55] {
+        let scene = scene(kinetic, 0.0, 1e3);
+        let mut conditions = scene.conditions().clone();
+        conditions.tangential_control = fretwear::laws::loading::TangentialControl::Force;
+        let contact = scene.contact().unwrap();
+        let limit = LimitingShape::under(&contact, &conditions).unwrap().unwrap();
+        let results = scene.simulate().unwrap();
+        let off = results.last().wear_volume / limit.wear_volume() - 1.0;
+        let moved = results.last().stick_radius / contact.stick_radius().unwrap() - 1.0;
+        println!("kinetic {kinetic}: volume off by {off:.1e}, stick radius by {moved:.1e}");
+        assert!(off.abs() < 2e-5 && moved.abs() < 1e-9, "kinetic {kinetic}: {off:e}, {moved:e}");
+    }
+    let kinetic = 0.57;
+    let scene = scene(kinetic, 0.5, 300.0);
+    let contact = scene.contact().unwrap();
+    let first = contact.stick_radius().unwrap();
+    let height = contact.indentation() - contact.slip_compression();
+    let mean = contact.slip_compression() * 2.0 / (1.0 + kinetic / 0.6);
+    let results = scene.simulate().unwrap();
+    let sticks_farther = |it: &&fretwear::Snapshot| it.stick_radius > first * (1.0 + 1e-9);
+    let since = results.snapshots().iter().find(sticks_farther).expect("springs that stick again");
+    let before = results.snapshots().iter().rev().find(|it| it.tau < since.tau).expect("a start");
+    let pressed = [before, since].map(|it| it.indentation - height);
+    println!("springs stick again between τ = {} and {}: {pressed:?} of {mean}", before.tau, since.tau);
+    assert!(pressed[1] > mean && pressed[0] < 1.05 * mean, "{pressed:?} of {mean}");
+}
+
+/// In gross slip under a held normal force springs next to the axis are pressed harder as those around them wear. At the axis the equivalent profile is the profile.
+#[test]
+fn what_slides_sticks_again_at_the_mean_of_both_limits() {
+    let close = "[friction.static-kinetic]\nstatic_coefficient = 0.52\nkinetic_coefficient = 0.5";
+    let amplitude = 0.53;
+    let loading = format!("{HELD}\namplitude = {amplitude}\ntau = 4");
+    let text = at_rest(close, &loading, 40).scene().text().replace("snapshots = 4", "snapshots = 40");
+    let results = text.parse::<Scene>().unwrap().simulate().unwrap();
+    let mean = 2.0 * amplitude / (0.52 + 0.5);
+    let mut sticks = [0, 0];
+    for it in results.snapshots() {
+        let pressed = it.indentation - it.wear_depth[0];
+        let stuck = it.stick_radius > 0.0;
+        sticks[usize::from(stuck)] += 1;
+        assert_eq!(stuck, pressed > mean, "at τ = {}: {pressed} of {mean}", it.tau);
+    }
+    assert!(sticks.iter().all(|count| *count > 2), "{sticks:?}");
+}
+
 /// A soft rig breaks the contact away at once, and goes on to move it: from the stick ratio that is asked for into gross slip.
 #[test]
 fn a_rig_goes_on_to_move_what_it_has_broken_away() {

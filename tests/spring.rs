@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use fretwear::contact::spring::{Shakedown, SpringCycle, steady_cycle, stick_compression};
+use fretwear::contact::spring::{
+    Shakedown, SpringCycle, searched_stick_compression, settled_cycle, steady_cycle, stick_compression,
+};
 use fretwear::contact::stick_slip::slip_amplitude_of_spring;
 use fretwear::laws::friction::{Coulomb, FrictionLaw, LoadDependent, StaticKinetic};
 use fretwear::laws::motion::{Mode, NormalOscillation, Orbit, RecordedPath, SampledPath, Tangential};
@@ -367,6 +369,63 @@ fn static_friction_holds_what_never_slipped_and_kinetic_friction_what_did() {
     // Only just off the middle, that the spring bears from its first position is still the easier.
     let near = stick_compression(&line(-1.0, 2.0), &law, M);
     assert!((near / (M * 2.0 / 0.6) - 1.0).abs() < 1e-12, "{near}");
+}
+
+/// Slip in the last of some cycles to and fro, m, of a spring that is followed in small steps through one amplitude after the other.
+fn slip_after(amplitudes: &[f64], law: &StaticKinetic, compression: f64) -> f64 {
+    let [held, dragged] =
+        [law.static_coefficient, law.kinetic_coefficient].map(|coefficient| coefficient * compression / M);
+    let (mut place, mut deflection, mut sliding, mut slip) = (0.0, 0.0_f64, 0.0, 0.0);
+    for amplitude in amplitudes {
+        slip = 0.0;
+        for target in [*amplitude, -amplitude] {
+            let step = 1e-4_f64.copysign(target - place);
+            let count = ((target - place) / step).round() as usize;
+            for _ in 0..count {
+                if sliding != step.signum() {
+                    sliding = 0.0;
+                }
+                let moved = deflection + step;
+                let limit = if sliding == 0.0 { held } else { dragged };
+                if moved.abs() > limit {
+                    sliding = moved.signum();
+                    slip += (moved - sliding * dragged).abs();
+                    deflection = sliding * dragged;
+                } else {
+                    deflection = moved;
+                }
+            }
+            place = target;
+        }
+    }
+    slip
+}
+
+/// Moved less far than before, a spring slips on as long as it comes from the kinetic limit on one side to the static one on the other, `2 M U > (μ_s + μ_k) q`.
+#[test]
+fn a_spring_that_has_slipped_goes_on_to_down_to_the_mean_of_both_limits() {
+    let law = StaticKinetic { static_coefficient: 0.6, kinetic_coefficient: 0.4 };
+    let (before, now) = (1.0, 0.8);
+    let path = sampled(&Tangential, now, 12);
+    let [fresh, mean, slipped] = [M * now / 0.6, M * now / 0.5, M * before / 0.6];
+    assert!(fresh < mean && mean < slipped);
+    for (compression, slips) in [
+        (0.99 * fresh, true),
+        (1.01 * fresh, true),
+        (0.99 * mean, true),
+        (1.01 * mean, false),
+        (0.99 * slipped, false),
+    ] {
+        let expected = slip_after(&[before, before, now, now, now], &law, compression);
+        let mut found = SpringCycle::default();
+        settled_cycle(&path, &law, M, [compression, slipped], &Shakedown::default(), &mut found);
+        assert_eq!(expected > 0.0, slips, "{compression}: {expected}");
+        assert!((found.slip_path - expected).abs() < 1e-3, "{compression}: {}, {expected}", found.slip_path);
+    }
+    for (slipped, edge) in [(slipped, mean), (0.5 * (fresh + mean), 0.5 * (fresh + mean)), (0.0, fresh)] {
+        let found = searched_stick_compression(&path, &law, M, slipped).0;
+        assert!((found / edge - 1.0).abs() < 1e-12, "{slipped}: {found}, {edge}");
+    }
 }
 
 #[test]

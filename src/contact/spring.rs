@@ -60,14 +60,16 @@ pub struct Shakedown {
     pub max_periods: usize,
     /// Slip per period, over the length of the path while the spring is loaded, below which it sticks.
     pub threshold: f64,
+    /// Whether it has slipped before, so that the kinetic limit holds it until it reverses; else it was pressed on at rest.
+    pub slipped: bool,
     /// Whether it is known to slip for ever, as below the [`stick_compression`], so that Newton's method may find what it repeats. On its way to rest it must take all of that way.
     pub slips: bool,
 }
 
 impl Default for Shakedown {
-    /// 1000 periods, `1e-9`, of a spring that may come to rest.
+    /// 1000 periods, `1e-9`, of a spring that is pressed on and may come to rest.
     fn default() -> Self {
-        Self { max_periods: 1000, threshold: 1e-9, slips: false }
+        Self { max_periods: 1000, threshold: 1e-9, slipped: false, slips: false }
     }
 }
 
@@ -212,6 +214,10 @@ pub fn steady_cycle(
     let limits = std::mem::take(&mut out.limit);
     let count = path.points.len();
     (out.periods, out.substeps) = (0, 0);
+    if shakedown.slipped {
+        out.clear();
+        general_period(path, &limits, count, compression, &mut spring, 1.0, out);
+    }
     let mut last_change = f64::INFINITY;
     loop {
         let before = spring;
@@ -246,6 +252,27 @@ pub fn steady_cycle(
         }
     }
     out.limit = limits;
+}
+
+/// [`steady_cycle`] of a spring in a contact of which those below some compression have slipped before: where it sticks from rest, it may go on to slip.
+///
+/// # Arguments
+/// * `slipped` -- compression, m, below which springs have slipped before
+pub fn settled_cycle(
+    path: &Path,
+    law: &dyn FrictionLaw,
+    stiffness_ratio: f64,
+    [compression, slipped]: [f64; 2],
+    shakedown: &Shakedown,
+    out: &mut SpringCycle,
+) {
+    steady_cycle(path, law, stiffness_ratio, compression, shakedown, out);
+    if law.remembers_slip() && out.slip_path == 0.0 && compression < slipped {
+        let from_rest = out.substeps;
+        let shakedown = Shakedown { slipped: true, ..*shakedown };
+        steady_cycle(path, law, stiffness_ratio, compression, &shakedown, out);
+        out.substeps += from_rest;
+    }
 }
 
 /// The deflection that a period repeats, by one step of Newton's method; `None` where a period hardly changes it or it is none of the spring.

@@ -91,6 +91,12 @@ impl History {
         }
     }
 
+    /// Smallest factor from one time to another, or at the first where the other is before.
+    pub fn least_between(&self, from: f64, to: f64) -> f64 {
+        let within = self.kinks().iter().copied().filter(|t| (from..to).contains(t));
+        within.chain([from, to.max(from)]).map(|t| self.at(t)).fold(f64::INFINITY, f64::min)
+    }
+
     /// Smallest and largest factor over all times.
     pub fn range(&self) -> [f64; 2] {
         match self {

@@ -47,16 +47,31 @@ const JUST_LIFTED: f64 = 1e-6;
 /// assert_eq!(stick_compression(&path, &law, 1.0), 6.0); // M U/μ_f
 /// ```
 pub fn stick_compression(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> f64 {
-    searched_stick_compression(path, law, stiffness_ratio).0
+    searched_stick_compression(path, law, stiffness_ratio, 0.0).0
 }
 
-/// [`stick_compression`], and the substeps passed in the search for it.
-pub fn searched_stick_compression(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> (f64, usize) {
+/// [`stick_compression`] where springs below some compression have slipped before, and the substeps passed in the search for it.
+///
+/// # Arguments
+/// * `slipped` -- that compression, m
+pub fn searched_stick_compression(
+    path: &Path,
+    law: &dyn FrictionLaw,
+    stiffness_ratio: f64,
+    slipped: f64,
+) -> (f64, usize) {
     let lifted = path.largest_lift();
-    let mut trial = Trial { path, law, stiffness_ratio, cycle: SpringCycle::default(), substeps: 0 };
+    let shakedown = Shakedown::default();
+    let mut trial =
+        Trial { path, law, stiffness_ratio, shakedown, cycle: SpringCycle::default(), substeps: 0 };
     if law.remembers_slip() {
-        let found = trial.observed(never_slips(path, law, stiffness_ratio));
-        return (found, trial.substeps);
+        let fresh = trial.observed(never_slips(path, law, stiffness_ratio, 1.0));
+        if slipped <= fresh {
+            return (fresh, trial.substeps);
+        }
+        trial.shakedown.slipped = true;
+        let kept = trial.observed(never_slips(path, law, stiffness_ratio, 2.0));
+        return (fresh.max(kept.min(slipped)), trial.substeps);
     }
     let loaded_always = match law.coefficient() {
         Some(coefficient) => {
@@ -88,15 +103,15 @@ fn load_dependent(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64, lift
     if excess(lifted) <= 0.0 {
         return lifted;
     }
-    let high = never_slips(path, law, stiffness_ratio) * (1.0 + 1e-9);
+    let high = never_slips(path, law, stiffness_ratio, 1.0) * (1.0 + 1e-9);
     bracketed(excess, lifted, high, 0.0).expect("the circles have the place of pressing on in common")
 }
 
-/// A compression, m, that bears the whole path from where the spring was pressed on.
-fn never_slips(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64) -> f64 {
+/// A compression, m, that bears so many times the whole path from where the spring was pressed on: twice, wherever it comes from.
+fn never_slips(path: &Path, law: &dyn FrictionLaw, stiffness_ratio: f64, times: f64) -> f64 {
     let least = |point: &PathPoint| {
         let [x, y] = point.tangential;
-        law.compression_at(stiffness_ratio * x.hypot(y)) + point.lift
+        law.compression_at(times * stiffness_ratio * x.hypot(y)) + point.lift
     };
     path.points.iter().map(least).fold(0.0, f64::max)
 }
@@ -106,6 +121,7 @@ struct Trial<'a> {
     path: &'a Path,
     law: &'a dyn FrictionLaw,
     stiffness_ratio: f64,
+    shakedown: Shakedown,
     cycle: SpringCycle,
     /// Passed so far.
     substeps: usize,
@@ -114,8 +130,8 @@ struct Trial<'a> {
 impl Trial<'_> {
     /// Whether a spring of this compression, m, slips in the end.
     fn slips(&mut self, compression: f64) -> bool {
-        let Self { path, law, stiffness_ratio, cycle, substeps } = self;
-        steady_cycle(path, *law, *stiffness_ratio, compression, &Shakedown::default(), cycle);
+        let Self { path, law, stiffness_ratio, shakedown, cycle, substeps } = self;
+        steady_cycle(path, *law, *stiffness_ratio, compression, shakedown, cycle);
         *substeps += cycle.substeps;
         cycle.slip_path > 0.0
     }

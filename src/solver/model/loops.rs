@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::motion::slips_below;
 use super::schedule::CycleLoading;
 use super::{CycleFields, Fields, Model};
-use crate::contact::spring::{Neighbours, Shakedown, SpringCycle, steady_cycle};
+use crate::contact::spring::{Neighbours, Shakedown, SpringCycle, settled_cycle};
 use crate::laws::path::{Path, PathPoint};
 use crate::numerics::quadrature::Rule;
 use crate::numerics::roots::bracketed;
@@ -158,7 +158,7 @@ impl Model {
         // Neighbours leave only springs that stick or are lifted.
         let slips_below = if slipping.is_none() { slips_below(loading, path, ratio) } else { 0.0 };
         let lift = path.points[0].lift;
-        let mut add = |stiffness: f64, compression: f64| {
+        let mut add = |stiffness: f64, compression: f64, slipped: f64| {
             let limit = friction.kinetic_strength(compression - lift) / ratio;
             match slipping.as_mut().filter(|it| compression >= lift && limit < it.sticking()) {
                 Some(slipping) => {
@@ -167,7 +167,7 @@ impl Model {
                 }
                 None => {
                     let shakedown = Shakedown { slips: compression < slips_below, ..Shakedown::default() };
-                    steady_cycle(path, friction, ratio, compression, &shakedown, &mut spring);
+                    settled_cycle(path, friction, ratio, [compression, slipped], &shakedown, &mut spring);
                 }
             }
             work += stiffness * spring.work;
@@ -187,10 +187,10 @@ impl Model {
         let rule = Rule::legendre(CORE_NODES).expect("a rule of few nodes");
         for (part, weight) in rule.nodes.iter().zip(&rule.weights) {
             let x = radius * part.powf(exponent.recip());
-            add(core * weight, depth - profile.value(x));
+            add(core * weight, depth - profile.value(x), 0.0);
         }
         for (q, weight) in compression.iter().zip(self.spring_weights(fields)) {
-            add(half_space.normal_stiffness() * weight, q.max(0.0));
+            add(half_space.normal_stiffness() * weight, q.max(0.0), loading.slipped);
         }
         for force in &mut force {
             force[0] = force[steps];

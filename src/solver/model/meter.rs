@@ -69,7 +69,8 @@ impl Model {
     pub(super) fn slip_compression_of(&self, loading: &CycleLoading) -> f64 {
         let ratio = self.contact.half_space().stiffness_ratio();
         let Some(path) = &loading.path else { return loading.slip_compression(ratio) };
-        let (compression, substeps) = searched_stick_compression(path, &*loading.friction, ratio);
+        let (compression, substeps) =
+            searched_stick_compression(path, &*loading.friction, ratio, loading.slipped);
         self.count_substeps(substeps, path, &*loading.friction);
         compression
     }

@@ -7,7 +7,7 @@ use super::resistance::strength;
 use super::schedule::{AmplitudeControl, CycleLoading};
 use super::slipping::Slipping;
 use super::{Fields, Model, State};
-use crate::contact::spring::{Response, Shakedown, SpringCycle, Steps, steady_cycle};
+use crate::contact::spring::{Response, Shakedown, SpringCycle, Steps, settled_cycle};
 use crate::contact::stick_slip::slip_amplitude_of_spring;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
@@ -138,7 +138,8 @@ impl Model {
         let ratio = self.contact.half_space().stiffness_ratio();
         let lifted: Vec<f64> = compression.iter().map(|q| q - loading.lift).collect();
         let amplitude = self.amplitude(loading, &lifted, fields);
-        let (law, keeps) = (&*loading.friction, self.keeps_slipping(loading));
+        let law = &*loading.friction;
+        let keeps_below = loading.keeps_slipping_below(ratio) - loading.lift;
         let resistance = self.resistance(loading, &lifted, fields);
         let slip: Vec<(f64, f64)> = lifted
             .iter()
@@ -148,7 +149,7 @@ impl Model {
                     let slope = -self.slope(|q| resistance.of(j, q), *q) / ratio;
                     return (amplitude - resistance.of(j, *q) / ratio, slope);
                 }
-                if keeps && 2.0 * ratio * amplitude > law.static_strength(*q) + law.kinetic_strength(*q) {
+                if *q < keeps_below {
                     let slope = -law.kinetic_strength_slope(*q) / ratio;
                     return (amplitude - law.kinetic_strength(*q) / ratio, slope);
                 }
@@ -569,11 +570,11 @@ impl PathSprings<'_> {
 
     fn direct(&mut self, compression: f64, slip: &mut [f64]) -> Energies {
         let cycle = &mut self.cycle;
-        steady_cycle(
+        settled_cycle(
             self.path,
             &*self.loading.friction,
             self.ratio,
-            compression,
+            [compression, self.loading.slipped],
             &Shakedown { slips: compression < self.slipping, ..Shakedown::default() },
             cycle,
         );

@@ -80,7 +80,7 @@ enum Cause {
     /// The tangential amplitude follows from a balance of forces.
     Tangential,
     /// This normal force, N, and the tangential amplitude of force are held: the edge stays, `q_c = d - g_0(c)` grows, the amplitude with it. So it is
-    /// on a rig where springs remember their slip.
+    /// on a rig where springs remember their slip, and where the displacement is held, which stays.
     BothForces(f64),
     /// The same while friction falls: the edge recedes to where unworn ground alone bears `F_N - F_x/μ`, see [`held_stick_radius`].
     ReleasedForces(f64),

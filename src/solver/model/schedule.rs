@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use super::first_force::first_force;
 use super::worn_ground::WornGround;
 use crate::contact::InitialContact;
-use crate::contact::spring::{Response, Steps, stick_compression};
+use crate::contact::spring::{Response, Steps, searched_stick_compression};
 use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::FrictionLaw;
@@ -58,6 +58,8 @@ pub struct CycleLoading {
     pub response: Option<Arc<Response>>,
     /// The steps of that path where the indenter moves up and down along a line and a constant coefficient of friction decides how springs slip.
     pub steps: Option<Arc<Steps>>,
+    /// Compression at the largest indentation of the run, m, below which springs have slipped in some cycle, where they remember it; else zero.
+    pub slipped: f64,
     /// Cycles in that period.
     pub cycles_per_period: f64,
     /// Settled cycles that this one wears as much as: `FROM_REST` in the first cycle from rest, else one.
@@ -108,9 +110,26 @@ impl CycleLoading {
     /// Compression at the largest indentation below which springs slip in this cycle, m, at the amplitude given.
     pub fn slip_compression(&self, stiffness_ratio: f64) -> f64 {
         match &self.path {
-            Some(path) => stick_compression(path, &*self.friction, stiffness_ratio),
-            None => self.friction.compression_at(stiffness_ratio * self.amplitude) + self.lift,
+            Some(path) => searched_stick_compression(path, &*self.friction, stiffness_ratio, self.slipped).0,
+            None => self.fresh_compression(stiffness_ratio).max(self.keeps_slipping_below(stiffness_ratio)),
         }
+    }
+
+    /// The same of springs that were pressed on, and never slipped, to and fro.
+    fn fresh_compression(&self, stiffness_ratio: f64) -> f64 {
+        self.friction.compression_at(stiffness_ratio * self.amplitude) + self.lift
+    }
+
+    /// The same of springs that have slipped before, to and fro: where they remember it, they slip on as long as they are moved each way from the kinetic limit on one side
+    /// to the static one on the other, `2 M U > τ_s + τ_k`. Else zero.
+    pub fn keeps_slipping_below(&self, stiffness_ratio: f64) -> f64 {
+        if self.slipped == 0.0 {
+            return 0.0;
+        }
+        let mean_over_static = 0.5 * (1.0 + self.friction.static_factor().recip());
+        let amplitude = self.amplitude / mean_over_static;
+        let kept = self.friction.compression_at(stiffness_ratio * amplitude) + self.lift;
+        kept.min(self.slipped)
     }
 
     /// By how much the indenter is lifted from its largest indentation of the run where it is deepest in this cycle, m.
@@ -124,6 +143,7 @@ impl CycleLoading {
         if lift == 0.0 {
             return;
         }
+        self.slipped = if self.slipped > 0.0 { self.slipped + lift } else { 0.0 };
         match self.path.as_mut().map(Arc::make_mut) {
             Some(path) => path.points.iter_mut().for_each(|point| point.lift += lift),
             None => self.lift += lift,
@@ -194,6 +214,10 @@ pub struct Schedule {
     /// Factor on friction along the energy dissipated, J/m².
     friction_along_energy: History,
     largest_indentation: f64,
+    /// `M`.
+    stiffness_ratio: f64,
+    /// [`CycleLoading::slip_compression`] of each block from rest, under friction as it is given.
+    slipping: OnceLock<Vec<f64>>,
     /// Whether steps follow an edge of stick that jumps between blocks.
     follows_jumps: bool,
     /// Cycles after which nothing is asked for; infinite where that is not known beforehand.
@@ -258,6 +282,7 @@ impl Schedule {
                 path: None,
                 response: None,
                 steps: None,
+                slipped: 0.0,
                 cycles_per_period: 1.0,
                 share: 1.0,
                 resting_area: 0.0,
@@ -304,6 +329,8 @@ impl Schedule {
             loadings,
             friction_along_energy,
             largest_indentation,
+            stiffness_ratio: contact.half_space().stiffness_ratio(),
+            slipping: OnceLock::new(),
             follows_jumps: true,
             asked_until: f64::INFINITY,
             follows_balance: true,
@@ -427,7 +454,45 @@ impl Schedule {
         if self.conditions.wear_history != History::Constant {
             loading.wear = loading.wear.scaled(factor(&self.conditions.wear_history));
         }
+        loading.slipped = self.slipped(block, cycles);
         loading
+    }
+
+    /// Whether springs remember their slip and all of those beside the first stick zone slip from the first cycle on, under a held normal force that presses them harder.
+    pub(super) fn keeps_slipping_from_first(&self) -> bool {
+        let Conditions { friction, holds_normal_force, tangential_control, .. } = &self.conditions;
+        let [falls, _] = self.friction_change().directions();
+        friction.remembers_slip()
+            && *holds_normal_force
+            && *tangential_control == TangentialControl::Displacement
+            && !falls
+            && !self.changes_between_blocks()
+    }
+
+    /// See [`CycleLoading::slipped`], at `cycles` in a block; all springs have once the whole of the unworn contact has.
+    fn slipped(&self, block: usize, cycles: f64) -> f64 {
+        let Conditions { friction, friction_history, tangential_control, repeat, .. } = &self.conditions;
+        if !friction.remembers_slip() || *tangential_control != TangentialControl::Displacement {
+            return 0.0;
+        }
+        if self.keeps_slipping_from_first() {
+            return f64::INFINITY;
+        }
+        let recurs = *repeat && self.ends.last().is_some_and(|whole| has_come(*whole, cycles));
+        let begun = if recurs { self.loadings.len() } else { block + 1 };
+        let slipping = |loading: &CycleLoading| loading.slip_compression(self.stiffness_ratio);
+        let always = || self.loadings.iter().map(slipping).collect();
+        let slipped = |(it, loading): (usize, &CycleLoading)| {
+            if *friction_history == History::Constant {
+                return self.slipping.get_or_init(always)[it];
+            }
+            let start = if it == 0 { 0.0 } else { self.ends[it - 1] };
+            let until = if it == block || *repeat { cycles } else { self.ends[it].min(cycles) };
+            let factor = friction_history.least_between(start * self.clock_rate, until * self.clock_rate);
+            slipping(&CycleLoading { friction: friction.scaled(factor), ..loading.clone() })
+        };
+        let most = self.loadings[..begun].iter().enumerate().map(slipped).fold(0.0, f64::max);
+        if most < self.largest_indentation { most } else { f64::INFINITY }
     }
 
     /// Whether steps from there on see whole passes. A first cycle that wears from rest is one of the first block, if that lasts as long.
@@ -517,12 +582,12 @@ impl Schedule {
         let factor = self.friction_change().last();
         let [begun, last] =
             if self.conditions.repeat { [self.loadings.len(), usize::MAX] } else { [begun, 1] };
-        self.loadings[..begun]
-            .iter()
-            .rev()
-            .filter(|loading| !loading.is_pause())
-            .take(last)
-            .map(move |loading| CycleLoading { friction: loading.friction.scaled(factor), ..loading.clone() })
+        self.loadings[..begun].iter().rev().filter(|loading| !loading.is_pause()).take(last).map(
+            move |loading| {
+                let slipped = self.slipped(begun - 1, f64::INFINITY);
+                CycleLoading { friction: loading.friction.scaled(factor), slipped, ..loading.clone() }
+            },
+        )
     }
 
     /// The next time after `cycles` at which what acts changes abruptly or has a kink, in cycles: a step may end there but not cross it.

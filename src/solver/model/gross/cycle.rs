@@ -290,7 +290,7 @@ impl Model {
         borne: &mut [f64],
     ) -> Option<Stick> {
         let (mesh, ratio) = (&gross.mesh, self.contact.half_space().stiffness_ratio());
-        let sticking = loading.friction.compression_at(ratio * loading.amplitude);
+        let sticking = loading.slip_compression(ratio) - loading.lift;
         let end = mesh.last_above(compression, sticking)?;
         let fraction = disc_that_sticks(mesh, &*loading.friction, compression, sticking, end);
         if fraction == mesh.fraction(end) {

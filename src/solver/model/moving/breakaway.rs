@@ -151,12 +151,7 @@ impl Model {
         let [by_force, by_displacement] = loading.control.factors();
         let amplitude =
             (loading.asked() - by_force * slipping) / (by_force * per_amplitude + by_displacement);
-        loading.displaced(amplitude)
-    }
-
-    /// Whether springs on the mesh, all of which have slipped, go on to slip down to the mean of the static and the kinetic limit.
-    pub(in crate::solver::model) fn keeps_slipping(&self, loading: &CycleLoading) -> bool {
-        let rests = self.moving().is_some_and(|moving| matches!(moving.cause, Cause::BothForces(_)));
-        rests && loading.friction.remembers_slip()
+        // All springs on the mesh slip from the first cycle on.
+        CycleLoading { slipped: f64::INFINITY, ..loading.displaced(amplitude) }
     }
 }

@@ -28,6 +28,10 @@ impl MovingStick {
         let [falls, rises] = schedule.friction_change().directions();
         let coulomb = conditions.friction.coefficient().is_some();
         let moving = match (conditions.holds_normal_force, conditions.tangential_control) {
+            // Ground next to the edge wears from the first cycle on, for slip sets in with a jump: the edge rests, and springs that are held again stick one by one.
+            (true, TangentialControl::Displacement) if schedule.keeps_slipping_from_first() => {
+                Self::by(Cause::BothForces(force))
+            }
             (true, TangentialControl::Displacement) => Self {
                 outwards: rises || !falls,
                 turns: falls || in_blocks,
@@ -84,10 +88,17 @@ impl MovingStick {
         if !in_blocks && falls && schedule.lifts() {
             return Ok(None);
         }
+        // What has slipped may go on to although friction rises or the amplitude falls.
+        let memory = conditions.friction.remembers_slip();
+        let stays = memory && !rests_on_worn_ground(schedule, contact);
         let level = at_one_indentation(conditions) && !schedule.lifts();
         let turning = Self { outwards: !falls, turns: true, in_blocks, ..by.clone() };
         if *schedule.friction_along_energy() != History::Constant && in_blocks && level {
             return Ok(Some(turning));
+        }
+        // Slip that sets in with a jump wears a groove next to the edge, beyond which springs stick again one by one.
+        if memory && rises {
+            return Ok(None);
         }
         if in_blocks || falls && rises {
             let amplitudes: Vec<f64> = schedule.amplitude_factors().collect();
@@ -97,7 +108,7 @@ impl MovingStick {
                 true => amplitudes.iter().all(|factor| *factor <= amplitudes[0]),
                 false => schedule.follows_jumps(),
             };
-            if level && jumps && !changes && !conditions.repeat {
+            if level && jumps && !changes && !conditions.repeat && !(shrink && stays) {
                 return Ok(Some(Self { outwards: shrink, jumps: true, ..by }));
             }
             // Beside friction that changes an edge that is followed finds no step on from some time on, on many springs, where a block lifts the indenter.

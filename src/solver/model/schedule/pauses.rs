@@ -24,11 +24,11 @@ impl Schedule {
         self.changes_between_blocks() && self.slips_otherwise()
     }
 
-    /// What makes springs slip first, as it begins.
+    /// What makes springs slip first, as it begins, and none has slipped before.
     pub fn first_slip(&self) -> CycleLoading {
         let block = self.loadings.iter().position(|loading| !loading.is_pause()).unwrap_or_default();
         let start = if block > 0 { self.ends[block - 1] } else { 0.0 };
-        self.in_block(block, start)
+        CycleLoading { slipped: 0.0, ..self.in_block(block, start) }
     }
 
     /// Whether nothing moves in the block that begins at `cycles`, or springs slip as they did when they slipped last, or for the first time.
