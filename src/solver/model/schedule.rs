@@ -1,5 +1,6 @@
 //! What acts on the contact in each cycle: laws, amplitude and path, by block and by history.
 
+mod memory;
 mod pauses;
 
 use std::sync::{Arc, OnceLock};
@@ -7,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 use super::first_force::first_force;
 use super::worn_ground::WornGround;
 use crate::contact::InitialContact;
-use crate::contact::spring::{Response, Steps, searched_stick_compression};
+use crate::contact::spring::{Response, Steps};
 use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::FrictionLaw;
@@ -105,31 +106,6 @@ impl CycleLoading {
     /// Whether nothing moves.
     pub fn is_pause(&self) -> bool {
         self.asked() == 0.0
-    }
-
-    /// Compression at the largest indentation below which springs slip in this cycle, m, at the amplitude given.
-    pub fn slip_compression(&self, stiffness_ratio: f64) -> f64 {
-        match &self.path {
-            Some(path) => searched_stick_compression(path, &*self.friction, stiffness_ratio, self.slipped).0,
-            None => self.fresh_compression(stiffness_ratio).max(self.keeps_slipping_below(stiffness_ratio)),
-        }
-    }
-
-    /// The same of springs that were pressed on, and never slipped, to and fro.
-    fn fresh_compression(&self, stiffness_ratio: f64) -> f64 {
-        self.friction.compression_at(stiffness_ratio * self.amplitude) + self.lift
-    }
-
-    /// The same of springs that have slipped before, to and fro: where they remember it, they slip on as long as they are moved each way from the kinetic limit on one side
-    /// to the static one on the other, `2 M U > τ_s + τ_k`. Else zero.
-    pub fn keeps_slipping_below(&self, stiffness_ratio: f64) -> f64 {
-        if self.slipped == 0.0 {
-            return 0.0;
-        }
-        let mean_over_static = 0.5 * (1.0 + self.friction.static_factor().recip());
-        let amplitude = self.amplitude / mean_over_static;
-        let kept = self.friction.compression_at(stiffness_ratio * amplitude) + self.lift;
-        kept.min(self.slipped)
     }
 
     /// By how much the indenter is lifted from its largest indentation of the run where it is deepest in this cycle, m.
@@ -456,43 +432,6 @@ impl Schedule {
         }
         loading.slipped = self.slipped(block, cycles);
         loading
-    }
-
-    /// Whether springs remember their slip and all of those beside the first stick zone slip from the first cycle on, under a held normal force that presses them harder.
-    pub(super) fn keeps_slipping_from_first(&self) -> bool {
-        let Conditions { friction, holds_normal_force, tangential_control, .. } = &self.conditions;
-        let [falls, _] = self.friction_change().directions();
-        friction.remembers_slip()
-            && *holds_normal_force
-            && *tangential_control == TangentialControl::Displacement
-            && !falls
-            && !self.changes_between_blocks()
-    }
-
-    /// See [`CycleLoading::slipped`], at `cycles` in a block; all springs have once the whole of the unworn contact has.
-    fn slipped(&self, block: usize, cycles: f64) -> f64 {
-        let Conditions { friction, friction_history, tangential_control, repeat, .. } = &self.conditions;
-        if !friction.remembers_slip() || *tangential_control != TangentialControl::Displacement {
-            return 0.0;
-        }
-        if self.keeps_slipping_from_first() {
-            return f64::INFINITY;
-        }
-        let recurs = *repeat && self.ends.last().is_some_and(|whole| has_come(*whole, cycles));
-        let begun = if recurs { self.loadings.len() } else { block + 1 };
-        let slipping = |loading: &CycleLoading| loading.slip_compression(self.stiffness_ratio);
-        let always = || self.loadings.iter().map(slipping).collect();
-        let slipped = |(it, loading): (usize, &CycleLoading)| {
-            if *friction_history == History::Constant {
-                return self.slipping.get_or_init(always)[it];
-            }
-            let start = if it == 0 { 0.0 } else { self.ends[it - 1] };
-            let until = if it == block || *repeat { cycles } else { self.ends[it].min(cycles) };
-            let factor = friction_history.least_between(start * self.clock_rate, until * self.clock_rate);
-            slipping(&CycleLoading { friction: friction.scaled(factor), ..loading.clone() })
-        };
-        let most = self.loadings[..begun].iter().enumerate().map(slipped).fold(0.0, f64::max);
-        if most < self.largest_indentation { most } else { f64::INFINITY }
     }
 
     /// Whether steps from there on see whole passes. A first cycle that wears from rest is one of the first block, if that lasts as long.
