@@ -382,12 +382,16 @@ fn balance_error(simulation: &Simulation) -> Option<f64> {
 }
 
 /// Whether the two volumes tell the error: where the edge of stick moves neither sees that of its place, nor that of an amplitude which follows from a balance
-/// of forces, nor that of kinks: where springs begin to slip in gross slip, of all that cubics carry there, where the contact edge comes to lie while the contact lifts, and where slip ends in smaller blocks.
+/// of forces, nor that of kinks: where springs begin to slip in gross slip, of all that cubics carry there, where the contact edge comes to lie while the contact lifts, where slip ends in smaller blocks or as friction rises, and what debris spreads of
+/// slip that sets in with a jump.
 fn has_balance(simulation: &Simulation) -> bool {
     let (model, _) = simulation.first();
     let schedule = model.schedule();
-    let tangential = schedule.conditions().tangential_control != TangentialControl::Displacement;
+    let conditions = schedule.conditions();
+    let tangential = conditions.tangential_control != TangentialControl::Displacement;
     let slides_with_kink = model.gross().is_some_and(|gross| gross.sticks() || gross.is_on_cubics());
-    let has_kink = slides_with_kink || schedule.lifts() || schedule.changes_between_blocks();
+    let [_, rises] = schedule.friction_change().directions();
+    let jumps = conditions.friction.remembers_slip() && (rises || conditions.wear.spreading().is_some());
+    let has_kink = slides_with_kink || jumps || schedule.lifts() || schedule.changes_between_blocks();
     !tangential && model.moving().is_none() && !has_kink
 }

@@ -192,7 +192,9 @@ pub struct Schedule {
     largest_indentation: f64,
     /// `M`.
     stiffness_ratio: f64,
-    /// [`CycleLoading::slip_compression`] of each block from rest, under friction as it is given.
+    /// `k`.
+    grading: f64,
+    /// [`CycleLoading::slip_compression`] of each block from rest, under friction as it is at the start.
     slipping: OnceLock<Vec<f64>>,
     /// Whether steps follow an edge of stick that jumps between blocks.
     follows_jumps: bool,
@@ -306,6 +308,7 @@ impl Schedule {
             friction_along_energy,
             largest_indentation,
             stiffness_ratio: contact.half_space().stiffness_ratio(),
+            grading: contact.half_space().grading(),
             slipping: OnceLock::new(),
             follows_jumps: true,
             asked_until: f64::INFINITY,

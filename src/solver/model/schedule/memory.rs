@@ -34,13 +34,15 @@ impl CycleLoading {
 }
 
 impl Schedule {
-    /// Whether springs remember their slip and all of those beside the first stick zone slip from the first cycle on, under a held normal force that presses them harder.
+    /// Whether springs remember their slip and all of those beside the first stick zone slip from the first cycle on, under a held normal force that presses them harder. Where debris
+    /// spreads below `k = 0` the mesh from an edge that rests needs 500 springs for what 60 do that follow it (docs/numerics.md).
     pub(in crate::solver::model) fn keeps_slipping_from_first(&self) -> bool {
         let Conditions { friction, holds_normal_force, tangential_control, .. } = &self.conditions;
         let [falls, _] = self.friction_change().directions();
         friction.remembers_slip()
             && *holds_normal_force
             && *tangential_control == TangentialControl::Displacement
+            && (self.grading >= 0.0 || self.wears_locally())
             && !falls
             && !self.changes_between_blocks()
     }
@@ -54,19 +56,28 @@ impl Schedule {
         if self.keeps_slipping_from_first() {
             return f64::INFINITY;
         }
+        let [_, rises] = friction_history.directions();
         let recurs = *repeat && self.ends.last().is_some_and(|whole| has_come(*whole, cycles));
         let begun = if recurs { self.loadings.len() } else { block + 1 };
-        let slipping = |loading: &CycleLoading| loading.slip_compression(self.stiffness_ratio);
-        let always = || self.loadings.iter().map(slipping).collect();
+        let from_rest = |loading: &CycleLoading, factor: f64| {
+            let loading = CycleLoading { friction: friction.scaled(factor), ..loading.clone() };
+            loading.slip_compression(self.stiffness_ratio)
+        };
+        let at_start = || self.loadings.iter().map(|it| from_rest(it, friction_history.at(0.0))).collect();
         let slipped = |(it, loading): (usize, &CycleLoading)| {
             if *friction_history == History::Constant {
-                return self.slipping.get_or_init(always)[it];
+                return self.slipping.get_or_init(at_start)[it];
             }
             let start = if it == 0 { 0.0 } else { self.ends[it - 1] };
             let until = if it == block || *repeat { cycles } else { self.ends[it].min(cycles) };
-            let factor = friction_history.least_between(start * self.clock_rate, until * self.clock_rate);
-            slipping(&CycleLoading { friction: friction.scaled(factor), ..loading.clone() })
+            let [start, until] = [start, until].map(|cycles| cycles * self.clock_rate);
+            from_rest(loading, friction_history.least_between(start, until))
         };
+        if !(rises || self.changes_between_blocks()) {
+            // What slipped before slips now.
+            let all = self.slipping.get_or_init(at_start)[0] >= self.largest_indentation;
+            return if all { f64::INFINITY } else { 0.0 };
+        }
         let most = self.loadings[..begun].iter().enumerate().map(slipped).fold(0.0, f64::max);
         if most < self.largest_indentation { most } else { f64::INFINITY }
     }
