@@ -44,6 +44,18 @@ fn at_rest<'a>(friction: &'a str, loading: &'a str, springs: usize) -> Case<'a> 
     Case { grading: 0.0, friction, wear: ARCHARD, loading, springs }
 }
 
+/// By how much the volume in the end of a run is off that of the limit under both forces, and the stick radius off that of the first cycle, relative.
+fn beside_both_forces(scene: &Scene) -> [f64; 2] {
+    let mut conditions = scene.conditions().clone();
+    conditions.tangential_control = fretwear::laws::loading::TangentialControl::Force;
+    let contact = scene.contact().unwrap();
+    let limit = LimitingShape::under(&contact, &conditions).unwrap().unwrap();
+    let results = scene.simulate().unwrap_or_else(|error| panic!("{error}"));
+    let last = results.last();
+    [last.wear_volume / limit.wear_volume(), last.stick_radius / contact.stick_radius().unwrap()]
+        .map(|ratio| ratio - 1.0)
+}
+
 /// Under both forces, and on a rig beside a held normal force, springs that slip go on to, so that the edge stays where it is in the first cycle, and the
 /// limit is that of Coulomb's friction with the same stick radius.
 #[test]
@@ -56,14 +68,7 @@ fn beside_a_held_normal_force_the_edge_rests_and_the_limit_is_that_of_the_first_
         for control in [FORCE, "rig_stiffness = 2"] {
             let loading = format!("{HELD}\nstick_ratio = 0.7\n{control}\ntau = {tau:e}");
             let case = Case { wear, ..at_rest(STATIC, &loading, 60) };
-            let mut conditions = case.scene().conditions().clone();
-            conditions.tangential_control = fretwear::laws::loading::TangentialControl::Force;
-            let contact = case.scene().contact().unwrap();
-            let limit = LimitingShape::under(&contact, &conditions).unwrap().unwrap();
-            let results = case.run();
-            let last = results.last();
-            let off = last.wear_volume / limit.wear_volume() - 1.0;
-            let moved = last.stick_radius / contact.stick_radius().unwrap() - 1.0;
+            let [off, moved] = beside_both_forces(&case.scene());
             println!("{wear}, {control}: volume off by {off:.1e}, stick radius by {moved:.1e}");
             assert!(off.abs() < 2e-5, "{wear}, {control}: {off:e}");
             assert!(moved.abs() < 1e-12, "{wear}, {control}: {moved:e}");
@@ -180,14 +185,7 @@ fn under_a_held_normal_force_the_edge_rests_and_springs_stick_again_at_the_mean_
         text.text().replace("snapshots = 4", "snapshots = 40").parse::<Scene>().unwrap()
     };
     for kinetic in [0.3, 0.5, 0.55] {
-        let scene = scene(kinetic, 0.0, 1e3);
-        let mut conditions = scene.conditions().clone();
-        conditions.tangential_control = fretwear::laws::loading::TangentialControl::Force;
-        let contact = scene.contact().unwrap();
-        let limit = LimitingShape::under(&contact, &conditions).unwrap().unwrap();
-        let results = scene.simulate().unwrap();
-        let off = results.last().wear_volume / limit.wear_volume() - 1.0;
-        let moved = results.last().stick_radius / contact.stick_radius().unwrap() - 1.0;
+        let [off, moved] = beside_both_forces(&scene(kinetic, 0.0, 1e3));
         println!("kinetic {kinetic}: volume off by {off:.1e}, stick radius by {moved:.1e}");
         assert!(off.abs() < 2e-5 && moved.abs() < 1e-9, "kinetic {kinetic}: {off:e}, {moved:e}");
     }
@@ -229,22 +227,13 @@ fn what_slides_sticks_again_at_the_mean_of_both_limits() {
 #[test]
 fn a_rig_goes_on_to_move_what_it_has_broken_away() {
     for (grading, tau) in [(-0.3, 6.0), (0.0, 4.0), (0.5, 4.0)] {
-        let loading =
-            |tau: f64| format!("indentation = 1\nstick_ratio = 0.5\nrig_stiffness = 0.5\ntau = {tau}");
-        let run = |tau: f64, springs: usize| {
-            let loading = loading(tau);
-            Case { grading, ..at_rest(STATIC, &loading, springs) }.run()
-        };
-        let [coarse, fine] = [60, 240].map(|springs| run(tau, springs));
-        let first = &fine.snapshots()[0];
-        let radius = first.contact_radius;
-        assert!(
-            (first.stick_radius / radius - 0.5).abs() < 1e-6,
-            "k = {grading}: {}",
-            first.stick_radius / radius
-        );
-        let last = fine.last();
-        assert!(last.stick_radius == 0.0 && last.contact_radius > radius, "k = {grading}");
+        let loading = format!("indentation = 1\nstick_ratio = 0.5\nrig_stiffness = 0.5\ntau = {tau}");
+        let [coarse, fine] =
+            [60, 240].map(|springs| Case { grading, ..at_rest(STATIC, &loading, springs) }.run());
+        let (first, last) = (&fine.snapshots()[0], fine.last());
+        let ratio = first.stick_radius / first.contact_radius;
+        assert!((ratio - 0.5).abs() < 1e-6, "k = {grading}: {ratio}");
+        assert!(last.stick_radius == 0.0 && last.contact_radius > first.contact_radius, "k = {grading}");
         let off = coarse.last().wear_volume / last.wear_volume - 1.0;
         let by_energy = 1e-3 / 0.5 * last.dissipated_energy / last.wear_volume - 1.0;
         println!("k = {grading}: 60 springs off by {off:.1e}, energy by {by_energy:.1e}");

@@ -201,9 +201,19 @@ pub fn slip_amplitude_of_spring(
     compression: f64,
 ) -> (f64, f64) {
     if stiffness_ratio * amplitude > law.static_strength(compression) {
-        let value = amplitude - law.kinetic_strength(compression) / stiffness_ratio;
-        (value, -law.kinetic_strength_slope(compression) / stiffness_ratio)
+        sliding_amplitude(law, stiffness_ratio, amplitude, compression)
     } else {
         (0.0, 0.0)
     }
+}
+
+/// [`slip_amplitude_of_spring`] of one that does slip, whatever it is held by while it sticks.
+pub fn sliding_amplitude(
+    law: &dyn FrictionLaw,
+    stiffness_ratio: f64,
+    amplitude: f64,
+    compression: f64,
+) -> (f64, f64) {
+    let value = amplitude - law.kinetic_strength(compression) / stiffness_ratio;
+    (value, -law.kinetic_strength_slope(compression) / stiffness_ratio)
 }

@@ -70,6 +70,11 @@ pub trait FrictionLaw: Debug + Send + Sync {
         History::Constant
     }
 
+    /// The mean of static and kinetic limit over the static one: springs that have slipped slip on while they are moved each way by more than twice that mean.
+    fn mean_over_static(&self) -> f64 {
+        0.5 * (1.0 + self.static_factor().recip())
+    }
+
     /// Whether a spring is held otherwise while it sticks than while it slips, so that what it does depends on what it did.
     fn remembers_slip(&self) -> bool {
         false

@@ -103,8 +103,7 @@ impl Schedule {
         let rests = conditions.holds_normal_force && conditions.friction.remembers_slip();
         if rests && !first {
             let slipping = |loading| first_slip_compression(contact, &loading, contact.indentation());
-            // All of it where the rig breaks the contact away.
-            Ok(self.extremes().map(|loading| slipping(loading).unwrap_or(depth)).fold(0.0, f64::max))
+            Ok(self.extremes().map(slipping).collect::<Result<Vec<f64>>>()?.into_iter().fold(0.0, f64::max))
         } else if conditions.holds_normal_force && !first && !(both && coulomb) {
             let least = self.extremes().map(|loading| least_stick_radius(contact, &loading));
             let least = least.collect::<Result<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);

@@ -8,7 +8,7 @@ use super::schedule::{AmplitudeControl, CycleLoading};
 use super::slipping::Slipping;
 use super::{Fields, Model, State};
 use crate::contact::spring::{Response, Shakedown, SpringCycle, Steps, settled_cycle};
-use crate::contact::stick_slip::slip_amplitude_of_spring;
+use crate::contact::stick_slip::{sliding_amplitude, slip_amplitude_of_spring};
 use crate::laws::friction::FrictionLaw;
 use crate::laws::path::Path;
 use crate::numerics::linear::dot;
@@ -149,11 +149,10 @@ impl Model {
                     let slope = -self.slope(|q| resistance.of(j, q), *q) / ratio;
                     return (amplitude - resistance.of(j, *q) / ratio, slope);
                 }
-                if *q < keeps_below {
-                    let slope = -law.kinetic_strength_slope(*q) / ratio;
-                    return (amplitude - law.kinetic_strength(*q) / ratio, slope);
+                match *q < keeps_below {
+                    true => sliding_amplitude(law, ratio, amplitude, *q),
+                    false => slip_amplitude_of_spring(law, ratio, amplitude, *q),
                 }
-                slip_amplitude_of_spring(law, ratio, amplitude, *q)
             })
             .collect();
         let bearing = self.bearing_in(loading);

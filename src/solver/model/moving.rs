@@ -594,10 +594,10 @@ impl Model {
     }
 }
 
-/// Compression at the edge of stick of the unworn contact in the balance of forces, m; at most the largest there can be.
+/// Compression at the edge of stick of the unworn contact in the balance of forces, m; at most the largest there can be, and that where springs remember their slip and none holds it.
 ///
 /// # Errors
-/// [`Error::NotConverged`](crate::Error::NotConverged) if even that is not enough.
+/// [`Error::NotConverged`](crate::Error::NotConverged) if even that is not enough, elsewhere.
 pub(super) fn first_slip_compression(
     contact: &InitialContact,
     loading: &CycleLoading,
@@ -624,6 +624,8 @@ pub(super) fn first_slip_compression(
         return Ok(loading.slip_compression(ratio));
     }
     let part = |i: usize| least + (largest - least) * i as f64 / FIRST_BALANCE as f64;
-    let reached = (1..FIRST_BALANCE).find(|i| excess(part(*i)) >= 0.0).unwrap_or(FIRST_BALANCE);
-    bracketed(excess, part(reached - 1), part(reached), 0.0)
+    match (1..=FIRST_BALANCE).find(|i| excess(part(*i)) >= 0.0) {
+        Some(reached) => bracketed(excess, part(reached - 1), part(reached), 0.0),
+        None => Ok(largest),
+    }
 }

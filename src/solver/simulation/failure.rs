@@ -134,10 +134,15 @@ impl Simulation {
         }
     }
 
+    /// Dimensionless time after some cycles.
+    fn tau(&self, cycles: f64) -> f64 {
+        cycles * self.model.contact().tau_per_cycle()
+    }
+
     /// The moment from which on a rig no longer breaks all springs away.
     pub(super) fn held_again(&self) -> Error {
-        let (model, cycles) = (&self.model, self.state.cycles);
-        let tau = cycles * model.contact().tau_per_cycle();
+        let cycles = self.state.cycles;
+        let tau = self.tau(cycles);
         Error::NotConverged {
             what: STEPPING,
             why: format!(
@@ -152,7 +157,7 @@ impl Simulation {
     pub(super) fn moment_of_loss(&self) -> String {
         let (model, state) = (&self.model, &self.state);
         let cycles = state.cycles + model.cycles_to_loss(state);
-        let tau = cycles * model.contact().tau_per_cycle();
+        let tau = self.tau(cycles);
         let radius = self.cycle.stick_radius;
         format!(
             "stick is lost at cycle {cycles:.6e} (τ = {tau:.5}), at last within the radius {radius:.4e} m"
@@ -185,7 +190,7 @@ impl Simulation {
     /// How far a run came that takes more steps than it may by itself.
     pub fn takes_too_long(&self) -> Error {
         let (model, progress, cycles) = (&self.model, &self.progress, self.state.cycles);
-        let tau = cycles * model.contact().tau_per_cycle();
+        let tau = self.tau(cycles);
         let [stick, edge] = [model.without_core(self.cycle.stick_radius), model.contact_radius(&self.state)];
         Error::NotConverged {
             what: STEPPING,
@@ -205,7 +210,7 @@ impl Simulation {
     /// The refusal of a run in gross slip of which a coarse one takes more work than a run may by itself.
     pub fn reaches_too_slowly(&self) -> Error {
         let (model, progress, cycles) = (&self.model, &self.progress, self.state.cycles);
-        let tau = cycles * model.contact().tau_per_cycle();
+        let tau = self.tau(cycles);
         let why = format!(
             "in gross slip wear goes on in steps of {:.1e} cycles, of which {} on {} springs lead to cycle {cycles} (τ = {tau:.4e}), and how far the contact comes to reach \
              would take too long to find; end before (loading.tau = {tau:.3e})",
@@ -219,7 +224,7 @@ impl Simulation {
     /// The moment at which a run cannot go on, and what can be done.
     pub(super) fn stuck(&self, why: &str) -> Error {
         let (model, cycles) = (&self.model, self.state.cycles);
-        let tau = cycles * model.contact().tau_per_cycle();
+        let tau = self.tau(cycles);
         let [stick, edge] = [model.without_core(self.cycle.stick_radius), model.contact_radius(&self.state)];
         let healed = self.healed_at.map_or(String::new(), |radius| {
             format!(", for at the radius {radius:.4e} m wear depth would become less")

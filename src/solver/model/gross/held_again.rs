@@ -7,9 +7,10 @@
 //! U + F(U)/k_r < U_r    for all U,    F = 2 c_N ∫ x^k f dx,    f = M U where M U < (μ_s + μ_k) q/2, else μ_k q
 //! ```
 
+use std::cmp::Ordering;
+
 use super::Gross;
 use crate::solver::model::moving::LAST_STICK;
-use crate::solver::model::schedule::AmplitudeControl;
 use crate::solver::model::{Model, State};
 
 /// What the quadrature over the nodes leaves of the displacement of the rig, relative.
@@ -18,16 +19,14 @@ const LEFT: f64 = 1e-3;
 impl Model {
     /// Whether a rig that moved the whole contact no longer breaks all springs away.
     pub fn is_held_again(&self, state: &State) -> bool {
-        self.gross().is_some_and(|gross| self.holds_rig(gross, state))
+        let conditions = self.schedule.conditions();
+        let may = conditions.tangential_control.is_rig() && conditions.friction.remembers_slip();
+        may && self.gross().is_some_and(|gross| self.holds_rig(gross, state))
     }
 
     fn holds_rig(&self, gross: &Gross, state: &State) -> bool {
         let loading = self.loading_in(state, self.schedule.loading(state.cycles, state.cycles));
         let (friction, mesh) = (&*loading.friction, &gross.mesh);
-        let AmplitudeControl::Rig(_) = loading.control else { return false };
-        if !friction.remembers_slip() {
-            return false;
-        }
         let Some(whole) = self.whole(gross, &self.surroundings(None), &state.compression) else {
             return false;
         };
@@ -35,16 +34,15 @@ impl Model {
         let half_space = self.contact.half_space();
         let by_force = by_force * half_space.normal_stiffness() * whole.area.powf(1.0 - self.mu());
         let limits = |q: &f64| {
-            let dragged = friction.kinetic_strength(*q);
-            [0.5 * (friction.static_strength(*q) + dragged), dragged]
+            [friction.mean_over_static() * friction.static_strength(*q), friction.kinetic_strength(*q)]
         };
         let limits: Vec<[f64; 2]> = state.compression.iter().map(limits).collect();
         // Of the spring that is about to break away, half.
         let asked = |held: f64| {
             let borne = |[mean, dragged]: &[f64; 2]| match mean.total_cmp(&held) {
-                std::cmp::Ordering::Greater => held,
-                std::cmp::Ordering::Equal => 0.5 * (held + dragged),
-                std::cmp::Ordering::Less => *dragged,
+                Ordering::Greater => held,
+                Ordering::Equal => 0.5 * (held + dragged),
+                Ordering::Less => *dragged,
             };
             let borne: Vec<f64> = limits.iter().map(borne).collect();
             held / half_space.stiffness_ratio() + by_force * mesh.load(&borne)

@@ -95,10 +95,10 @@ pub(super) fn check_memory(schedule: &Schedule, contact: &InitialContact, follow
 /// Whether springs with a memory of their slip hold a balance of tangential forces in the first cycle: as the displacement grows, they come to it before the contact breaks away.
 ///
 /// # Errors
-/// As [`EquivalentProfile::radius_at`](crate::contact::indenter::EquivalentProfile::radius_at).
+/// Those of the force of the first cycle.
 pub(super) fn holds_at_first(contact: &InitialContact, loading: &CycleLoading) -> Result<bool> {
     let depth = contact.indentation();
-    let compression = first_slip_compression(contact, loading, depth).unwrap_or(depth);
+    let compression = first_slip_compression(contact, loading, depth)?;
     let radius = contact.equivalent_profile().radius_at(depth - compression)?;
     Ok(radius > 0.0 && firmness(contact, loading, radius, compression) >= BROKEN)
 }

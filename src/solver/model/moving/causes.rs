@@ -84,21 +84,15 @@ impl MovingStick {
         let [falls, rises] = schedule.friction_change().directions();
         let by = Self::by(Cause::Friction);
         let in_blocks = schedule.slips_otherwise_between_blocks();
-        // The mesh from where the edge is innermost serves.
-        if !in_blocks && falls && schedule.lifts() {
+        let remembers = conditions.friction.remembers_slip();
+        // The mesh from where the edge is innermost serves: slip that sets in with a jump wears a groove next to the edge, beyond which springs stick again one by one.
+        if !in_blocks && falls && schedule.lifts() || remembers && rises {
             return Ok(None);
         }
-        // What has slipped may go on to although friction rises or the amplitude falls.
-        let memory = conditions.friction.remembers_slip();
-        let stays = memory && !rests_on_worn_ground(schedule, contact);
         let level = at_one_indentation(conditions) && !schedule.lifts();
         let turning = Self { outwards: !falls, turns: true, in_blocks, ..by.clone() };
         if *schedule.friction_along_energy() != History::Constant && in_blocks && level {
             return Ok(Some(turning));
-        }
-        // Slip that sets in with a jump wears a groove next to the edge, beyond which springs stick again one by one.
-        if memory && rises {
-            return Ok(None);
         }
         if in_blocks || falls && rises {
             let amplitudes: Vec<f64> = schedule.amplitude_factors().collect();
@@ -108,7 +102,9 @@ impl MovingStick {
                 true => amplitudes.iter().all(|factor| *factor <= amplitudes[0]),
                 false => schedule.follows_jumps(),
             };
-            if level && jumps && !changes && !conditions.repeat && !(shrink && stays) {
+            // What has slipped may go on to although the amplitude falls.
+            let stays = || shrink && remembers && !rests_on_worn_ground(schedule, contact);
+            if level && jumps && !changes && !conditions.repeat && !stays() {
                 return Ok(Some(Self { outwards: shrink, jumps: true, ..by }));
             }
             // Beside friction that changes an edge that is followed finds no step on from some time on, on many springs, where a block lifts the indenter.

@@ -26,8 +26,7 @@ impl CycleLoading {
         if self.slipped == 0.0 {
             return 0.0;
         }
-        let mean_over_static = 0.5 * (1.0 + self.friction.static_factor().recip());
-        let amplitude = self.amplitude / mean_over_static;
+        let amplitude = self.amplitude / self.friction.mean_over_static();
         let kept = self.friction.compression_at(stiffness_ratio * amplitude) + self.lift;
         kept.min(self.slipped)
     }
@@ -56,14 +55,19 @@ impl Schedule {
         if self.keeps_slipping_from_first() {
             return f64::INFINITY;
         }
-        let [_, rises] = friction_history.directions();
-        let recurs = *repeat && self.ends.last().is_some_and(|whole| has_come(*whole, cycles));
-        let begun = if recurs { self.loadings.len() } else { block + 1 };
         let from_rest = |loading: &CycleLoading, factor: f64| {
             let loading = CycleLoading { friction: friction.scaled(factor), ..loading.clone() };
             loading.slip_compression(self.stiffness_ratio)
         };
         let at_start = || self.loadings.iter().map(|it| from_rest(it, friction_history.at(0.0))).collect();
+        let [_, rises] = friction_history.directions();
+        if !(rises || self.changes_between_blocks()) {
+            // What slipped before slips now.
+            let all = self.slipping.get_or_init(at_start)[0] >= self.largest_indentation;
+            return if all { f64::INFINITY } else { 0.0 };
+        }
+        let recurs = *repeat && self.ends.last().is_some_and(|whole| has_come(*whole, cycles));
+        let begun = if recurs { self.loadings.len() } else { block + 1 };
         let slipped = |(it, loading): (usize, &CycleLoading)| {
             if *friction_history == History::Constant {
                 return self.slipping.get_or_init(at_start)[it];
@@ -73,11 +77,6 @@ impl Schedule {
             let [start, until] = [start, until].map(|cycles| cycles * self.clock_rate);
             from_rest(loading, friction_history.least_between(start, until))
         };
-        if !(rises || self.changes_between_blocks()) {
-            // What slipped before slips now.
-            let all = self.slipping.get_or_init(at_start)[0] >= self.largest_indentation;
-            return if all { f64::INFINITY } else { 0.0 };
-        }
         let most = self.loadings[..begun].iter().enumerate().map(slipped).fold(0.0, f64::max);
         if most < self.largest_indentation { most } else { f64::INFINITY }
     }
