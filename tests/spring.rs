@@ -248,6 +248,54 @@ fn what_a_spring_that_slips_for_ever_repeats_is_found_by_newtons_method() {
     assert!(3 * passed[1] < passed[0]);
 }
 
+/// With a static coefficient a spring may repeat one of several motions: it has to be that to which its own periods lead, which a path of so many periods in a row follows.
+#[test]
+fn what_a_spring_that_jumps_in_each_period_repeats_is_that_of_four_hundred_periods() {
+    let mut random = Seeded::new(53);
+    let (mut jump, mut passed) = (0, 0);
+    for run in 0..600 {
+        let points = match run % 3 {
+            0 => random.polygon(3 + run % 8, 1.0, 0.5).points,
+            _ => {
+                let (around, phase, lift) =
+                    (random.between(0.02, 0.6), random.between(0.0, TAU), random.between(0.0, 0.3));
+                let lifts = |angle: f64| lift * (1.0 - (2.0 * angle).sin());
+                let at = |angle: f64| PathPoint {
+                    tangential: [angle.cos(), around * (angle + phase).sin()],
+                    lift: lifts(angle),
+                };
+                (0..96).map(|i| at(TAU * f64::from(i) / 96.0)).collect()
+            }
+        };
+        let law = StaticKinetic { static_coefficient: 0.5, kinetic_coefficient: random.between(0.46, 0.49) };
+        let compression = random.between(1.2, 1.6);
+        let found = cycle(&Path { points: points.clone() }, &law, compression);
+        let periods = 400;
+        let many = Path { points: points.repeat(periods) };
+        let mut out = SpringCycle::default();
+        let once = Shakedown { max_periods: 0, ..Shakedown::default() };
+        steady_cycle(&many, &law, M, compression, &once, &mut out);
+        let last = out.slip.len() - points.len();
+        let path = |slip: &[[f64; 2]]| slip.iter().map(|it| it[0].hypot(it[1])).sum::<f64>();
+        let [expected, got] = [path(&out.slip[last..]), path(&found.slip)];
+        if found.periods == Shakedown::default().max_periods {
+            // It repeats nothing.
+            continue;
+        }
+        assert!(
+            (expected - got).abs() < 1e-9,
+            "{run}: {got} for {expected}, {compression}, {law:?} {}",
+            found.periods
+        );
+        if found.jump_loss > 0.0 {
+            jump += 1;
+            passed += found.substeps / points.len();
+        }
+    }
+    println!("{jump} springs, periods {passed}");
+    assert!(jump > 500 && passed < 12 * jump);
+}
+
 #[test]
 fn no_other_centre_beats_that_of_the_smallest_circle() {
     let mut random = Seeded::new(5);

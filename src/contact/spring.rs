@@ -44,6 +44,9 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Periods passed before every other one is followed by a step of Newton's method.
 const PLAIN_PERIODS: usize = 4;
 
+/// Change of the deflection over a period, over a jump from the static to the kinetic limit, below which a spring that jumps nearly repeats itself.
+const NEARLY: f64 = 0.01;
+
 /// Change of the deflection, over its limit, by which the slopes of a period are found.
 const DIFFERENCE: f64 = 1e-6;
 
@@ -219,6 +222,7 @@ pub fn steady_cycle(
         general_period(path, &limits, count, compression, &mut spring, 1.0, out);
     }
     let mut last_change = f64::INFINITY;
+    let (mut found_at, mut strays) = (None, false);
     loop {
         let before = spring;
         out.clear();
@@ -237,7 +241,15 @@ pub fn steady_cycle(
         // Where the path is a smooth map of the deflection onto the one a period later, Newton's method finds what repeats itself; from
         // any other deflection the spring comes to rest at the same.
         let waits = out.periods < PLAIN_PERIODS || !out.periods.is_multiple_of(2);
-        if !shakedown.slips || waits || static_factor != 1.0 || change > 2.0 * last_change {
+        if found_at.take().is_some_and(|before| change >= before) {
+            // A jump that comes and goes from one deflection to the next: only periods tell.
+            strays = static_factor != 1.0;
+        }
+        // A spring that lets go jumps, so that none is on its way to rest which jumps by far more than it is off.
+        let nearly = NEARLY * (static_factor - 1.0) * largest_limit;
+        let jumps = spring.sliding == before.sliding && change <= nearly && out.jump_loss > 0.0;
+        let may_be_found = if static_factor == 1.0 { shakedown.slips } else { jumps && !strays };
+        if waits || !may_be_found || change > 2.0 * last_change {
             last_change = change;
             continue;
         }
@@ -247,8 +259,11 @@ pub fn steady_cycle(
             general_period(path, &limits, count, compression, &mut moved, static_factor, out);
             moved.deflection
         };
-        if let Some(found) = newton(before.deflection, spring.deflection, limits[0], &mut after) {
+        if let Some(found) = newton(before.deflection, spring.deflection, limits[0], &mut after)
+            && (!jumps || length(difference(found, spring.deflection)) <= nearly)
+        {
             spring.deflection = found;
+            found_at = Some(change);
         }
     }
     out.limit = limits;

@@ -16,7 +16,7 @@ use super::recorder::Recorder;
 use crate::contact::closed_form::LimitingShape;
 use crate::data::{Attempt, Checkpoint, Fineness, RunHeader, Snapshot};
 use crate::error::{Error, Result};
-use crate::scene::{Scene, Stepper};
+use crate::scene::{Numerics, Scene, Stepper};
 use crate::solver::model::{MovingStick, OperatorStore};
 use crate::solver::simulation::{Outcome, Simulation};
 
@@ -187,13 +187,33 @@ impl Attempts<'_> {
             };
         }
         // In gross slip the last resort has no fewer springs than these.
-        if model.gross().is_none() && (far_too_long || cost::is_nearly_spent(work)) {
+        if model.gross().is_none() && cost::is_nearly_spent(work) {
             return self.last_resort(work);
         }
-        let counted = Attempt { refinements, work, ..Attempt::default() };
         let fewer = cost::fewer(self.springs());
         let fewer = if far_too_long { fewer.map(|it| cost::fewer(it).unwrap_or(it)) } else { fewer };
-        fewer.map(|springs| Anew { springs, on_fewer: true, counted }).into_iter().collect()
+        let on = |springs| {
+            let fineness = self.as_coarse_as(springs);
+            let counted = Attempt { refinements, fineness, work, ..Attempt::default() };
+            Anew { springs, on_fewer: true, counted }
+        };
+        fewer.map(on).into_iter().collect()
+    }
+
+    /// Steps and substeps, where the program chooses them, that are as coarse as so many springs, fewer than these.
+    fn as_coarse_as(&self, springs: usize) -> Fineness {
+        let (model, tolerance) = self.stepping.first();
+        let fewer = springs as f64 / self.springs() as f64;
+        let mut fineness = self.recorder.attempt.fineness;
+        if self.chooses_steps() {
+            fineness.tolerance = budget::coarser_tolerance(tolerance, fewer, model);
+        }
+        if let Some(now) = self.chosen_substeps() {
+            let cheapest = Numerics { accuracy: budget::CHEAPEST, ..*self.scene.numerics() };
+            let least = resolution(self.scene, &cheapest).substeps.unwrap_or(now);
+            fineness.substeps = budget::fewer_substeps(now, fewer, least) as u64;
+        }
+        fineness
     }
 
     /// What follows on an attempt that is over.
@@ -385,6 +405,12 @@ impl Attempts<'_> {
         resolution(scene, &attempt.numerics(scene)).substeps.filter(|_| !by_hand)
     }
 
+    /// Whether the program chooses the steps by a tolerance of its own.
+    fn chooses_steps(&self) -> bool {
+        let numerics = self.scene.numerics();
+        numerics.tolerance.is_none() && numerics.stepper != Stepper::EveryCycle
+    }
+
     /// Whether a run may be repeated on other springs, or in other steps: the program chose the springs, and it is not a stick zone that is about to be lost.
     fn may_be_finer(&self) -> bool {
         let simulation = &self.stepping;
@@ -399,8 +425,7 @@ impl Attempts<'_> {
     /// elsewhere where more springs have not helped, so that it is the steps that companions differ by.
     fn more_tightly(&self) -> Option<f64> {
         let (numerics, attempt) = (self.scene.numerics(), self.recorder.attempt);
-        let chosen = numerics.tolerance.is_none() && numerics.stepper != Stepper::EveryCycle;
-        if !(chosen && self.may_be_finer()) {
+        if !(self.chooses_steps() && self.may_be_finer()) {
             return None;
         }
         let shares = self.recorder.shares(&self.stepping)?;

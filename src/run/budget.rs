@@ -229,6 +229,19 @@ pub(in crate::run) fn tolerance_for(accuracy: f64, model: &Model) -> f64 {
         }
 }
 
+/// Accuracy than which nothing is made more coarsely where a run takes too long.
+pub(in crate::run) const CHEAPEST: f64 = 1e-2;
+
+/// Tolerance of a run on so many times the springs, fewer, whose error grows as fast as theirs.
+pub(in crate::run) fn coarser_tolerance(now: f64, springs: f64, model: &Model) -> f64 {
+    (now * springs.powf(-FULL_ORDER)).min(tolerance_for(CHEAPEST, model)).max(now)
+}
+
+/// The same of the substeps of a period, of which there are no fewer than `least`, a multiple of four.
+pub(in crate::run) fn fewer_substeps(now: usize, springs: f64, least: usize) -> usize {
+    (4 * (0.25 * springs * now as f64).ceil() as usize).max(least).min(now)
+}
+
 /// Whether the edge of stick moves and wear is not smooth, so that its error is one of steps before it is one of springs.
 pub(in crate::run) fn follows_edge(model: &Model) -> bool {
     model.moving().is_some() && !model.wears_smoothly()

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::method::Method;
+use crate::data::Attempt;
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
 use crate::scene::Stepper as Choice;
@@ -36,10 +37,15 @@ const STABLE: f64 = 2.5;
 const ITERATIONS: usize = 30;
 
 /// Most work of a run whose springs the program chooses, as [`work_so_far`]: some eight seconds. What would be more is made on fewer springs, and told.
-pub(super) const MOST_WORK: f64 = 8e9;
+const MOST_WORK: f64 = 8e9;
 
-/// Work of a companion over that of the run, about, beyond which the run would take too long.
-pub(in crate::run) const OF_COMPANION: f64 = 0.2;
+/// Work of a companion over that of the run, about, beyond which the run would take too long, and the most where one before came to its end, so that this one is not left for it.
+const OF_COMPANION: [f64; 2] = [0.2, 0.4];
+
+/// Most work of a companion of an attempt.
+pub(in crate::run) fn work_of_companion(attempt: &Attempt) -> f64 {
+    attempt.part_of_work() * MOST_WORK * OF_COMPANION[usize::from(attempt.has_end())]
+}
 
 /// The same for a run on so few springs that none are left out: others may find an end where it does not.
 const MOST_WORK_OF_LAST: f64 = 6e9;

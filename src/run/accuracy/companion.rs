@@ -56,6 +56,8 @@ pub(super) struct Coarser<'a> {
     /// `r² - c²`, m², of the radii looked at, and one in how many of those is a radius of the run.
     pub offsets: &'a [f64],
     pub between: usize,
+    /// Whether profiles are compared as curves.
+    pub as_curves: bool,
     /// Whether it tells what the substeps of a period leave out, if periods are sampled.
     pub samples: bool,
     /// The schedule of the run, where that has as many substeps.
@@ -119,7 +121,8 @@ impl Companion {
         };
         let ends_by_rate = matches!(parts.plan.end, End::Rate(_));
         let samples = coarser.samples && !scene.conditions().mode.is_tangential();
-        let unsampled = samples.then(|| Unsampled::new(scene, numerics, &parts.model).ok_or(Lost::NoEnd));
+        let unsampled = samples
+            .then(|| Unsampled::new(scene, numerics, &parts.model, coarser.as_curves).ok_or(Lost::NoEnd));
         let unsampled = unsampled.transpose()?;
         parts.model = parts.model.shown_at(coarser.offsets.to_vec());
         let Ok(mut simulation) = parts.begin() else { return Err(Lost::NoEnd) };

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use super::super::budget::{
     CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before, springs_to_stick_again,
 };
-use super::super::cost::{MOST_WORK, OF_COMPANION};
+use super::super::cost::work_of_companion;
 use super::super::parts::resolution;
 use super::super::passes;
 use super::companion::{Coarser, Companion, Dear, Lost, Worn};
@@ -105,11 +105,12 @@ pub(in crate::run) struct Coarsening {
     numerics: Numerics,
     /// Whether springs stick again after gross slip, so that it is the springs over the slip annulus that are to be fewer.
     sticks_again: bool,
-    /// Of the work of a run that this one may take.
-    part: f64,
+    /// Most of a companion where the program chose the springs.
+    most_work: f64,
     /// `r² - c²`, m², of the radii compared, and of so many in all up to the next of them.
     offsets: Vec<f64>,
     between: usize,
+    as_curves: bool,
     /// Substeps of a period where they are of a known order, so that coarser companions show what they leave out.
     substeps: Option<usize>,
     /// That of the run, where companions have the same.
@@ -136,10 +137,11 @@ impl Coarsening {
             alone: smooth || finer || always_slides(model) && !sticks_again,
             finer,
             sticks_again,
-            part: attempt.part_of_work(),
+            most_work: work_of_companion(attempt),
             numerics,
             offsets: looked_at(model.offsets(), model),
             between: density(model),
+            as_curves: are_curves(model),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
             substeps,
             averages: model.schedule().averages_from() == 0.0,
@@ -152,7 +154,7 @@ impl Coarsening {
         // Where springs are given by hand, companions take as long as they take.
         let [most_work, most_steps] = match numerics.springs.is_some() {
             true => [f64::INFINITY, f64::INFINITY],
-            false => [self.part * MOST_WORK * OF_COMPANION, MOST_STEPS[usize::from(!self.smooth)]],
+            false => [self.most_work, MOST_STEPS[usize::from(!self.smooth)]],
         };
         let coarser = |steps: i32| {
             let steps = if self.finer { -steps } else { steps };
@@ -174,6 +176,7 @@ impl Coarsening {
                 .max(FEWEST),
                 offsets: &self.offsets,
                 between: self.between,
+                as_curves: self.as_curves,
                 schedule: self.schedule.as_ref(),
                 averages: self.averages,
                 samples: steps.abs() == 1 && self.substeps.is_none(),
@@ -223,11 +226,14 @@ fn always_slides(model: &Model) -> bool {
     !spreads && model.gross().is_some_and(|gross| !gross.sticks())
 }
 
-/// Whether profiles are compared as curves: they are steep at places that are known to the error of an edge only.
+/// Whether profiles are compared as curves: they are steep at places that are known to the error of an edge only, or next to the edge of stick, where springs are close together and slip wears by less than
+/// its first power.
 fn are_curves(model: &Model) -> bool {
-    let sampled = model.schedule().lifts() && !model.schedule().takes_steps();
+    let schedule = model.schedule();
+    let sampled = schedule.lifts() && !schedule.takes_steps();
     let moves = model.moving().is_some() && !model.bears_both_forces();
-    moves || sampled || model.gross().is_some() || model.schedule().changes_between_blocks()
+    let is_steep = !model.wears_smoothly() && schedule.conditions().wear.slip_exponent() < 1.0;
+    moves || sampled || is_steep || model.gross().is_some() || schedule.changes_between_blocks()
 }
 
 /// Radii at which companions are looked at for each that is compared.

@@ -3,6 +3,7 @@
 use super::super::parts::resolution;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
+use crate::numerics::curve::distance_from_curve;
 use crate::scene::{Numerics, Scene};
 use crate::solver::model::{Model, Schedule};
 use crate::solver::simulation::Simulation;
@@ -37,13 +38,37 @@ pub(super) struct Unsampled {
     cycles: f64,
     /// Rates that are left out: of the volume, m³ per cycle, and of the depth at the springs, m per cycle.
     rates: Vec<f64>,
-    /// What has been left out so far, as the rates, and the most of it at any time.
+    /// What has been left out so far, as the rates, and the most of it at any time, m³ and m.
     sums: Vec<f64>,
     most: [f64; 2],
+    /// Profiles with what they leave out, where they are compared as curves.
+    profiles: Option<Vec<Profile>>,
+}
+
+/// Depth at the springs, and what it leaves out.
+#[derive(Debug)]
+struct Profile {
+    /// Over the contact radius.
+    radii: Vec<f64>,
+    /// m.
+    depth: Vec<f64>,
+    left_out: Vec<f64>,
+}
+
+impl Profile {
+    /// The largest distance from the curve without what is left out, of depth over `scale` or of radius.
+    fn error(&self, scale: f64) -> f64 {
+        let curve: Vec<f64> = self.depth.iter().map(|it| it / scale).collect();
+        let with = |i: usize| [self.radii[i], curve[i] + self.left_out[i] / scale];
+        let places = 0..curve.len();
+        places.map(|i| distance_from_curve(&self.radii, &curve, with(i), i)).fold(0.0, larger)
+    }
 }
 
 impl Unsampled {
-    pub(super) fn new(scene: &Scene, numerics: &Numerics, model: &Model) -> Option<Self> {
+    /// # Arguments
+    /// * `as_curves` -- whether profiles are compared as curves
+    pub(super) fn new(scene: &Scene, numerics: &Numerics, model: &Model, as_curves: bool) -> Option<Self> {
         let contact = scene.contact().ok()?;
         let points = model.schedule().loop_steps(1);
         let finer = Numerics { substeps: Some(finer_than(model.schedule()) * points), ..*numerics };
@@ -69,6 +94,7 @@ impl Unsampled {
             rates: vec![],
             sums: vec![],
             most: [0.0; 2],
+            profiles: (as_curves && model.gross().is_none()).then(Vec::new),
         };
         Some(nothing)
     }
@@ -104,12 +130,22 @@ impl Unsampled {
             let lefts = std::iter::once(left(volume, worn, volume)).chain(depths);
             self.sums.iter_mut().zip(lefts).for_each(|(sum, left)| *sum = sum.clamp(-left, left));
         }
-        let depth = self.sums[1..].iter().map(|it| it.abs()).fold(0.0, larger);
-        self.most = [larger(self.most[0], self.sums[0].abs()), larger(self.most[1], depth)];
+        self.most[0] = larger(self.most[0], self.sums[0].abs());
+        let left_out = &self.sums[1..];
+        match &mut self.profiles {
+            Some(profiles) => {
+                let edge = model.contact_radius(state);
+                let radii = model.spring_radii(fields).iter().map(|r| r / edge).collect();
+                let (depth, left_out) = (fields.wear_depth.clone(), left_out.to_vec());
+                profiles.push(Profile { radii, depth, left_out });
+            }
+            None => self.most[1] = left_out.iter().map(|it| it.abs()).fold(self.most[1], larger),
+        }
     }
 
     pub(super) fn error(&self, [volume, depth]: [f64; 2]) -> f64 {
         let of_limit = self.limit.map_or(0.0, |[_, change]| change * self.reached.min(1.0));
-        larger(self.most[0] / volume, self.most[1] / depth).max(of_limit).max(self.edge)
+        let of_profiles = self.profiles.iter().flatten().map(|it| it.error(depth)).fold(0.0, larger);
+        larger(self.most[0] / volume, self.most[1] / depth).max(of_profiles).max(of_limit).max(self.edge)
     }
 }

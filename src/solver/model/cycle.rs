@@ -409,7 +409,7 @@ impl Model {
     }
 
     /// Radii of the springs, m.
-    pub(super) fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
+    pub fn spring_radii(&self, fields: &Fields) -> Vec<f64> {
         let squared = |x: &f64| fields.stick_zone.stick_area + fields.slip_area * x;
         self.annulus().operators.abel.nodes()[1..].iter().map(|x| squared(x).sqrt()).collect()
     }
