@@ -45,7 +45,7 @@ pub(super) struct Parts {
     pub tolerance: f64,
     pub plan: Plan,
     pub limit: Option<LimitingShape>,
-    /// Where gross slip leads to, where the contact is in gross slip.
+    /// Where the run leads to, where the contact is in gross slip, or may reach far beyond where it comes to.
     reach: Option<Reach>,
     /// What comes of gross slip where springs may stick again.
     pub hand_over: Option<HandOver>,
@@ -89,6 +89,13 @@ impl Parts {
             }
             let offsets = parts.model.gross_offsets((MARGIN * radius).min(end));
             parts.model = parts.model.shown_at(offsets);
+        } else if parts.limit.is_none() && parts.model.is_shown_far_out() {
+            let reach = known.and_then(|it| it.reach).or_else(|| Reach::of_partial_slip(&parts));
+            parts.reach = reach;
+            parts.model = match reach {
+                Some(reach) => parts.model.shown_up_to(MARGIN * reach.radius),
+                None => parts.model,
+            };
         }
         Ok(parts)
     }
@@ -280,7 +287,7 @@ impl Known {
     }
 }
 
-/// Where gross slip leads to, whatever the springs of the run.
+/// Where a run leads to.
 #[derive(Clone, Copy)]
 struct Reach {
     /// Contact radius, m.
@@ -292,7 +299,19 @@ struct Reach {
 }
 
 impl Reach {
-    /// By a coarse run. Where that comes to no end after springs stick again, one in which they do not reaches farther; where none comes to an end, the
+    /// By the same run in coarse steps; none where that comes to no end, or takes long.
+    fn of_partial_slip(parts: &Parts) -> Option<Self> {
+        let (_, _, tolerance) = COARSE;
+        let (model, plan) = (parts.model.clone(), Plan { outputs: vec![], end: parts.plan.end });
+        let stepper = stepper::implicit(&model, tolerance);
+        let mut coarse = Simulation::new(model, stepper, tolerance, plan).ok()?;
+        let outcome = coarse.run(&mut [&mut Bounded { most_work: MOST_WORK }]).ok()?;
+        let ends = outcome != Outcome::Interrupted;
+        let radius = coarse.model().contact_radius(coarse.state());
+        ends.then_some(Self { radius, sticks_again: false, worn: 1.0 })
+    }
+
+    /// Of gross slip, whatever the springs of the run, by a coarse one. Where that comes to no end after springs stick again, one in which they do not reaches farther; where none comes to an end, the
     /// radius is that which bounds it at an indentation that is held, beyond which the unworn profile is as high.
     fn of(parts: &Parts) -> Result<Self> {
         let (polynomials, cubics, tolerance) = COARSE;

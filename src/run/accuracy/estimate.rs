@@ -226,13 +226,14 @@ fn always_slides(model: &Model) -> bool {
     !spreads && model.gross().is_some_and(|gross| !gross.sticks())
 }
 
-/// Whether profiles are compared as curves: they are steep at places that are known to the error of an edge only, or next to the edge of stick, where springs are close together and slip wears by less than
-/// its first power.
+/// Whether profiles are compared as curves: they are steep at places that are known to the error of an edge only, or, in other modes than plain oscillation, next to the edge of stick, where slip wears
+/// by less than its first power and springs are close together.
 fn are_curves(model: &Model) -> bool {
     let schedule = model.schedule();
     let sampled = schedule.lifts() && !schedule.takes_steps();
     let moves = model.moving().is_some() && !model.bears_both_forces();
-    let is_steep = !model.wears_smoothly() && schedule.conditions().wear.slip_exponent() < 1.0;
+    let conditions = schedule.conditions();
+    let is_steep = !conditions.mode.is_tangential() && conditions.wear.slip_exponent() < 1.0;
     moves || sampled || is_steep || model.gross().is_some() || schedule.changes_between_blocks()
 }
 

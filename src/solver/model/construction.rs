@@ -218,8 +218,8 @@ impl Annulus<'_> {
         let stick_load = 0.5 * profile.load_integral(stick_radius)
             + compression * stick_radius.powf(1.0 + grading) / (1.0 + grading);
         let deepest = radial_unworn.iter().map(UnwornValues::limit_depth).fold(0.0, f64::max);
-        // Under a held normal force the edge of stick does not stay where the limit that bounds where wear can reach has it.
-        let bounded = moving.as_ref().is_some_and(MovingStick::creeps_under_force);
+        // There the edge of stick does not stay where the limit that bounds where wear can reach has it.
+        let bounded = moving.as_ref().is_some_and(|it| it.creeps_under_force() || it.passes_worn_ground());
         let depth_scale = if bounded { deepest.min(contact.indentation()) } else { deepest };
         let hidden = match clustering {
             clustering if clustering.follows_front() => {

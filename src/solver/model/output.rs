@@ -20,6 +20,9 @@ const SHOWN: usize = 128;
 /// hundred snapshots then takes 40 MB.
 const MOST_SHOWN: usize = 16_384;
 
+/// Radius of the output, over that of the first contact, from which on it is asked how far a run comes.
+const FAR_OUT: f64 = 2.0;
+
 /// Most springs at which the depth is compared from step to step.
 const MOST_JUDGED: usize = 4096;
 
@@ -46,6 +49,20 @@ impl Model {
         };
         self.output = OutputRadii { unworn, offsets, heights: OnceLock::new() };
         self
+    }
+
+    /// Whether the radii of the output go as far out as a limit to which few runs come.
+    pub(crate) fn is_shown_far_out(&self) -> bool {
+        let farthest = self.stick_zone.stick_area + self.offsets().last().copied().unwrap_or_default();
+        farthest.sqrt() > FAR_OUT * self.contact.contact_radius()
+    }
+
+    /// The same contact with the radii of the output spread as they are, up to one, m.
+    pub(crate) fn shown_up_to(self, radius: f64) -> Self {
+        let offsets = self.offsets();
+        let last = offsets.last().copied().unwrap_or_default();
+        let part = ((radius * radius - self.stick_zone.stick_area) / last).min(1.0);
+        self.shown_at(offsets.iter().map(|offset| part * offset).collect())
     }
 
     /// Height of the unworn profile at [`Model::radii`], m.
