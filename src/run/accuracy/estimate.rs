@@ -6,9 +6,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::super::budget::{
-    CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before, springs_to_stick_again,
-};
+use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before};
 use super::super::cost::work_of_companion;
 use super::super::parts::resolution;
 use super::super::passes;
@@ -103,8 +101,8 @@ pub(in crate::run) struct Coarsening {
     finer: bool,
     /// Those of the run.
     numerics: Numerics,
-    /// Whether springs stick again after gross slip, so that it is the springs over the slip annulus that are to be fewer.
-    sticks_again: bool,
+    /// Springs over the slip annulus where springs stick again after gross slip, so that it is those that are to be fewer.
+    to_stick_again: Option<usize>,
     /// Most of a companion where the program chose the springs.
     most_work: f64,
     /// `r² - c²`, m², of the radii compared, and of so many in all up to the next of them.
@@ -126,7 +124,7 @@ impl Coarsening {
     /// * `attempt` -- which of the attempts at it
     pub(in crate::run) fn new(scene: &Scene, simulation: &Simulation, attempt: &Attempt) -> Self {
         let ((model, tolerance), numerics) = (simulation.first(), attempt.numerics(scene));
-        let sticks_again = model.gross().is_some() && simulation.sticks_again();
+        let to_stick_again = simulation.springs_to_stick_again();
         let smooth = is_smooth(scene, model);
         let substeps = resolution(scene, &numerics).substeps.filter(|_| model.schedule().takes_steps());
         let finer = compares_with_finer(scene, model);
@@ -134,9 +132,9 @@ impl Coarsening {
             springs: model.springs(),
             tolerance,
             smooth,
-            alone: smooth || finer || always_slides(model) && !sticks_again,
+            alone: smooth || finer || always_slides(model) && to_stick_again.is_none(),
             finer,
-            sticks_again,
+            to_stick_again,
             most_work: work_of_companion(attempt),
             numerics,
             offsets: looked_at(model.offsets(), model),
@@ -169,9 +167,9 @@ impl Coarsening {
                     substeps: self.substeps.map(fewer).or(numerics.substeps),
                     ..*numerics
                 },
-                springs: match self.sticks_again {
-                    true => springs_before(fewer(springs_to_stick_again(self.springs))),
-                    false => fewer(self.springs),
+                springs: match self.to_stick_again {
+                    Some(springs) => springs_before(fewer(springs)),
+                    None => fewer(self.springs),
                 }
                 .max(FEWEST),
                 offsets: &self.offsets,

@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 
 use super::moving::{follows_held_force, height_of_last_core, slides_on_rig};
 use ground::pressed_on;
-use hand_over::BEGINS_BELOW;
+use hand_over::{BEGINS_BELOW, is_followed_in_blocks};
 
 use super::schedule::{AmplitudeControl, CycleLoading, Schedule};
 use super::whole::{LEAST_STICK, LEAST_STICK_LATER, carries, is_smooth, slides_on, spares_edge};
@@ -198,9 +198,15 @@ impl Slides {
         }
         let grows = schedule.slips_otherwise_between_blocks() && !slides(&schedule.first_slip(), later)?;
         let nearly = if grows { later } else { nearly };
+        let handed_over = is_followed_in_blocks(schedule);
         for loading in schedule.extremes() {
             some |= slides(&loading, nearly)?;
-            all &= slides(&loading, 0.0)?;
+            all &= handed_over || slides(&loading, 0.0)?;
+        }
+        if handed_over {
+            for loading in schedule.extremes_before_shrinking() {
+                all &= slides(&loading, 0.0)?;
+            }
         }
         // Under a balance of forces it is the past of each spring that decides which of them stick.
         let by_past = on_rig && conditions.friction.remembers_slip();

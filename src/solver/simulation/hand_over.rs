@@ -80,6 +80,17 @@ impl Simulation {
         matches!(&self.taking, Taking::Done(before, _) if before.gross().is_some())
     }
 
+    /// Springs over the slip annulus once springs stick again after gross slip, as far as a coarse run or this one tells.
+    pub fn springs_to_stick_again(&self) -> Option<usize> {
+        match &self.taking {
+            Taking::Ahead(hand_over, _) if hand_over.expected && self.model.gross().is_some() => {
+                Some(hand_over.springs)
+            }
+            Taking::Done(before, _) if before.gross().is_some() => Some(self.model.springs()),
+            _ => None,
+        }
+    }
+
     /// Springs of the mesh by which the error goes: that which followed an edge of stick, if one did.
     pub fn springs(&self) -> usize {
         match &self.taking {

@@ -34,11 +34,16 @@ const FOLLOWED_AT_ONCE: [f64; 3] = [-0.3, 0.02, 0.1];
 /// Radius of the core of the mesh that follows it, over that of the first contact.
 const CORE: f64 = 0.03;
 
-/// Whether the edge of springs that stick again is followed.
+/// Whether the edge of springs that stick again is followed, once they never slip farther than before.
 fn is_followed(schedule: &Schedule) -> bool {
     let conditions = schedule.conditions();
     let local = schedule.wears_locally() && !schedule.resolves();
-    schedule.is_steady() && local && conditions.friction.coefficient().is_some()
+    schedule.shrinks_at_last() && local && conditions.friction.coefficient().is_some()
+}
+
+/// Whether it is followed in blocks that come after others in gross slip.
+pub(super) fn is_followed_in_blocks(schedule: &Schedule) -> bool {
+    !schedule.is_steady() && is_followed(schedule)
 }
 
 impl Gross {
@@ -49,7 +54,8 @@ impl Gross {
         let below = if grading < even { least + growth * (even - grading) } else { BEGINS_BELOW };
         let small = contact.stick_radius().is_some_and(|radius| radius < below * contact.contact_radius());
         let held = schedule.conditions().holds_normal_force && grading >= SOFT;
-        contact.regime() == Regime::PartialSlip && small && held && is_followed(schedule)
+        let followed = schedule.is_steady() && is_followed(schedule);
+        contact.regime() == Regime::PartialSlip && small && held && followed
     }
 }
 
@@ -57,7 +63,10 @@ impl Model {
     /// Whether another model takes the run up once springs stick again, or once the last of them slide.
     pub fn is_taken_up(&self) -> bool {
         match self.gross() {
-            Some(gross) => gross.holds_force() && is_followed(self.schedule()),
+            Some(gross) => {
+                let schedule = self.schedule();
+                gross.holds_force() && is_followed(schedule) || is_followed_in_blocks(schedule)
+            }
             None => {
                 let gives_way = self.slides && self.moving().is_some_and(MovingStick::is_balanced);
                 gives_way && slides_on(self.contact(), self.schedule())
@@ -98,7 +107,7 @@ impl Model {
     fn stick_zone_again(&self, gross: &Gross, state: &State) -> Option<StickZone> {
         let (mesh, whole) = (&gross.mesh, self.whole(gross, &self.surroundings(None), &state.compression)?);
         let loading = self.schedule.loading(state.cycles, state.cycles);
-        if loading.is_pause() {
+        if loading.is_pause() || !self.schedule.only_shrinks_after(state.cycles) {
             return None;
         }
         let slip_compression = loading.slip_compression(self.contact.half_space().stiffness_ratio());
