@@ -266,9 +266,9 @@ fn stick_that_falling_friction_gives_up_in_gross_slip_is_no_error() {
     assert_eq!(results.accuracy_met(), Some(true), "{:?}", results.error_estimate());
 }
 
-/// The radii shown reach to the limit, 380 times the first radius of a tip of `r^0.23`. None of them lies within a contact that hardly wears, and its error is that of the volume.
+/// The limit lies at 380 times the first radius of a tip of `r^0.23`. The contact hardly wears, and the radii shown end where it does.
 #[test]
-fn a_contact_within_all_radii_shown_has_the_error_of_its_volume() {
+fn radii_shown_end_where_the_run_does() {
     let results = run(
         "[indenter.power-law]\ncoefficient = 1.983e-4\nexponent = 0.2311\n[half_space]\ngrading = 0.4221\nnormal_stiffness = 1.916e8\nstiffness_ratio = 0.5607\n\
          [counter_body]\nnormal_stiffness = 1.848e8\nstiffness_ratio = 0.8\n[friction.coulomb]\ncoefficient = 0.4126\n[friction.history]\nfactors = [0.9861]\nat_tau = [1.523e-5]\n\
@@ -276,6 +276,8 @@ fn a_contact_within_all_radii_shown_has_the_error_of_its_volume() {
          amplitude_ratio = 0.5935\nfrequency = 1\ncycles = 8579\n[numerics]\naccuracy = 1e-3\n[output]\nsnapshots = 5\n",
     );
     let last = results.last();
-    assert!(last.wear_depth.iter().all(|depth| *depth == 0.0) && last.wear_volume > 0.0);
+    let farthest = results.radius().last().unwrap();
+    println!("to {farthest:e} m of {:e} m", last.contact_radius);
+    assert!(*farthest < 1.1 * last.contact_radius && last.wear_depth.iter().any(|depth| *depth > 0.0));
     assert_eq!(results.accuracy_met(), Some(true), "{:?}", results.error_estimate());
 }
