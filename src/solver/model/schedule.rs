@@ -668,6 +668,12 @@ impl Schedule {
         followed.then(|| last_to_grow.map_or(0, |before| before + 1))
     }
 
+    /// Whether a time, cycles, is that at which a block begins.
+    pub fn is_at_begin_of_block(&self, cycles: f64) -> bool {
+        let (pass, block) = self.block(cycles);
+        block > 0 && has_come(cycles, self.end(pass, block - 1))
+    }
+
     /// Whether there is such a block.
     pub fn shrinks_at_last(&self) -> bool {
         self.first_of_shrinking().is_some()

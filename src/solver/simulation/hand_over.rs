@@ -8,6 +8,9 @@ use crate::solver::stepper;
 /// First step after a hand-over, over the cycles before, or over the step that was planned where the contact comes to gross slip.
 const SETTLED_IN: f64 = 0.1;
 
+/// First steps that are tried before a hand-over between blocks, each shorter by as much.
+const FIRST_STEPS: i32 = 6;
+
 /// How a run goes on once springs stick again after gross slip, or once the last of them slide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandOver {
@@ -115,6 +118,17 @@ impl Simulation {
         }
     }
 
+    /// Whether some first step leads on.
+    fn leads_on(&mut self) -> bool {
+        let lengths = (0..FIRST_STEPS).map(|i| self.progress.next_step * SETTLED_IN.powi(i));
+        let found = lengths.into_iter().any(|cycles| {
+            let tried = self.stepper.step(&self.model, &self.state, cycles);
+            tried.is_ok_and(|trial| trial.state.is_some())
+        });
+        self.stepper.forget();
+        found
+    }
+
     /// Lets the other model take the run up; whether there is one.
     pub(super) fn take_up(&mut self) -> bool {
         let Taking::Ahead(hand_over, found) = &mut self.taking else { return false };
@@ -131,7 +145,10 @@ impl Simulation {
         let most = SETTLED_IN * if settles { state.cycles } else { self.progress.next_step };
         let progress = Progress { next_step: self.progress.next_step.min(most), ..self.progress };
         let (stepper, plan) = (stepper::implicit(&model, tolerance), self.plan.clone());
-        let taken_up = Self::resume(model, stepper, tolerance, plan, state, progress);
+        let mut taken_up = Self::resume(model, stepper, tolerance, plan, state, progress);
+        if self.model.takes_up_in_blocks() && !taken_up.leads_on() {
+            return false;
+        }
         let let_go = self.model.gross().is_none().then(|| self.moment_of_loss());
         let before = std::mem::replace(self, Self { let_go, ..taken_up });
         self.taking = Taking::Done(Box::new(before.model), before.tolerance);

@@ -98,9 +98,18 @@ impl Model {
     /// Whether springs stick again as far out as their edge is followed, or the last of them give way.
     pub fn changes_over(&self, state: &State) -> bool {
         match self.gross() {
-            Some(gross) => self.stick_zone_again(gross, state).is_some(),
+            Some(gross) => {
+                // At an indentation that is held the edge of stick is where it is from the first cycle of a block on.
+                let may_come = gross.holds_force() || self.schedule.is_at_begin_of_block(state.cycles);
+                may_come && self.stick_zone_again(gross, state).is_some()
+            }
             None => self.loses_stick(state),
         }
+    }
+
+    /// Whether another model takes the run up between blocks, where it may find no step on from what gross slip has worn.
+    pub fn takes_up_in_blocks(&self) -> bool {
+        self.gross().is_some() && is_followed_in_blocks(&self.schedule)
     }
 
     /// The stick zone of springs that stick again.
