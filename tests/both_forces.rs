@@ -298,21 +298,23 @@ fn the_edge_recedes_farther_than_it_ends_under_friction_that_rises_with_the_load
     }
 }
 
-/// What would accelerate the contact is refused with its key.
+/// Friction by the load that rises, under both forces, for a short time.
+fn short(numerics: &str) -> Scene {
+    Scene::from_str(&format!(
+        "[indenter.cone]\nslope = 1e-3\n[half_space]\ngrading = 0.5\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n\
+         [friction.load-dependent]\ncoefficient = 0.5\nexponent = 0.065\n[friction.history]\nfinal_factor = 1.299\ntau = 0.299\n\
+         [wear.power-law]\ncoefficient = 1e-12\npressure_exponent = 0.7\nslip_exponent = 0.8\n[wear.history]\nfinal_factor = 1.478\ntau = 1.59\n\
+         [loading]\nnormal_force = 266.67\ntangential_control = \"force\"\namplitude_ratio = 1.155\ntau = 0.328\n\
+         [numerics]\n{numerics}\n[output]\nsnapshots = 5\n"
+    ))
+    .unwrap()
+}
+
 /// The edge of stick moves, so that there is no limit, and the one that bounds where wear can reach is a hundred times as far out as a short run comes: errors are relative to what the run wears,
 /// and radii of the output lie where it does.
 #[test]
 fn a_short_run_is_judged_and_shown_by_what_it_wears() {
-    let on = |numerics: &str| {
-        let text = format!(
-            "[indenter.cone]\nslope = 1e-3\n[half_space]\ngrading = 0.5\nnormal_stiffness = 2e11\nstiffness_ratio = 0.6666666666666666\n\
-             [friction.load-dependent]\ncoefficient = 0.5\nexponent = 0.065\n[friction.history]\nfinal_factor = 1.299\ntau = 0.299\n\
-             [wear.power-law]\ncoefficient = 1e-12\npressure_exponent = 0.7\nslip_exponent = 0.8\n[wear.history]\nfinal_factor = 1.478\ntau = 1.59\n\
-             [loading]\nnormal_force = 266.67\ntangential_control = \"force\"\namplitude_ratio = 1.155\ntau = 0.328\n\
-             [numerics]\n{numerics}\n[output]\nsnapshots = 5\n"
-        );
-        run(&Scene::from_str(&text).unwrap())
-    };
+    let on = |numerics: &str| run(&short(numerics));
     let [found, fine] = ["accuracy = 1e-3", "springs = 240\ntolerance = 1e-6"].map(on);
     let off = relative(found.last().wear_volume, fine.last().wear_volume);
     let estimate = found.error_estimate().unwrap();
@@ -324,6 +326,17 @@ fn a_short_run_is_judged_and_shown_by_what_it_wears() {
     assert!(2 * worn > last.wear_depth.len(), "{worn} of {} radii are worn", last.wear_depth.len());
 }
 
+/// Where that limit lies is no matter of the springs of an attempt, so that a run made anew is shown at the same radii when it was interrupted.
+#[test]
+fn a_short_run_made_anew_is_shown_alike_in_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let (results, [whole, parts], interruptions) =
+        support::resume::whole_and_in_parts(&short("accuracy = 1e-3"), folder.path(), 5);
+    assert!(results.checkpoint().attempt.refinements > 0, "the first attempt serves");
+    assert!(interruptions > 3 && whole == parts, "{interruptions} interruptions");
+}
+
+/// What would accelerate the contact is refused with its key.
 #[test]
 fn what_would_accelerate_is_refused() {
     let text = scene(0.0, 2.0, 0.7, ARCHARD, "tau = 1").text().to_owned();

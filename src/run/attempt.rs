@@ -109,7 +109,7 @@ impl Attempt {
     }
 
     /// The part of the work of a run that it may take.
-    pub(super) fn part_of_work(&self) -> f64 {
+    fn part_of_work(&self) -> f64 {
         let [after_long, after_no_end] = OF_LAST_ATTEMPTS;
         match self.refinements.cmp(&REFINEMENTS) {
             _ if self.has_end() => 1.0,
@@ -117,6 +117,11 @@ impl Attempt {
             Ordering::Equal => after_long,
             Ordering::Greater => after_no_end,
         }
+    }
+
+    /// Most work of each of its companions.
+    pub(super) fn most_work_of_companion(&self) -> f64 {
+        self.part_of_work() * cost::work_of_companion(self.has_end())
     }
 
     /// Most work that it may take.

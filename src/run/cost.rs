@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use super::method::Method;
-use crate::data::Attempt;
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
 use crate::scene::Stepper as Choice;
@@ -42,9 +41,12 @@ const MOST_WORK: f64 = 8e9;
 /// Work of a companion over that of the run, about, beyond which the run would take too long, and the most where one before came to its end, so that this one is not left for it.
 const OF_COMPANION: [f64; 2] = [0.2, 0.4];
 
-/// Most work of a companion of an attempt.
-pub(in crate::run) fn work_of_companion(attempt: &Attempt) -> f64 {
-    attempt.part_of_work() * MOST_WORK * OF_COMPANION[usize::from(attempt.has_end())]
+/// Most work of a companion.
+///
+/// # Arguments
+/// * `ended` -- whether an attempt before came to its end
+pub(super) fn work_of_companion(ended: bool) -> f64 {
+    MOST_WORK * OF_COMPANION[usize::from(ended)]
 }
 
 /// The same for a run on so few springs that none are left out: others may find an end where it does not.

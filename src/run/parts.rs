@@ -328,7 +328,7 @@ impl Reach {
             let mut coarse = coarse.handing_over(follow.then_some(hand_over));
             let outcome = coarse.run(&mut [&mut Bounded { most_work: most_work.get() }]);
             most_work.set(most_work.get() - work_so_far(&coarse));
-            sticks_again.set(sticks_again.get() || coarse.sticks_again());
+            sticks_again.set(sticks_again.get() || coarse.sticks_after_gross_slip());
             if outcome? == Outcome::Interrupted {
                 return Ok(Err(coarse.reaches_too_slowly()));
             }

@@ -56,8 +56,6 @@ pub(super) struct Coarser<'a> {
     /// `r² - c²`, m², of the radii looked at, and one in how many of those is a radius of the run.
     pub offsets: &'a [f64],
     pub between: usize,
-    /// Whether profiles are compared as curves.
-    pub as_curves: bool,
     /// Whether it tells what the substeps of a period leave out, if periods are sampled.
     pub samples: bool,
     /// The schedule of the run, where that has as many substeps.
@@ -70,6 +68,13 @@ pub(super) struct Coarser<'a> {
     pub most_work: f64,
     pub store: &'a OperatorStore,
     pub stop: &'a Arc<AtomicBool>,
+}
+
+impl Coarser<'_> {
+    /// Whether profiles are compared as curves, for which companions are looked at between the radii of the run.
+    fn as_curves(&self) -> bool {
+        self.between > 1
+    }
 }
 
 /// A coarser run that came to its end.
@@ -122,7 +127,7 @@ impl Companion {
         let ends_by_rate = matches!(parts.plan.end, End::Rate(_));
         let samples = coarser.samples && !scene.conditions().mode.is_tangential();
         let unsampled = samples
-            .then(|| Unsampled::new(scene, numerics, &parts.model, coarser.as_curves).ok_or(Lost::NoEnd));
+            .then(|| Unsampled::new(scene, numerics, &parts.model, coarser.as_curves()).ok_or(Lost::NoEnd));
         let unsampled = unsampled.transpose()?;
         parts.model = parts.model.shown_at(coarser.offsets.to_vec());
         let Ok(mut simulation) = parts.begin() else { return Err(Lost::NoEnd) };

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::super::budget::{CAUTIOUS_ORDER, Falling, Shares, UNKNOWN, springs_before};
-use super::super::cost::work_of_companion;
 use super::super::parts::resolution;
 use super::super::passes;
 use super::companion::{Coarser, Companion, Dear, Lost, Worn};
@@ -108,7 +107,6 @@ pub(in crate::run) struct Coarsening {
     /// `r² - c²`, m², of the radii compared, and of so many in all up to the next of them.
     offsets: Vec<f64>,
     between: usize,
-    as_curves: bool,
     /// Substeps of a period where they are of a known order, so that coarser companions show what they leave out.
     substeps: Option<usize>,
     /// That of the run, where companions have the same.
@@ -135,11 +133,10 @@ impl Coarsening {
             alone: smooth || finer || always_slides(model) && to_stick_again.is_none(),
             finer,
             to_stick_again,
-            most_work: work_of_companion(attempt),
+            most_work: attempt.most_work_of_companion(),
             numerics,
             offsets: looked_at(model.offsets(), model),
             between: density(model),
-            as_curves: are_curves(model),
             schedule: substeps.is_none().then(|| model.schedule().clone()),
             substeps,
             averages: model.schedule().averages_from() == 0.0,
@@ -174,7 +171,6 @@ impl Coarsening {
                 .max(FEWEST),
                 offsets: &self.offsets,
                 between: self.between,
-                as_curves: self.as_curves,
                 schedule: self.schedule.as_ref(),
                 averages: self.averages,
                 samples: steps.abs() == 1 && self.substeps.is_none(),

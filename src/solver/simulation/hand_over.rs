@@ -102,15 +102,6 @@ impl Simulation {
         }
     }
 
-    /// Whether springs stick again after gross slip, as far as a coarse run or this one tells.
-    pub fn sticks_again(&self) -> bool {
-        match &self.taking {
-            Taking::Never => false,
-            Taking::Ahead(hand_over, _) => hand_over.expected,
-            Taking::Done(..) => true,
-        }
-    }
-
     /// Lets the other model take the run up where springs stick again or the last of them give way.
     pub(super) fn hand_over(&mut self) {
         if matches!(self.taking, Taking::Ahead(..)) && self.model.changes_over(&self.state) {
