@@ -90,7 +90,10 @@ impl Parts {
             let offsets = parts.model.gross_offsets((MARGIN * radius).min(end));
             parts.model = parts.model.shown_at(offsets);
         } else if parts.limit.is_none() && parts.model.is_shown_far_out() {
-            let reach = known.and_then(|it| it.reach).or_else(|| Reach::of_partial_slip(&parts));
+            let reach = match known {
+                Some(known) => known.reach,
+                None => Reach::of_partial_slip(scene, numerics, &parts, store),
+            };
             parts.reach = reach;
             parts.model = match reach {
                 Some(reach) => parts.model.shown_up_to(MARGIN * reach.radius),
@@ -299,12 +302,19 @@ struct Reach {
 }
 
 impl Reach {
-    /// By the same run in coarse steps; none where that comes to no end, or takes long.
-    fn of_partial_slip(parts: &Parts) -> Option<Self> {
+    /// By a run in coarse steps, on the springs of the coarsest accuracy: whatever those of an attempt are, since one that is taken up again has to be shown at the same radii. None where
+    /// that comes to no end, or takes long.
+    fn of_partial_slip(
+        scene: &Scene,
+        numerics: &Numerics,
+        parts: &Parts,
+        store: &OperatorStore,
+    ) -> Option<Self> {
         let (_, _, tolerance) = COARSE;
-        let (model, plan) = (parts.model.clone(), Plan { outputs: vec![], end: parts.plan.end });
-        let stepper = stepper::implicit(&model, tolerance);
-        let mut coarse = Simulation::new(model, stepper, tolerance, plan).ok()?;
+        let numerics = Numerics { accuracy: budget::CHEAPEST, tolerance: Some(tolerance), ..*numerics };
+        let coarse = Parts::on_any(scene, &numerics, None, Some(parts.model.schedule()), None, store).ok()?;
+        let plan = Plan { outputs: vec![], end: coarse.plan.end };
+        let mut coarse = Parts { plan, ..coarse }.begin().ok()?;
         let outcome = coarse.run(&mut [&mut Bounded { most_work: MOST_WORK }]).ok()?;
         let ends = outcome != Outcome::Interrupted;
         let radius = coarse.model().contact_radius(coarse.state());
