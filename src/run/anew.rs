@@ -377,7 +377,7 @@ impl Attempts<'_> {
         if let Some(now) = self.chosen_substeps().filter(|_| times > 1.0) {
             fineness.substeps = budget::more_substeps(now, times) as u64;
         }
-        let goes_over = simulation.sticks_after_gross_slip();
+        let goes_over = simulation.errs_by_springs_that_stick_again();
         Some((if goes_over { budget::springs_before(wanted) } else { wanted }, fineness))
     }
 

@@ -336,11 +336,11 @@ const TO_SLIDE_ON: [usize; 2] = [4, 16];
 /// Part of the tolerance of partial slip that is then that of gross slip.
 pub(in crate::run) const OF_SLIDING_ON: f64 = OF_STEPS * OF_TIME / OF_TIME_LOSING_STICK;
 
-/// Springs on the mesh that takes the run of a model up.
+/// Springs on the mesh that takes the run of a model up. What a mesh has carried on which springs stuck before is no finer than its own.
 pub(in crate::run) fn springs_taken_up(model: &Model) -> usize {
     let springs = model.springs();
-    if model.gross().is_some() {
-        return springs_to_stick_again(springs);
+    if let Some(gross) = model.gross() {
+        return if gross.sticks() { springs } else { springs_to_stick_again(springs) };
     }
     let [each, beyond] = TO_SLIDE_ON;
     (beyond + springs.div_ceil(each)).min(MOST_IN_GROSS_SLIP)

@@ -2,9 +2,7 @@
 
 use std::cell::Cell;
 
-use super::budget::{
-    self, FEWEST_CUBICS, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up, springs_to_stick_again,
-};
+use super::budget::{self, FEWEST_CUBICS, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up};
 use super::cost::work_so_far;
 use super::mesh::{self, SPRINGS_TO_SLIDE};
 use super::passes::Averaging;
@@ -333,7 +331,7 @@ impl Reach {
         let coarse = |springs: usize, follow: bool| -> Result<std::result::Result<Self, Error>> {
             let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
             let plan = Plan { outputs: vec![], end: parts.plan.end };
-            let hand_over = HandOver { springs: springs_to_stick_again(springs), tolerance, expected: false };
+            let hand_over = HandOver { springs: springs_taken_up(&model), tolerance, expected: false };
             let coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
             let mut coarse = coarse.handing_over(follow.then_some(hand_over));
             let outcome = coarse.run(&mut [&mut Bounded { most_work: most_work.get() }]);
@@ -343,7 +341,11 @@ impl Reach {
                 return Ok(Err(coarse.reaches_too_slowly()));
             }
             let before = coarse.state().ground.iter().flat_map(|it| it.places()).map(|(_, worn)| worn);
-            let depths = coarse.fields().wear_depth.iter().copied().chain(before);
+            let depths = match coarse.model().gross() {
+                Some(_) => coarse.fields().wear_depth.clone(),
+                None => coarse.wear_depth(),
+            };
+            let depths = depths.into_iter().chain(before);
             Ok(Ok(Self {
                 radius: coarse.model().worn_radius(coarse.state()),
                 sticks_again: sticks_again.get(),

@@ -39,6 +39,11 @@ pub(super) enum Found {
     Ready(Box<Model>),
 }
 
+/// Whether the error goes by the springs of the mesh that takes the run up: in gross slip, where none sticks, it falls much faster with their number.
+fn leaves_error_to_next(before: &Model) -> bool {
+    before.gross().is_some_and(|gross| !gross.sticks())
+}
+
 impl Simulation {
     /// Lets another model take the run up, see [`Model::is_taken_up`].
     #[must_use]
@@ -83,21 +88,25 @@ impl Simulation {
         matches!(&self.taking, Taking::Done(before, _) if before.gross().is_some())
     }
 
-    /// Springs over the slip annulus once springs stick again after gross slip, as far as a coarse run or this one tells.
+    /// Springs over the slip annulus once springs stick again after gross slip, as far as a coarse run or this one tells; none where the error does not go by them.
     pub fn springs_to_stick_again(&self) -> Option<usize> {
         match &self.taking {
-            Taking::Ahead(hand_over, _) if hand_over.expected && self.model.gross().is_some() => {
+            Taking::Ahead(hand_over, _) if hand_over.expected && leaves_error_to_next(&self.model) => {
                 Some(hand_over.springs)
             }
-            Taking::Done(before, _) if before.gross().is_some() => Some(self.model.springs()),
-            _ => None,
+            _ => self.errs_by_springs_that_stick_again().then(|| self.model.springs()),
         }
     }
 
-    /// Springs of the mesh by which the error goes: that which followed an edge of stick, if one did.
+    /// Whether springs have come to stick again that none did before, so that the error goes by them.
+    pub fn errs_by_springs_that_stick_again(&self) -> bool {
+        matches!(&self.taking, Taking::Done(before, _) if leaves_error_to_next(before))
+    }
+
+    /// Springs of the mesh by which the error goes: that which followed an edge of stick, if one did, or on which springs stuck first.
     pub fn springs(&self) -> usize {
         match &self.taking {
-            Taking::Done(before, _) if before.gross().is_none() => before.springs(),
+            Taking::Done(before, _) if !leaves_error_to_next(before) => before.springs(),
             _ => self.model.springs(),
         }
     }
