@@ -341,6 +341,7 @@ impl Reach {
                 return Ok(Err(coarse.reaches_too_slowly()));
             }
             let before = coarse.state().ground.iter().flat_map(|it| it.places()).map(|(_, worn)| worn);
+            // Next to an edge of stick that creeps those of the springs leave out the ground that it has passed.
             let depths = match coarse.model().gross() {
                 Some(_) => coarse.fields().wear_depth.clone(),
                 None => coarse.wear_depth(),
