@@ -291,3 +291,74 @@ fn gross_slip_between_blocks_of_partial_slip_is_within_what_is_told() {
     assert!(steps < 500, "{steps} steps");
     assert!(interruptions > 2 && whole == parts, "{interruptions} interruptions");
 }
+
+/// At an indentation that is held the blocks before gross slip wear as they do alone, what they have worn stays as gross slip begins, and on other springs as much wears in the end.
+#[test]
+fn gross_slip_takes_up_what_partial_slip_has_worn() {
+    for (grading, blocks) in [
+        (-0.22, &[[2.23, 0.551], [0.31, 1.553]][..]),
+        (0.0, &[[0.53, 0.517], [1.23, 0.35], [1.0, 1.4], [1.64, 0.6]]),
+        (0.5, &[[1.45, 0.891], [1.98, 1.838]]),
+    ] {
+        let until = |tau: f64, numerics: &str| amplitudes(grading, HELD[0], blocks, tau, numerics);
+        let gross = blocks.iter().position(|[_, amplitude]| *amplitude > 1.25).expect("gross slip");
+        let before: f64 = blocks[..gross].iter().map(|[tau, _]| tau).sum();
+        let alone = run(&until(before, "accuracy = 1e-6"));
+        let taken_up = run(&until(before * (1.0 + 1e-5), TIGHT));
+        let stays = taken_up.last().wear_volume / alone.last().wear_volume - 1.0;
+        assert!(taken_up.last().stick_radius == 0.0, "k = {grading}: {}", taken_up.last().stick_radius);
+
+        let all = blocks.iter().map(|[tau, _]| tau).sum();
+        let [found, fine] =
+            [TIGHT, "springs = 130\ntolerance = 1e-7"].map(|numerics| run(&until(all, numerics)));
+        let (last, estimate) = (found.last(), found.error_estimate().unwrap());
+        let off = last.wear_volume / fine.last().wear_volume - 1.0;
+        let by_energy = last.wear_volume / (PER_ENERGY * last.dissipated_energy) - 1.0;
+        println!(
+            "k = {grading}: {stays:.1e} as it begins, {off:.1e} at the end, {estimate:.1e} told, {by_energy:.1e} by energy"
+        );
+        // What the mesh does not carry is worn off soon, as energy tells; until then it is told. Measured: 5.2e-4 where 4.2e-4 is told.
+        let told = taken_up.error_estimate().unwrap();
+        assert!(stays.abs() < (2.0 * told).min(1e-3), "k = {grading}: {stays:e}, {told:e} told");
+        assert!(
+            estimate < 1e-4 && off.abs() < 1e-4 && by_energy.abs() < 3e-4,
+            "k = {grading}: {off:e}, {estimate:e}, {by_energy:e}"
+        );
+    }
+}
+
+#[test]
+fn gross_slip_between_blocks_that_is_interrupted_goes_on_as_if_it_had_not_been() {
+    let blocks = [[0.5, 0.5], [0.5, 0.7], [0.5, 1.4], [0.5, 0.6]];
+    let scene = amplitudes(0.0, HELD[0], &blocks, 2.0, "accuracy = 1e-3");
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, [whole, parts], interruptions) = support::resume::whole_and_in_parts(&scene, folder.path(), 10);
+    assert!(interruptions > 5 && whole == parts, "{interruptions} interruptions");
+}
+
+/// A moment of gross slip changes nothing of what partial slip around it wears. What the mesh over the whole contact loses of the steep ground is worn anew, and told.
+#[test]
+fn a_moment_of_gross_slip_between_equal_blocks_is_told() {
+    for grading in [-0.2, 0.0, 0.5] {
+        let on = |blocks: &[[f64; 2]], tau: f64| {
+            run(&amplitudes(grading, HELD[0], blocks, tau, "accuracy = 1e-3"))
+        };
+        let broken = on(&[[2.0, 0.8], [1e-3, 1.3], [5.0, 0.8]], 7.001);
+        let alone = on(&[[7.0, 0.8]], 7.0);
+        let off = (broken.last().wear_volume / alone.last().wear_volume - 1.0).abs();
+        let estimate = broken.error_estimate().unwrap();
+        println!("k = {grading}: off by {off:.1e}, {estimate:.1e} told");
+        // Measured: 2.2e-2, 7.5e-3 and 1.3e-3; on one mesh they had been 3.0e-2, 9.8e-3 and 6.5e-4.
+        assert!(off < 3e-2 && off < 1.5 * estimate, "k = {grading}: {off:e}, {estimate:e}");
+    }
+}
+
+/// On few springs polynomials swing above what slips, where nothing sticks in any block that is left.
+#[test]
+fn gross_slip_after_long_partial_slip_comes_to_its_end() {
+    let results = run(&amplitudes(-0.3, HELD[0], &[[20.0, 0.8], [5.0, 1.3]], 20.1, "accuracy = 1e-3"));
+    let (last, estimate) = (results.last(), results.error_estimate().unwrap());
+    let by_energy = last.wear_volume / (PER_ENERGY * last.dissipated_energy) - 1.0;
+    println!("{estimate:.1e} told, {by_energy:.1e} by energy");
+    assert!(by_energy.abs() < 1e-3 && last.stick_radius == 0.0, "{by_energy:e}");
+}

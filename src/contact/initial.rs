@@ -115,6 +115,14 @@ impl InitialContact {
         })
     }
 
+    /// The same bodies at the same indentation, moved by another amplitude, m, with the edge of stick at another compression; dimensionless time stays.
+    ///
+    /// # Errors
+    /// As [`InitialContact::at`].
+    pub fn moved_by(&self, amplitude: f64, slip_compression: f64) -> Result<Self> {
+        Ok(Self { amplitude, ..self.at(self.indentation, slip_compression)? })
+    }
+
     /// The same bodies at another indentation, with the edge of stick at another compression; amplitude and dimensionless time stay.
     ///
     /// # Arguments

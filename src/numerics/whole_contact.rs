@@ -9,6 +9,7 @@
 //! Values are a polynomial in `y`, `√ξ = [1 - (1-y)^m]²`: smooth at the tip of any power law, and with `m = 2` at the edge both for the first contact,
 //! `q ~ 1-ξ`, and under uniform pressure, `q ~ (1-ξ)^μ`, `k = 0`. Nodes are zeros of a Jacobi polynomial, denser towards the edge, where ground comes in.
 
+mod filtered;
 mod touching;
 
 use std::f64::consts::PI;

@@ -17,7 +17,7 @@ use crate::contact::closed_form::LimitingShape;
 use crate::data::{Attempt, Checkpoint, Fineness, RunHeader, Snapshot};
 use crate::error::{Error, Result};
 use crate::scene::{Numerics, Scene, Stepper};
-use crate::solver::model::{MovingStick, OperatorStore};
+use crate::solver::model::{Model, MovingStick, OperatorStore};
 use crate::solver::simulation::{Outcome, Simulation};
 
 /// Estimated error of an attempt over that of a later one, below which the earlier stands.
@@ -269,6 +269,7 @@ impl Attempts<'_> {
         let springs = springs.ceil() as usize;
         let is_of_use = attempt.ended_within > accuracy && springs as f64 >= budget::MANY_MORE * ended_on;
         let is_allowed = is_of_use
+            && springs <= budget::most_springs(self.stepping.first().0)
             && self.may_be_finer()
             && cost::allows(&self.stepping, springs, 1.0, attempt.work, false);
         is_allowed.then(|| self.finer(springs, attempt.ended_with, None, work))
@@ -381,9 +382,15 @@ impl Attempts<'_> {
         Some((if goes_over { budget::springs_before(wanted) } else { wanted }, fineness))
     }
 
+    /// The model whose mesh limits how many springs are of use: the last, or the first where all have as many.
+    fn refined_model(&self) -> &Model {
+        let (first, _) = self.stepping.first();
+        if first.comes_to_gross_slip() { first } else { self.stepping.model() }
+    }
+
     /// Springs that are wanted by the order that was observed, with how many times the substeps, the best first.
     fn more_by_order(&self, shares: Shares) -> Vec<(usize, f64)> {
-        let (model, springs) = (self.stepping.model(), self.stepping.springs());
+        let (model, springs) = (self.refined_model(), self.stepping.springs());
         let accuracy = self.scene.numerics().accuracy;
         if model.schedule().takes_steps() {
             let wanted = budget::refined_by_order(springs, shares, accuracy, model);

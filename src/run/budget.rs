@@ -155,13 +155,17 @@ pub(in crate::run) fn springs_in_gross_slip(
         return sliding;
     }
     let [springs, at] = SPRINGS_THAT_STICK;
-    let most = match contact.half_space().grading() {
+    let sticking = (springs * (at / accuracy).sqrt()).ceil() as usize;
+    sliding.max(sticking).min(most_that_stick(contact))
+}
+
+/// The most that are asked for over the whole contact where springs stick in some cycles.
+pub(in crate::run) fn most_that_stick(contact: &InitialContact) -> usize {
+    match contact.half_space().grading() {
         grading if grading < SOFT => MOST_THAT_STICK_AT_SOFT_TOP,
         grading if grading > STEEP => MOST_ASKED_IN_GROSS_SLIP as usize,
         _ => MOST_IN_GROSS_SLIP,
-    };
-    let sticking = (springs * (at / accuracy).sqrt()).ceil() as usize;
-    sliding.max(sticking).min(most)
+    }
 }
 
 /// The same where springs slip in every cycle.
@@ -342,6 +346,9 @@ pub(in crate::run) fn springs_taken_up(model: &Model) -> usize {
     if let Some(gross) = model.gross() {
         return if gross.sticks() { springs } else { springs_to_stick_again(springs) };
     }
+    if model.comes_to_gross_slip() {
+        return springs;
+    }
     let [each, beyond] = TO_SLIDE_ON;
     (beyond + springs.div_ceil(each)).min(MOST_IN_GROSS_SLIP)
 }
@@ -514,21 +521,27 @@ pub(in crate::run) fn enough_for_a_rim(model: &Model) -> Option<usize> {
 /// Most springs of a repeat over those before: an estimate on few springs tells little of how many it takes, and on many of them runs take long or find no end.
 const AT_ONCE: f64 = 2.5;
 
+/// Most springs of a repeat: in gross slip more are of no use, and where the normal load changes along the period they take long.
+pub(in crate::run) fn most_springs(model: &Model) -> usize {
+    match model.gross() {
+        Some(_) => MOST_IN_GROSS_SLIP,
+        None if model.comes_to_gross_slip() => most_that_stick(model.contact()),
+        None if model.schedule().lifts() => MOST_REFINED_LIFTING,
+        None => MOST_RAISED,
+    }
+}
+
 /// As [`refined`] where the order of convergence was observed: the springs that this order asks for, those that the full one does, at most [so many times as many](AT_ONCE), twice as many, and as many as a run may take at all: the first of them serve that it may take.
 ///
 /// # Arguments
-/// * `model` -- of the run: in gross slip more springs are of no use, and where the normal load changes along the period they take long
+/// * `model` -- of the run
 pub(in crate::run) fn refined_by_order(
     springs: usize,
     shares: Shares,
     accuracy: f64,
     model: &Model,
 ) -> Vec<usize> {
-    let most = match model.gross() {
-        Some(_) => MOST_IN_GROSS_SLIP,
-        None if model.schedule().lifts() => MOST_REFINED_LIFTING,
-        None => MOST_RAISED,
-    };
+    let most = most_springs(model);
     if shares.springs >= UNKNOWN {
         // Companions of a finer run may tell.
         return refined(springs, None, accuracy).filter(|springs| *springs <= most).into_iter().collect();

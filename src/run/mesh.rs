@@ -1,6 +1,8 @@
 //! The springs of a run: as many as the unworn contact and the limit need, or those asked for if they carry them.
 
-use super::budget::{MOST_RAISED, smallness, springs_before, springs_for, springs_in_gross_slip};
+use super::budget::{
+    MOST_RAISED, most_that_stick, smallness, springs_before, springs_for, springs_in_gross_slip,
+};
 use super::memory::memory_figure;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
@@ -85,12 +87,35 @@ pub(super) fn model(
     wanted: Option<usize>,
     store: &OperatorStore,
 ) -> Result<Model> {
-    let given = numerics.springs;
-    if numerics.stepper == Stepper::Implicit
-        && let Some(model) = nearly_sliding(contact, schedule, numerics, wanted)
-    {
-        return Ok(model);
+    if numerics.stepper == Stepper::Implicit {
+        if let Some(model) = nearly_sliding(contact, schedule, numerics, wanted) {
+            return Ok(model);
+        }
+        if let Some((partial, before)) = Gross::before(contact, schedule)? {
+            let most = most_that_stick(contact);
+            let bounds = [springs_in_gross_slip(contact, schedule, numerics.accuracy), most];
+            let model = on_annulus(&partial, &before, duration, numerics, (wanted, bounds), store)?;
+            if model.springs() <= most {
+                return Ok(model);
+            }
+        }
     }
+    on_annulus(contact, schedule, duration, numerics, (wanted, [FEWEST_SPRINGS, MOST_RAISED]), store)
+}
+
+/// The same on a mesh that begins at an edge of stick, or over the whole contact if all of it slides.
+///
+/// # Arguments
+/// * `wanted`, `bounds` -- springs to begin with, where those for the accuracy are not given; and the fewest and most of these
+fn on_annulus(
+    contact: &InitialContact,
+    schedule: &Schedule,
+    duration: Duration,
+    numerics: &Numerics,
+    (wanted, [fewest, most]): (Option<usize>, [usize; 2]),
+    store: &OperatorStore,
+) -> Result<Model> {
+    let given = numerics.springs;
     let grading = contact.half_space().grading();
     let concentrated = grading < STEEP_SOFTENING && smallness(contact) > SMALL_STICK;
     let clusterings = |springs: usize| -> &[Clustering] {
@@ -109,7 +134,9 @@ pub(super) fn model(
             Stepper::EveryCycle | Stepper::CycleJump => &[Clustering::Quadratic],
         }
     };
-    let chosen = || springs_for(clusterings(FEWEST_SPRINGS)[0], contact, schedule, numerics.accuracy);
+    let chosen = || {
+        springs_for(clusterings(FEWEST_SPRINGS)[0], contact, schedule, numerics.accuracy).clamp(fewest, most)
+    };
     let mut springs = given.or(wanted).unwrap_or_else(chosen);
     let key = if given.is_some() { "numerics.springs" } else { "numerics.accuracy" };
     check_memory(key, springs, contact, schedule)?;

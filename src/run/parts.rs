@@ -1,6 +1,7 @@
 //! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
 
 use std::cell::Cell;
+use std::slice;
 
 use super::budget::{self, FEWEST_CUBICS, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up};
 use super::cost::work_so_far;
@@ -46,7 +47,7 @@ pub(super) struct Parts {
     /// Where the run leads to, where the contact is in gross slip, or may reach far beyond where it comes to.
     reach: Option<Reach>,
     /// What comes of gross slip where springs may stick again.
-    pub hand_over: Option<HandOver>,
+    pub hand_overs: Vec<HandOver>,
     /// As in [`Simulation::averaging_below`].
     pub most_swing: f64,
 }
@@ -67,7 +68,7 @@ impl Parts {
         let mut parts = Self::on_any(scene, numerics, wanted, schedule, None, store)?;
         check_sliding(&parts.model)?;
         parts.limit = limit(&parts.model)?;
-        if parts.model.gross().is_some() {
+        if parts.model.gross().is_some() || parts.model.comes_to_gross_slip() {
             rim::check_gross_slip(&parts.model, parts.plan.end)?;
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
@@ -78,13 +79,12 @@ impl Parts {
             let Reach { radius, sticks_again, worn } = reach;
             parts.reach = Some(reach);
             // Errors of the compressions are relative to all of them, those of a short run to what it wears.
-            if numerics.tolerance.is_none() && numerics.stepper == StepperChoice::Implicit && worn < SHORT {
+            let slides = parts.model.gross().is_some() && worn < SHORT;
+            if numerics.tolerance.is_none() && numerics.stepper == StepperChoice::Implicit && slides {
                 parts.tolerance = (parts.tolerance * worn / SHORT).max(ROUND_OFF);
                 parts.stepper = stepper::implicit(&parts.model, parts.tolerance);
             }
-            if let Some(hand_over) = &mut parts.hand_over {
-                hand_over.expected = sticks_again;
-            }
+            parts.hand_overs.iter_mut().for_each(|it| it.expected = sticks_again);
             let offsets = parts.model.gross_offsets((MARGIN * radius).min(end));
             parts.model = parts.model.shown_at(offsets);
         } else if parts.limit.is_none() && parts.model.is_shown_far_out() {
@@ -143,8 +143,24 @@ impl Parts {
 
     /// Whether a state is one of the model that takes the run up.
     fn is_taken_up(&self, state: &State) -> bool {
-        self.hand_over.is_some_and(|it| it.springs == state.compression.len() + 1)
-            && state.stick.is_none() == self.model.gross().is_none()
+        self.hand_overs_done(state).is_some_and(|done| done > 0)
+    }
+
+    /// After how many hand-overs a state comes that may be one of this run; none where it is none.
+    fn hand_overs_done(&self, state: &State) -> Option<usize> {
+        let springs = state.compression.len() + 1;
+        let mut on_annulus = self.model.gross().is_none();
+        if springs == self.model.springs()
+            && state.stick.is_some() == self.model.moving().is_some()
+            && !self.model.was_left_before(state.cycles)
+        {
+            return Some(0);
+        }
+        let is_on = |hand_over: &HandOver| {
+            on_annulus = !on_annulus;
+            hand_over.springs == springs && state.stick.is_some() == on_annulus
+        };
+        self.hand_overs.iter().position(is_on).map(|before| before + 1)
     }
 
     /// Whether a state has the mesh of gross slip.
@@ -154,10 +170,7 @@ impl Parts {
 
     /// Whether a state is one of this run.
     pub(super) fn fit(&self, state: &State) -> bool {
-        let springs = state.compression.len() + 1;
-        let is_first =
-            springs == self.model.springs() && state.stick.is_some() == self.model.moving().is_some();
-        is_first || self.is_taken_up(state)
+        self.hand_overs_done(state).is_some()
     }
 
     /// The run from a state on.
@@ -165,17 +178,15 @@ impl Parts {
     /// # Errors
     /// As [`Simulation::resume_handed_over`].
     pub(super) fn resume(self, state: State, progress: Progress) -> Result<Simulation> {
-        let is_taken_up = self.is_taken_up(&state);
-        let Self { model, stepper, tolerance, plan, hand_over, most_swing, .. } = self;
-        match hand_over {
-            Some(hand_over) if is_taken_up => {
-                Simulation::resume_handed_over((model, tolerance), hand_over, plan, state, progress)
-            }
-            _ => {
-                let simulation = Simulation::resume(model, stepper, tolerance, plan, state, progress);
-                Ok(simulation.handing_over(hand_over).averaging_below(most_swing))
-            }
-        }
+        let done = self.hand_overs_done(&state).unwrap_or_default();
+        let Self { model, stepper, tolerance, plan, hand_overs, most_swing, .. } = self;
+        let (done, ahead) = hand_overs.split_at(done);
+        let simulation = match done.is_empty() {
+            true => Simulation::resume(model, stepper, tolerance, plan, state, progress)
+                .averaging_below(most_swing),
+            false => Simulation::resume_handed_over((model, tolerance), done, plan, state, progress)?,
+        };
+        Ok(simulation.handing_over(ahead))
     }
 
     /// The run from the unworn contact on.
@@ -184,7 +195,7 @@ impl Parts {
     /// As [`Simulation::new`].
     pub(super) fn begin(self) -> Result<Simulation> {
         let simulation = Simulation::new(self.model, self.stepper, self.tolerance, self.plan)?;
-        Ok(simulation.handing_over(self.hand_over).averaging_below(self.most_swing))
+        Ok(simulation.handing_over(&self.hand_overs).averaging_below(self.most_swing))
     }
 
     /// As [`Parts::new`], for what a run is compared with: also on fewer springs than carry a contact that is in gross slip, and without its limit.
@@ -232,15 +243,21 @@ impl Parts {
             Some(_) => again.min(budget::MOST_RAISED),
             None => again,
         };
-        let part = match model.gross() {
-            _ if scene.numerics().tolerance.is_some() => 1.0,
-            Some(_) => NEAR_GROSS_SLIP / OF_STEPS,
-            None => budget::OF_SLIDING_ON,
+        let given = scene.numerics().tolerance.is_some();
+        let to = |springs: usize, part: f64| {
+            let tolerance = if given { tolerance } else { part * tolerance };
+            HandOver { springs, tolerance, expected: false }
         };
-        let hand_over =
-            model.is_taken_up().then_some(HandOver { springs, tolerance: part * tolerance, expected: false });
+        let hand_overs = match model.gross() {
+            _ if !model.is_taken_up() => vec![],
+            None if model.comes_to_gross_slip() => {
+                vec![to(springs, OF_STEPS), to(model.springs(), NEAR_GROSS_SLIP)]
+            }
+            Some(_) => vec![to(springs, NEAR_GROSS_SLIP / OF_STEPS)],
+            None => vec![to(springs, budget::OF_SLIDING_ON)],
+        };
         let most_swing = averaging.most_swing;
-        Ok(Self { model, stepper, tolerance, plan, limit: None, reach: None, hand_over, most_swing })
+        Ok(Self { model, stepper, tolerance, plan, limit: None, reach: None, hand_overs, most_swing })
     }
 }
 
@@ -260,7 +277,8 @@ fn limit(model: &Model) -> Result<Option<LimitingShape>> {
     let by_energy = *model.schedule().friction_along_energy() != History::Constant;
     let held = conditions.holds_normal_force && !conditions.holds_both_forces();
     let path_dependent = held || model.moving().is_some_and(MovingStick::passes_worn_ground);
-    let unlimited = model.slides() || path_dependent || by_energy;
+    let slides = model.slides() || model.comes_to_gross_slip();
+    let unlimited = slides || path_dependent || by_energy;
     if unlimited { Ok(None) } else { LimitingShape::under(model.contact(), conditions) }
 }
 
@@ -272,7 +290,7 @@ pub(super) struct Known {
 
 impl Known {
     pub(super) fn of(parts: &Parts) -> Self {
-        Self { schedule: parts.model.schedule().clone(), reach: parts.reach }
+        Self { schedule: parts.model.schedule().whole().clone(), reach: parts.reach }
     }
 
     /// Before an attempt, where its schedule is not that of the scene alone.
@@ -323,7 +341,7 @@ impl Reach {
     /// radius is that which bounds it at an indentation that is held, beyond which the unworn profile is as high.
     fn of(parts: &Parts) -> Result<Self> {
         let (polynomials, cubics, tolerance) = COARSE;
-        let (contact, schedule) = (parts.model.contact(), parts.model.schedule());
+        let (contact, schedule) = parts.model.under_all_blocks();
         // At an indentation that is held another radius serves as well.
         let bounded = schedule.resolves() || !parts.model.wears_without_end();
         let most_work = if bounded { MOST_WORK } else { OF_STEPS_ALONE * MOST_WORK };
@@ -333,7 +351,7 @@ impl Reach {
             let plan = Plan { outputs: vec![], end: parts.plan.end };
             let hand_over = HandOver { springs: springs_taken_up(&model), tolerance, expected: false };
             let coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
-            let mut coarse = coarse.handing_over(follow.then_some(hand_over));
+            let mut coarse = coarse.handing_over(if follow { slice::from_ref(&hand_over) } else { &[] });
             let outcome = coarse.run(&mut [&mut Bounded { most_work: most_work.get() }]);
             most_work.set(most_work.get() - work_so_far(&coarse));
             sticks_again.set(sticks_again.get() || coarse.sticks_after_gross_slip());

@@ -196,7 +196,7 @@ impl Model {
 
     /// Whether wear has no kinks, neither along the slip annulus nor in time.
     pub fn wears_smoothly(&self) -> bool {
-        self.wears_steadily() && self.schedule.wears_smoothly()
+        self.wears_steadily() && self.schedule.wears_smoothly() && !self.comes_to_gross_slip()
     }
 
     /// Whether every cycle is the same, with weak kinks at most, and the edge of stick rests, so that wear is nearly smooth in time.

@@ -233,7 +233,7 @@ impl Simulation {
             rate,
             progress,
             healed_at: None,
-            taking: Taking::Never,
+            taking: Taking::default(),
             settles: false,
             rejected: Rejected::default(),
             let_go: None,
@@ -371,7 +371,7 @@ impl Simulation {
             if let Some(outcome) = self.outcome() {
                 return Ok(outcome);
             }
-            self.hand_over();
+            self.hand_over()?;
             if self.model.loses_stick(&self.state) {
                 return Err(self.slides_off());
             }

@@ -103,6 +103,22 @@ impl Gross {
         Ok(true)
     }
 
+    /// The blocks in partial slip before the first of gross slip, and the contact under them, where a mesh that begins at their edge of stick carries them and the run is handed over
+    /// then; none elsewhere.
+    ///
+    /// # Errors
+    /// Those of [`Schedule::before_gross_slip`].
+    pub fn before(
+        contact: &InitialContact,
+        schedule: &Schedule,
+    ) -> Result<Option<(InitialContact, Schedule)>> {
+        if schedule.conditions().holds_normal_force || !is_followed_in_blocks(schedule) {
+            return Ok(None);
+        }
+        let nearly = contact.equivalent_profile().value(LEAST_STICK_LATER * contact.contact_radius());
+        schedule.before_gross_slip(contact, contact.indentation() - nearly)
+    }
+
     /// Whether polynomials over the whole contact carry what happens in it, before the mesh is made; else cubics do.
     pub fn is_smooth(contact: &InitialContact, schedule: &Schedule) -> bool {
         is_smooth(contact, schedule)
@@ -243,14 +259,15 @@ impl Model {
         }
     }
 
-    /// Radii of the output, m², squared, of a contact that grows to a radius, m.
+    /// [`Model::offsets`] of a contact that grows to a radius, m.
     pub fn gross_offsets(&self, last: f64) -> Vec<f64> {
         let [within, beyond] = SHOWN;
         let first = self.contact.contact_radius();
         let ratio = (last / first).max(1.0).ln() / beyond as f64;
         let inside = (1..=within).map(|i| first * i as f64 / within as f64);
         let outside = (1..=beyond).map(|i| first * (ratio * i as f64).exp());
-        inside.chain(outside.filter(|r| *r > first)).map(|r| r * r).collect()
+        let core = self.stick_zone.stick_area;
+        inside.chain(outside.filter(|r| *r > first)).map(|r| r * r - core).collect()
     }
 
     pub(super) fn gross_initial_state(&self, gross: &Gross) -> Result<State> {

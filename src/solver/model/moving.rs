@@ -160,7 +160,7 @@ impl MovingStick {
     }
 
     /// Whether it may leave worn ground behind.
-    fn leaves_ground(&self) -> bool {
+    pub(super) fn leaves_ground(&self) -> bool {
         self.outwards || self.turns
     }
 

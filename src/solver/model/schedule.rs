@@ -3,8 +3,11 @@
 mod memory;
 mod pauses;
 mod shrinking;
+mod sliding;
 
 use std::sync::{Arc, OnceLock};
+
+use sliding::Then;
 
 use super::first_force::first_force;
 use super::worn_ground::WornGround;
@@ -205,6 +208,8 @@ pub struct Schedule {
     follows_balance: bool,
     /// Cycles from which on wear goes on as in the mean cycle of a pass, so that no step ends at the end of a block; infinite where each does.
     averages_from: f64,
+    /// Gross slip that follows the blocks, if it does.
+    then: Option<Arc<Then>>,
     /// What [`Schedule::envelope`] found for a contact of this indentation and amplitude, m; copies of the schedule share it.
     envelope: Arc<OnceLock<([f64; 2], Envelope)>>,
 }
@@ -315,6 +320,7 @@ impl Schedule {
             asked_until: f64::INFINITY,
             follows_balance: true,
             averages_from: f64::INFINITY,
+            then: None,
             envelope: Arc::default(),
         })
     }
@@ -542,6 +548,7 @@ impl Schedule {
         kinks
             .chain(block)
             .chain(first)
+            .chain(self.ends_with_gross_slip_at())
             .filter(|time| !has_come(*time, cycles) && time.is_finite())
             .min_by(f64::total_cmp)
     }

@@ -22,18 +22,20 @@ pub struct HandOver {
     pub expected: bool,
 }
 
-/// What took part in a hand-over.
-pub(super) enum Taking {
-    /// None is followed.
-    Never,
-    /// Not yet.
-    Ahead(HandOver, Found),
-    /// The model and the tolerance before.
-    Done(Box<Model>, f64),
+/// Hand-overs of a run, of which there may be one after the other.
+#[derive(Default)]
+pub(super) struct Taking {
+    /// Those to come, the next one last.
+    ahead: Vec<HandOver>,
+    next: Found,
+    /// The models before, and the tolerance of their steps.
+    before: Vec<(Model, f64)>,
 }
 
 /// The model that is to take a run up.
-pub(super) enum Found {
+#[derive(Default)]
+enum Found {
+    #[default]
     Unasked,
     Missing,
     Ready(Box<Model>),
@@ -45,76 +47,87 @@ fn leaves_error_to_next(before: &Model) -> bool {
 }
 
 impl Simulation {
-    /// Lets another model take the run up, see [`Model::is_taken_up`].
+    /// Lets other models take the run up, one after the other, see [`Model::is_taken_up`].
     #[must_use]
-    pub fn handing_over(mut self, hand_over: Option<HandOver>) -> Self {
-        self.taking = hand_over.map_or(Taking::Never, |it| Taking::Ahead(it, Found::Unasked));
+    pub fn handing_over(mut self, hand_overs: &[HandOver]) -> Self {
+        self.taking.ahead = hand_overs.iter().rev().copied().collect();
         self
     }
 
-    /// Goes on from a state after the hand-over, as if there had been no interruption.
+    /// Goes on from a state after some hand-overs, as if there had been no interruption.
     ///
     /// # Arguments
-    /// * `first` -- the model before, and the tolerance there
+    /// * `first` -- the model at the beginning, and the tolerance there
+    /// * `hand_overs` -- those that are done
     ///
     /// # Errors
     /// [`Error::Inconsistent`] where no other model takes the run up; those of [`Model::taken_up`].
     pub fn resume_handed_over(
-        (first, before): (Model, f64),
-        hand_over: HandOver,
+        first: (Model, f64),
+        hand_overs: &[HandOver],
         plan: Plan,
         state: State,
         progress: Progress,
     ) -> Result<Self> {
-        let model = first.taken_up(hand_over.springs)?.ok_or_else(|| Error::Inconsistent {
-            what: "loading",
-            why: "no spring sticks again in this contact, and the last does not give way".into(),
-        })?;
-        let stepper = stepper::implicit(&model, hand_over.tolerance);
-        let resumed = Self::resume(model, stepper, hand_over.tolerance, plan, state, progress);
-        Ok(Self { taking: Taking::Done(Box::new(first), before), ..resumed })
+        let ((mut model, mut tolerance), mut before) = (first, vec![]);
+        for hand_over in hand_overs {
+            let next = model.taken_up(hand_over.springs)?.ok_or_else(|| Error::Inconsistent {
+                what: "loading",
+                why: "no spring sticks again in this contact, and the last does not give way".into(),
+            })?;
+            before.push((std::mem::replace(&mut model, next), tolerance));
+            tolerance = hand_over.tolerance;
+        }
+        let stepper = stepper::implicit(&model, tolerance);
+        let resumed = Self::resume(model, stepper, tolerance, plan, state, progress);
+        Ok(Self { taking: Taking { before, ..Taking::default() }, ..resumed })
     }
 
     /// The model that the run began with, and the tolerance of its steps.
     pub fn first(&self) -> (&Model, f64) {
-        match &self.taking {
-            Taking::Done(model, tolerance) => (model, *tolerance),
-            _ => (&self.model, self.tolerance),
-        }
+        self.taking
+            .before
+            .first()
+            .map_or((&self.model, self.tolerance), |(model, tolerance)| (model, *tolerance))
     }
 
     /// Whether springs have come to stick again.
     pub fn sticks_after_gross_slip(&self) -> bool {
-        matches!(&self.taking, Taking::Done(before, _) if before.gross().is_some())
+        self.taking.before.last().is_some_and(|(before, _)| before.gross().is_some())
     }
 
     /// Springs over the slip annulus once springs stick again after gross slip, as far as a coarse run or this one tells; none where the error does not go by them.
     pub fn springs_to_stick_again(&self) -> Option<usize> {
-        match &self.taking {
-            Taking::Ahead(hand_over, _) if hand_over.expected && leaves_error_to_next(&self.model) => {
-                Some(hand_over.springs)
-            }
+        match self.taking.ahead.last() {
+            Some(next) if next.expected && leaves_error_to_next(&self.model) => Some(next.springs),
             _ => self.errs_by_springs_that_stick_again().then(|| self.model.springs()),
         }
     }
 
     /// Whether springs have come to stick again that none did before, so that the error goes by them.
     pub fn errs_by_springs_that_stick_again(&self) -> bool {
-        matches!(&self.taking, Taking::Done(before, _) if leaves_error_to_next(before))
+        self.taking.before.first().is_some_and(|(first, _)| leaves_error_to_next(first))
     }
 
     /// Springs of the mesh by which the error goes: that which followed an edge of stick, if one did, or on which springs stuck first.
     pub fn springs(&self) -> usize {
-        match &self.taking {
-            Taking::Done(before, _) if !leaves_error_to_next(before) => before.springs(),
-            _ => self.model.springs(),
-        }
+        let (first, _) = self.first();
+        if leaves_error_to_next(first) { self.model.springs() } else { first.springs() }
     }
 
-    /// Lets the other model take the run up where springs stick again or the last of them give way.
-    pub(super) fn hand_over(&mut self) {
-        if matches!(self.taking, Taking::Ahead(..)) && self.model.changes_over(&self.state) {
+    /// Lets the next model take the run up where springs stick again or the last of them give way.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where it has to and does not.
+    pub(super) fn hand_over(&mut self) -> Result<()> {
+        if !self.taking.ahead.is_empty() && self.model.changes_over(&self.state) {
             self.take_up();
+        }
+        match self.model.is_left_at(self.state.cycles) {
+            true => {
+                Err(self.stuck("no contact that slides as a whole has the ground that partial slip has worn"))
+            }
+            false => Ok(()),
         }
     }
 
@@ -131,12 +144,12 @@ impl Simulation {
 
     /// Lets the other model take the run up; whether there is one.
     pub(super) fn take_up(&mut self) -> bool {
-        let Taking::Ahead(hand_over, found) = &mut self.taking else { return false };
-        if let Found::Unasked = found {
+        let Some(hand_over) = self.taking.ahead.last() else { return false };
+        if let Found::Unasked = self.taking.next {
             let model = self.model.taken_up(hand_over.springs).ok().flatten();
-            *found = model.map_or(Found::Missing, |model| Found::Ready(Box::new(model)));
+            self.taking.next = model.map_or(Found::Missing, |model| Found::Ready(Box::new(model)));
         }
-        let Found::Ready(to) = found else { return false };
+        let Found::Ready(to) = &self.taking.next else { return false };
         let Some(state) = self.model.hand_over(&self.state, to) else { return false };
         let (model, tolerance) = ((**to).clone(), hand_over.tolerance);
         // The finer mesh holds modes that the polynomials over the whole contact do not. What is left in them decays in one implicit step; the shorter that is, the
@@ -149,9 +162,12 @@ impl Simulation {
         if self.model.takes_up_in_blocks() && !taken_up.leads_on() {
             return false;
         }
-        let let_go = self.model.gross().is_none().then(|| self.moment_of_loss());
-        let before = std::mem::replace(self, Self { let_go, ..taken_up });
-        self.taking = Taking::Done(Box::new(before.model), before.tolerance);
+        let breaks = self.model.gross().is_none() && !self.model.comes_to_gross_slip();
+        let let_go = breaks.then(|| self.moment_of_loss());
+        let mut before = std::mem::replace(self, Self { let_go, ..taken_up });
+        before.taking.ahead.pop();
+        before.taking.before.push((before.model, before.tolerance));
+        self.taking = Taking { next: Found::Unasked, ..before.taking };
         self.settles = settles;
         true
     }

@@ -1,6 +1,7 @@
 //! From gross slip to partial slip and back.
 //!
-//! On a rig the last springs that stick may give way: from there on the contact slides as a whole, and the mesh over all of it takes the compressions as they are.
+//! On a rig the last springs that stick may give way, and a block of gross slip may follow others. From there on the contact slides as a whole, and the mesh over all of it takes the compressions, of which it leaves out what is steeper than it
+//! carries.
 //!
 //! Under a held normal force springs next to the axis may stick again, and from there on the edge of stick is followed.
 //! Within the new edge `c` the ground is worn already. With `G = d - q_c` the height of the equivalent profile there and `G_0 = g_0(c)` that of the unworn one,
@@ -69,9 +70,29 @@ impl Model {
             }
             None => {
                 let gives_way = self.slides && self.moving().is_some_and(MovingStick::is_balanced);
-                gives_way && slides_on(self.contact(), self.schedule())
+                gives_way && slides_on(self.contact(), self.schedule()) || self.comes_to_gross_slip()
             }
         }
+    }
+
+    /// Whether a block of gross slip follows those in partial slip.
+    pub fn comes_to_gross_slip(&self) -> bool {
+        self.schedule.ends_with_gross_slip_at().is_some()
+    }
+
+    /// The contact and what acts on it in all blocks, those of gross slip that follow included.
+    pub fn under_all_blocks(&self) -> (&InitialContact, &Schedule) {
+        self.schedule.with_gross_slip().unwrap_or((self.contact(), self.schedule()))
+    }
+
+    /// Whether that block began before some time, cycles.
+    pub fn was_left_before(&self, cycles: f64) -> bool {
+        self.schedule.ends_with_gross_slip_at().is_some_and(|from| cycles > from)
+    }
+
+    /// Whether it is that block's time, which this model does not step through.
+    pub fn is_left_at(&self, cycles: f64) -> bool {
+        self.schedule.ends_with_gross_slip_at().is_some_and(|from| cycles >= from)
     }
 
     /// The same contact on the mesh that takes the run up, see [`Model::is_taken_up`]; none where none does.
@@ -84,7 +105,8 @@ impl Model {
         }
         let schedule = self.schedule();
         if self.gross().is_none() {
-            let model = Self::in_gross_slip(self.contact(), schedule.clone(), springs)?;
+            let (contact, schedule) = self.under_all_blocks();
+            let model = Self::in_gross_slip(contact, schedule.clone(), springs)?;
             let core = self.stick_zone.stick_area;
             return Ok(Some(model.shown_at(self.offsets().iter().map(|offset| offset + core).collect())));
         }
@@ -103,7 +125,7 @@ impl Model {
                 let may_come = gross.holds_force() || self.schedule.is_at_begin_of_block(state.cycles);
                 may_come && self.stick_zone_again(gross, state).is_some()
             }
-            None => self.loses_stick(state),
+            None => self.loses_stick(state) || self.is_left_at(state.cycles),
         }
     }
 
@@ -142,21 +164,30 @@ impl Model {
         }
     }
 
-    /// A state in which the last springs that stuck slide.
+    /// A state in which the springs slide that stuck, at an indentation that is held.
     fn let_go(&self, state: &State, to: &Self, gross: &Gross) -> Option<State> {
-        let stick = state.stick.as_ref()?;
+        let stick_area = state.stick.as_ref().map_or(self.stick_zone.stick_area, |stick| stick.area);
+        let raised =
+            |squared: f64| state.stick.as_ref().map_or(0.0, |stick| stick.ground_at_rest(squared)[0]);
         let (mesh, profile) = (&gross.mesh, self.contact.equivalent_profile());
-        let (area, held) = (stick.area + state.slip_area, self.contact.indentation());
+        let (area, held) = (stick_area + state.slip_area, self.contact.indentation());
         let mut all = state.compression.clone();
         all.push(0.0);
-        let compression_at = |fraction: &f64| {
+        // Of an unworn contact with the same edge: by it, what is filtered is no more than what wear has changed.
+        let unworn = |fraction: f64| profile.value(area.sqrt()) - profile.value((fraction * area).sqrt());
+        let changed = |fraction: f64| {
             let squared = fraction * area;
-            match squared < stick.area {
-                true => held - profile.value(squared.sqrt()) - stick.ground_at_rest(squared)[0],
-                false => self.between_springs(&all, (squared - stick.area) / state.slip_area),
-            }
+            let compression = match squared < stick_area {
+                true => held - profile.value(squared.sqrt()) - raised(squared),
+                false => self.between_springs(&all, (squared - stick_area) / state.slip_area),
+            };
+            compression - unworn(fraction)
         };
-        let compression: Vec<f64> = mesh.fractions()[..mesh.inner()].iter().map(compression_at).collect();
+        let mut compression = mesh.filtered(stick_area / area, changed).ok()?;
+        compression
+            .iter_mut()
+            .zip(mesh.fractions())
+            .for_each(|(value, fraction)| *value += unworn(*fraction));
         let whole = to.whole(gross, &to.surroundings(None), &compression)?;
         Some(State {
             slip_area: whole.area,
@@ -171,7 +202,8 @@ impl Model {
 
     /// A state in which springs stick again.
     fn stuck_again(&self, state: &State, to: &Self) -> Option<State> {
-        let (gross, moving) = (self.gross()?, to.moving()?);
+        // Polynomials may swing above what slips where nothing sticks in any block.
+        let (gross, moving) = (self.gross()?, to.moving().filter(|it| it.leaves_ground())?);
         let zone = self.stick_zone_again(gross, state)?;
         let (mesh, whole) = (&gross.mesh, self.whole(gross, &self.surroundings(None), &state.compression)?);
         let slip_area = whole.area - zone.stick_area;
