@@ -4,7 +4,7 @@ use super::{Coordinate, WholeContact};
 use crate::error::Result;
 use crate::numerics::quadrature::Rule;
 
-/// Order `p` and strength `α` of the filter `exp(-α (n/N)^p)` of the modes: of one of second order the volume is wrong, none lets negative values swing behind a fall.
+/// Order `p` and strength `α` of the filter `exp(-α (n/N)^p)` of the modes. A filter of second order changes the volume; without one values swing below zero behind a fall.
 const ORDER: i32 = 8;
 const STRENGTH: f64 = 8.0;
 
@@ -13,10 +13,10 @@ const PANELS: i32 = 14;
 const NARROWER: f64 = 0.3;
 
 impl WholeContact {
-    /// Values at the inner nodes of the polynomial that comes next to a function in the mean of squares over `y`, its highest modes filtered. Means stay, as that by which a volume goes:
+    /// Values at the inner nodes of the polynomial that is nearest to a function in the mean of squares over `y`, with its highest modes filtered. Means, such as that by which a volume goes, stay as they are;
     /// the function's own values at the nodes miss what lies between two of them.
     ///
-    /// The modes are `(1-y) P_n^(2,0)(2y-1)`, `P_n^(2,0)` Jacobi polynomials, which are orthogonal and zero at the edge, with squares of the mean `1/(2n+3)`.
+    /// The modes are `(1-y) P_n^(2,0)(2y-1)`, `P_n^(2,0)` Jacobi polynomials, which are orthogonal and zero at the edge; the means of their squares are `1/(2n+3)`.
     ///
     /// # Arguments
     /// * `steep` -- where it is steep, a fraction `ξ` of the area
@@ -68,4 +68,33 @@ fn modes(place: Coordinate) -> impl Iterator<Item = f64> {
     let first = ([0.0, place.h], 0.0);
     std::iter::successors(Some(first), move |(pair, n)| Some(([pair[1], following(pair, n + 1.0)], n + 1.0)))
         .map(|(pair, _)| pair[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is smooth stays; a fall keeps its mean, and what lies behind it swings by little.
+    #[test]
+    fn smooth_functions_and_means_stay() {
+        let mesh = WholeContact::new(0.0, 40).expect("a mesh");
+        let distance = |fraction: f64| mesh.coordinate(fraction).h;
+        let smooth = |fraction: f64| distance(fraction) * (1.0 + distance(fraction));
+        let kept = mesh.filtered(0.3, smooth).expect("a quadrature");
+        for (value, fraction) in kept.iter().zip(mesh.fractions()) {
+            assert!((value - smooth(*fraction)).abs() < 1e-9, "{value} at {fraction}");
+        }
+        let fall = mesh.filtered(0.3, |fraction| f64::from(u8::from(fraction < 0.3))).expect("a quadrature");
+        let mean = |values: &[f64]| {
+            let places = mesh.places_around(mesh.coordinate(0.3)).expect("a quadrature");
+            places
+                .iter()
+                .map(|(place, weight)| weight * place.h * mesh.value_inside(values, *place))
+                .sum::<f64>()
+        };
+        let end = 1.0 - distance(0.3);
+        assert!((mean(&fall) / (end - 0.5 * end * end) - 1.0).abs() < 1e-6, "{}", mean(&fall));
+        let least = fall.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(least > -0.1, "{least}");
+    }
 }

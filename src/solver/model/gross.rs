@@ -112,6 +112,7 @@ impl Gross {
         contact: &InitialContact,
         schedule: &Schedule,
     ) -> Result<Option<(InitialContact, Schedule)>> {
+        // Under a held normal force the contact grows, and springs may stick in a block that would have slid as a whole.
         if schedule.conditions().holds_normal_force || !is_followed_in_blocks(schedule) {
             return Ok(None);
         }
