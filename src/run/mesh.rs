@@ -94,20 +94,20 @@ pub(super) fn model(
         if let Some((partial, before)) = Gross::before(contact, schedule)? {
             let most = most_that_stick(contact);
             let bounds = [springs_in_gross_slip(contact, schedule, numerics.accuracy), most];
-            let model = on_annulus(&partial, &before, duration, numerics, (wanted, bounds), store)?;
+            let model = on_enough_springs(&partial, &before, duration, numerics, (wanted, bounds), store)?;
             if model.springs() <= most {
                 return Ok(model);
             }
         }
     }
-    on_annulus(contact, schedule, duration, numerics, (wanted, [FEWEST_SPRINGS, MOST_RAISED]), store)
+    on_enough_springs(contact, schedule, duration, numerics, (wanted, [FEWEST_SPRINGS, MOST_RAISED]), store)
 }
 
 /// The same on a mesh that begins at an edge of stick, or over the whole contact if all of it slides.
 ///
 /// # Arguments
 /// * `wanted`, `bounds` -- springs to begin with, where those for the accuracy are not given; and the fewest and most of these
-fn on_annulus(
+fn on_enough_springs(
     contact: &InitialContact,
     schedule: &Schedule,
     duration: Duration,

@@ -46,7 +46,7 @@ pub(super) struct Parts {
     pub limit: Option<LimitingShape>,
     /// Where the run leads to, where the contact is in gross slip, or may reach far beyond where it comes to.
     reach: Option<Reach>,
-    /// What comes of gross slip where springs may stick again.
+    /// The meshes that take the run up one after the other, where springs may stick again or a block of gross slip follows.
     pub hand_overs: Vec<HandOver>,
     /// As in [`Simulation::averaging_below`].
     pub most_swing: f64,
@@ -68,7 +68,7 @@ impl Parts {
         let mut parts = Self::on_any(scene, numerics, wanted, schedule, None, store)?;
         check_sliding(&parts.model)?;
         parts.limit = limit(&parts.model)?;
-        if parts.model.gross().is_some() || parts.model.comes_to_gross_slip() {
+        if parts.model.has_gross_slip() {
             rim::check_gross_slip(&parts.model, parts.plan.end)?;
             // Beyond its end nothing is known of a profile, to which a radius must not be rounded.
             let end = WITHIN_END * parts.model.contact().equivalent_profile().largest_radius();
@@ -79,8 +79,8 @@ impl Parts {
             let Reach { radius, sticks_again, worn } = reach;
             parts.reach = Some(reach);
             // Errors of the compressions are relative to all of them, those of a short run to what it wears.
-            let slides = parts.model.gross().is_some() && worn < SHORT;
-            if numerics.tolerance.is_none() && numerics.stepper == StepperChoice::Implicit && slides {
+            let is_short = parts.model.gross().is_some() && worn < SHORT;
+            if numerics.tolerance.is_none() && numerics.stepper == StepperChoice::Implicit && is_short {
                 parts.tolerance = (parts.tolerance * worn / SHORT).max(ROUND_OFF);
                 parts.stepper = stepper::implicit(&parts.model, parts.tolerance);
             }
@@ -290,7 +290,7 @@ pub(super) struct Known {
 
 impl Known {
     pub(super) fn of(parts: &Parts) -> Self {
-        Self { schedule: parts.model.schedule().whole().clone(), reach: parts.reach }
+        Self { schedule: parts.model.under_all_blocks().1.clone(), reach: parts.reach }
     }
 
     /// Before an attempt, where its schedule is not that of the scene alone.

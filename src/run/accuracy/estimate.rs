@@ -137,7 +137,7 @@ impl Coarsening {
             numerics,
             offsets: looked_at(model.offsets(), model),
             between: density(model),
-            schedule: substeps.is_none().then(|| model.schedule().whole().clone()),
+            schedule: substeps.is_none().then(|| model.under_all_blocks().1.clone()),
             substeps,
             averages: model.schedule().averages_from() == 0.0,
         }
@@ -227,9 +227,8 @@ fn are_curves(model: &Model) -> bool {
     let sampled = schedule.lifts() && !schedule.takes_steps();
     let moves = model.moving().is_some() && !model.bears_both_forces();
     let conditions = schedule.conditions();
-    let slides = model.gross().is_some() || model.comes_to_gross_slip();
     let is_steep = !conditions.mode.is_tangential() && conditions.wear.slip_exponent() < 1.0;
-    moves || sampled || is_steep || slides || schedule.changes_between_blocks()
+    moves || sampled || is_steep || model.has_gross_slip() || schedule.changes_between_blocks()
 }
 
 /// Radii at which companions are looked at for each that is compared.

@@ -123,12 +123,11 @@ impl Simulation {
         if !self.taking.ahead.is_empty() && self.model.changes_over(&self.state) {
             self.take_up();
         }
-        match self.model.is_left_at(self.state.cycles) {
-            true => {
-                Err(self.stuck("no contact that slides as a whole has the ground that partial slip has worn"))
-            }
-            false => Ok(()),
+        if self.model.is_left_at(self.state.cycles) {
+            let why = "no contact that slides as a whole has the ground that partial slip has worn";
+            return Err(self.stuck(why));
         }
+        Ok(())
     }
 
     /// Whether some first step leads on.

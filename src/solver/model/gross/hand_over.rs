@@ -80,6 +80,11 @@ impl Model {
         self.schedule.ends_with_gross_slip_at().is_some()
     }
 
+    /// Whether the contact is in gross slip, or comes to a block of it.
+    pub fn has_gross_slip(&self) -> bool {
+        self.gross().is_some() || self.comes_to_gross_slip()
+    }
+
     /// The contact and what acts on it in all blocks, those of gross slip that follow included.
     pub fn under_all_blocks(&self) -> (&InitialContact, &Schedule) {
         self.schedule.with_gross_slip().unwrap_or((self.contact(), self.schedule()))

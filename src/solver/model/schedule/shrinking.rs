@@ -5,22 +5,19 @@ use crate::laws::conditions::Conditions;
 use crate::laws::loading::{Block, TangentialControl, has_come};
 
 impl Schedule {
-    /// Whether blocks differ by the amplitude of a displacement alone, and none comes again.
-    pub(super) fn differ_by_displacement(&self) -> bool {
-        let Conditions { repeat, tangential_control, .. } = self.conditions;
-        let by_amplitude = self.changes_between_blocks() && !self.lifts_blocks() && self.keeps_friction();
-        by_amplitude && !repeat && tangential_control == TangentialControl::Displacement
-    }
-
     /// The block from which on springs never slip farther than before, where blocks differ by their amplitudes alone and do not recur; the first where every cycle is the same.
     fn first_of_shrinking(&self) -> Option<usize> {
         if self.is_steady() {
             return Some(0);
         }
-        let blocks = &self.conditions.blocks;
+        let Conditions { repeat, tangential_control, ref blocks, .. } = self.conditions;
+        let differ_by_amplitude =
+            self.changes_between_blocks() && !self.lifts_blocks() && self.keeps_friction();
+        let followed =
+            differ_by_amplitude && !repeat && tangential_control == TangentialControl::Displacement;
         let grows = |pair: &[Block]| pair[0].amplitude_factor < pair[1].amplitude_factor;
         let last_to_grow = blocks.windows(2).rposition(grows);
-        self.differ_by_displacement().then(|| last_to_grow.map_or(0, |before| before + 1))
+        followed.then(|| last_to_grow.map_or(0, |before| before + 1))
     }
 
     /// Whether a time, cycles, is that at which a block begins.

@@ -71,9 +71,4 @@ impl Schedule {
     pub fn with_gross_slip(&self) -> Option<(&InitialContact, &Self)> {
         self.then.as_ref().map(|then| (&then.contact, &then.schedule))
     }
-
-    /// What acts in all blocks, those of gross slip included.
-    pub fn whole(&self) -> &Self {
-        self.with_gross_slip().map_or(self, |(_, schedule)| schedule)
-    }
 }
