@@ -252,7 +252,7 @@ fn what_a_spring_that_slips_for_ever_repeats_is_found_by_newtons_method() {
 #[test]
 fn what_a_spring_that_jumps_in_each_period_repeats_is_that_of_four_hundred_periods() {
     let mut random = Seeded::new(53);
-    let (mut jump, mut passed) = (0, 0);
+    let (mut jump, mut passed, mut alternate) = (0, 0, 0);
     for run in 0..600 {
         let points = match run % 3 {
             0 => random.polygon(3 + run % 8, 1.0, 0.5).points,
@@ -275,25 +275,33 @@ fn what_a_spring_that_jumps_in_each_period_repeats_is_that_of_four_hundred_perio
         let mut out = SpringCycle::default();
         let once = Shakedown { max_periods: 0, ..Shakedown::default() };
         steady_cycle(&many, &law, M, compression, &once, &mut out);
-        let last = out.slip.len() - points.len();
-        let path = |slip: &[[f64; 2]]| slip.iter().map(|it| it[0].hypot(it[1])).sum::<f64>();
-        let [expected, got] = [path(&out.slip[last..]), path(&found.slip)];
         if found.periods == Shakedown::default().max_periods {
             // It repeats nothing.
             continue;
         }
-        assert!(
-            (expected - got).abs() < 1e-9,
-            "{run}: {got} for {expected}, {compression}, {law:?} {}",
-            found.periods
-        );
+        alternate += usize::from(found.alternates > 1);
+        let last = &out.slip[out.slip.len() - found.alternates * points.len()..];
+        for (i, got) in found.slip.iter().enumerate() {
+            for axis in [0, 1] {
+                let all = last.iter().skip(i).step_by(points.len()).map(|it| it[axis]);
+                let expected = all.sum::<f64>() / found.alternates as f64;
+                let off = (expected - got[axis]).abs();
+                assert!(
+                    off < 1e-9,
+                    "{run}, {i}: {got:?} for {expected}, {compression}, {law:?} {}",
+                    found.periods
+                );
+            }
+        }
+        let gone = (found.work - found.dissipation - found.jump_loss).abs();
+        assert!(gone < 1e-11 * found.work.abs().max(1.0), "{run}: {gone} of {}", found.work);
         if found.jump_loss > 0.0 {
             jump += 1;
             passed += found.substeps / points.len();
         }
     }
-    println!("{jump} springs, periods {passed}");
-    assert!(jump > 500 && passed < 12 * jump);
+    println!("{jump} springs, periods {passed}, {alternate} alternate");
+    assert!(jump > 500 && passed < 12 * jump && alternate > 0);
 }
 
 #[test]

@@ -47,6 +47,9 @@ const PLAIN_PERIODS: usize = 4;
 /// Change of the deflection over a period, over a jump from the static to the kinetic limit, below which a spring that jumps nearly repeats itself.
 const NEARLY: f64 = 0.01;
 
+/// Most periods after which a spring that jumps is seen to repeat itself: what it does in one period may alternate with what it does in the next.
+const MOST_ALTERNATING: usize = 32;
+
 /// Change of the deflection, over its limit, by which the slopes of a period are found.
 const DIFFERENCE: f64 = 1e-6;
 
@@ -93,6 +96,8 @@ pub struct SpringCycle {
     pub work: f64,
     /// Periods passed before the one that is recorded.
     pub periods: usize,
+    /// Periods after which the spring repeats itself; slip, deflection and energies are the mean of so many.
+    pub alternates: usize,
     /// Substeps passed until then, those of the one recorded and of the search for it included.
     pub substeps: usize,
     /// Limit of the deflection while slipping, at each corner, m.
@@ -104,6 +109,17 @@ impl SpringCycle {
         self.slip.clear();
         self.deflection.clear();
         (self.slip_path, self.dissipation, self.jump_loss, self.work) = (0.0, 0.0, 0.0, 0.0);
+    }
+
+    /// Adds a part of another cycle, of as many substeps.
+    fn add(&mut self, part: f64, other: &Self) {
+        for (own, others) in [(&mut self.slip, &other.slip), (&mut self.deflection, &other.deflection)] {
+            own.resize(others.len(), [0.0; 2]);
+            own.iter_mut().zip(others).for_each(|(own, value)| *own = sum(*own, scaled(part, *value)));
+        }
+        self.dissipation += part * other.dissipation;
+        self.jump_loss += part * other.jump_loss;
+        self.work += part * other.work;
     }
 
     /// Adds a substep; energies still over the tangential stiffness.
@@ -204,7 +220,7 @@ pub fn steady_cycle(
                 work += passed.work;
             });
         (out.dissipation, out.work, out.jump_loss) = (dissipation, work, 0.0);
-        (out.periods, out.substeps) = (1, 2 * count);
+        (out.periods, out.substeps, out.alternates) = (1, 2 * count, 1);
         out.finish(stiffness_ratio, slip_path, negligible(loaded));
         return;
     }
@@ -216,13 +232,14 @@ pub fn steady_cycle(
     }
     let limits = std::mem::take(&mut out.limit);
     let count = path.points.len();
-    (out.periods, out.substeps) = (0, 0);
+    (out.periods, out.substeps, out.alternates) = (0, 0, 1);
     if shakedown.slipped {
         out.clear();
         general_period(path, &limits, count, compression, &mut spring, 1.0, out);
     }
     let mut last_change = f64::INFINITY;
     let (mut found_at, mut strays) = (None, false);
+    let mut ends = Ends::default();
     loop {
         let before = spring;
         out.clear();
@@ -238,6 +255,25 @@ pub fn steady_cycle(
             break;
         }
         out.periods += 1;
+        if static_factor != 1.0 {
+            if let Some(count) = ends.since(&spring, PERIODIC * largest_limit) {
+                let (slip_path, loaded) = mean_of(count, out, |out| {
+                    general_period(
+                        path,
+                        &limits,
+                        path.points.len(),
+                        compression,
+                        &mut spring,
+                        static_factor,
+                        out,
+                    )
+                });
+                out.finish(stiffness_ratio, slip_path, negligible(loaded));
+                out.alternates = count;
+                break;
+            }
+            ends.push(spring);
+        }
         // Where the path is a smooth map of the deflection onto the one a period later, Newton's method finds what repeats itself; from
         // any other deflection the spring comes to rest at the same.
         let waits = out.periods < PLAIN_PERIODS || !out.periods.is_multiple_of(2);
@@ -264,9 +300,54 @@ pub fn steady_cycle(
         {
             spring.deflection = found;
             found_at = Some(change);
+            ends = Ends::default();
         }
     }
     out.limit = limits;
+}
+
+/// How a spring that jumps ended the last periods.
+#[derive(Default)]
+struct Ends {
+    /// The last is at `count - 1`, modulo as many as there are.
+    springs: [Spring; MOST_ALTERNATING],
+    count: usize,
+}
+
+impl Ends {
+    fn push(&mut self, spring: Spring) {
+        self.springs[self.count % MOST_ALTERNATING] = spring;
+        self.count += 1;
+    }
+
+    /// How many periods ago it ended one like this, to `within` in its deflection, m.
+    fn since(&self, spring: &Spring, within: f64) -> Option<usize> {
+        (2..=self.count.min(MOST_ALTERNATING)).find(|periods| {
+            let before = &self.springs[(self.count - periods) % MOST_ALTERNATING];
+            before.sliding == spring.sliding
+                && length(difference(before.deflection, spring.deflection)) <= within
+        })
+    }
+}
+
+/// The mean of some periods that follow one another: lengths of the slip and of the path while loaded, m.
+fn mean_of(
+    periods: usize,
+    out: &mut SpringCycle,
+    mut pass: impl FnMut(&mut SpringCycle) -> (f64, f64),
+) -> (f64, f64) {
+    let part = (periods as f64).recip();
+    let mut mean = SpringCycle::default();
+    let (mut slip_path, mut loaded) = (0.0, 0.0);
+    for _ in 0..periods {
+        out.clear();
+        let (slipped, moved) = pass(out);
+        (slip_path, loaded) = (slip_path + part * slipped, loaded + part * moved);
+        mean.add(part, out);
+    }
+    out.clear();
+    out.add(1.0, &mean);
+    (slip_path, loaded)
 }
 
 /// [`steady_cycle`] of a spring in a contact of which those below some compression have slipped before: where it sticks from rest, it may go on to slip.

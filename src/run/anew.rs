@@ -161,9 +161,14 @@ impl Attempts<'_> {
         self.stepping.first().0.springs()
     }
 
-    /// What follows on an attempt that its companions tell would take too long, after so much work.
+    /// What follows on an attempt that its companions tell would take too long, after so much work: nothing where those on fewer springs found no end.
     fn instead_of_too_long(&self, work: u64) -> Vec<Anew> {
-        self.coarser(self.recorder.attempt.refinements, work, self.recorder.is_far_too_long())
+        let attempt = self.recorder.attempt;
+        let fewer_find_none = attempt.refinements > 0 && !attempt.has_end();
+        if fewer_find_none && !attempt.is_last_resort() {
+            return vec![];
+        }
+        self.coarser(attempt.refinements, work, self.recorder.is_far_too_long())
     }
 
     /// What follows on one that took too long.

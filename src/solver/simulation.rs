@@ -29,10 +29,10 @@ const CERTAIN_WEAR: f64 = 0.5;
 /// zone, the edge of stick is followed in ever smaller steps.
 const MOST_REJECTED: u64 = 4000;
 
-/// Rejected steps in which the cycles done have to grow by a part of themselves where the contact lifts within each period: runs that were stuck there grew by 1e-9 to 1e-4, and went on so until they were
-/// given up. Elsewhere stick may be lost in a finite time, next to which steps are as small.
-const REJECTED_AT_ONCE: u64 = 200;
-const LEAST_GROWTH: f64 = 1e-4;
+/// Rejected steps after each of which it is seen, where the contact lifts within each period, whether the run would be given up before its end at the pace of the last of them, and the part of the cycles
+/// done that these steps took at most. Elsewhere stick may be lost in a finite time, next to which steps are as small.
+const REJECTED_AT_ONCE: u64 = 50;
+const CRAWLS: f64 = 0.05;
 
 /// Dimensionless time at which a run ends that would last until its rate has fallen, where wear goes on without end.
 const SHOWN_UNENDING: f64 = 1.0;
@@ -559,7 +559,7 @@ impl Simulation {
         let rejected = self.progress.rejected_steps;
         let mut is_stuck = rejected > MOST_REJECTED && self.progress.rejects_many();
         if self.model.schedule().lifts() && rejected.is_multiple_of(REJECTED_AT_ONCE) {
-            is_stuck |= self.state.cycles <= (1.0 + LEAST_GROWTH) * self.progress.rejected_at;
+            is_stuck |= self.crawls();
             self.progress.rejected_at = self.state.cycles;
         }
         if is_stuck {
@@ -572,6 +572,18 @@ impl Simulation {
             }
         }
         Ok(flow)
+    }
+
+    /// Whether the steps since the last look are so short that more of them would be rejected than is allowed before the end of the run, or before it has lasted twice as long where a rate ends it.
+    fn crawls(&self) -> bool {
+        let now = self.state.cycles;
+        let passed = now - self.progress.rejected_at;
+        let left = match self.plan.end {
+            End::Cycles(end) => end - now,
+            End::Rate(_) => now,
+        };
+        let at_this_pace = passed * (MOST_REJECTED / REJECTED_AT_ONCE) as f64;
+        passed <= CRAWLS * now && at_this_pace < left
     }
 
     /// Accepts a state if wear can lead to it.
