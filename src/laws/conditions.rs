@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use crate::laws::friction::{Coulomb, FrictionLaw};
 use crate::laws::history::History;
-use crate::laws::loading::{Block, Clock, TangentialControl};
+use crate::laws::loading::{Block, Clock, TangentialControl, has_come};
 use crate::laws::motion::{Mode, Tangential, ToAndFro};
 use crate::laws::wear::{Archard, WearLaw};
 
@@ -171,6 +171,26 @@ impl Conditions {
             given(self.holds_normal_force, Self::HELD_FORCES[1]),
         ];
         departures.into_iter().flatten().collect()
+    }
+
+    /// The same without the blocks that begin no earlier than at some time, in the unit of their clock; all of them where nothing moves before.
+    pub fn until(&self, time: f64) -> Self {
+        let mut end = 0.0;
+        let begun = self.blocks.iter().take_while(|block| {
+            let begins = !has_come(time, end);
+            end += block.duration;
+            begins
+        });
+        let blocks: Vec<Block> = begun.copied().collect();
+        if blocks.iter().all(|block| block.amplitude_factor == 0.0) {
+            return self.clone();
+        }
+        let repeat = self.repeat && blocks.len() == self.blocks.len() && !has_come(time, end);
+        let is_whole = |block: &Block| [block.amplitude_factor, block.indentation_factor] == [1.0; 2];
+        match blocks[..] {
+            [ref only] if is_whole(only) => Self { blocks: vec![], repeat: false, ..self.clone() },
+            _ => Self { blocks, repeat, ..self.clone() },
+        }
     }
 
     /// Takes a motion that differs by no more than a part from one to and fro along a line for that; none where it differs by more, or is one already.

@@ -166,3 +166,16 @@ pub enum Clock {
     /// The dimensionless time `τ`.
     Tau,
 }
+
+impl Clock {
+    /// How much of the unit passes in one cycle.
+    ///
+    /// # Arguments
+    /// * `tau_per_cycle` -- dimensionless time of one cycle
+    pub fn per_cycle(self, tau_per_cycle: f64) -> f64 {
+        match self {
+            Self::Cycles => 1.0,
+            Self::Tau => tau_per_cycle,
+        }
+    }
+}

@@ -261,14 +261,17 @@ impl Parts {
     }
 }
 
-/// What acts on a contact, for the steps of some numerics.
-fn schedule(scene: &Scene, contact: &InitialContact, numerics: &Numerics) -> Result<Schedule> {
-    let schedule = Schedule::new(contact, scene.conditions(), resolution(scene, numerics))?;
+/// What acts on a contact as far as it is asked for, for the steps of some numerics.
+pub(super) fn schedule(scene: &Scene, contact: &InitialContact, numerics: &Numerics) -> Result<Schedule> {
+    let span = scene.loading().duration.span(contact.tau_per_cycle())?;
+    let asked = span.map_or(f64::INFINITY, |[cycles, _]| cycles);
+    let all = scene.conditions();
+    let conditions = all.until(asked * all.clock.per_cycle(contact.tau_per_cycle()));
+    let schedule = Schedule::new(contact, &conditions, resolution(scene, numerics))?;
     if numerics.stepper != StepperChoice::Implicit {
         return Ok(schedule.for_explicit_steps());
     }
-    let span = scene.loading().duration.span(contact.tau_per_cycle())?;
-    Ok(schedule.asked_until(span.map_or(f64::INFINITY, |[cycles, _]| cycles)))
+    Ok(schedule.asked_until(asked))
 }
 
 /// The limit in closed form, where there is one.

@@ -1,6 +1,6 @@
 //! What the substeps of a period leave out.
 
-use super::super::parts::resolution;
+use super::super::parts::schedule;
 use crate::contact::InitialContact;
 use crate::contact::closed_form::LimitingShape;
 use crate::numerics::curve::distance_from_curve;
@@ -72,7 +72,7 @@ impl Unsampled {
         let contact = scene.contact().ok()?;
         let points = model.schedule().loop_steps(1);
         let finer = Numerics { substeps: Some(finer_than(model.schedule()) * points), ..*numerics };
-        let finer = Schedule::new(&contact, scene.conditions(), resolution(scene, &finer)).ok()?;
+        let finer = schedule(scene, &contact, &finer).ok()?;
         let volume = |contact: &InitialContact| {
             let limit = LimitingShape::from_contact(contact).ok().flatten()?;
             Some(limit.wear_volume())

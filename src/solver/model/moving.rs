@@ -207,6 +207,11 @@ impl MovingStick {
         matches!(self.cause, Cause::NormalForce(_))
     }
 
+    /// Whether the edge moves between blocks only.
+    pub(super) fn jumps_between_blocks(&self) -> bool {
+        self.jumps
+    }
+
     /// Whether the edge stays where it is during a step.
     fn rests(&self) -> bool {
         self.jumps || self.deepens()

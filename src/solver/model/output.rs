@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use super::{CycleFields, Fields, HIDDEN, Model, State, StickEdge};
+use super::{CycleFields, Fields, HIDDEN, Model, MovingStick, State, StickEdge};
 use crate::contact::slip_depth::{UnwornSlip, UnwornValues};
 use crate::contact::stick_slip::Regime;
 use crate::numerics::grid::{Local, Mesh};
@@ -79,10 +79,12 @@ impl Model {
         self.volume(fields.slip_area, &fields.wear_depth)
     }
 
-    /// Worn volume in a state, m³: where the edge of stick has left worn ground behind, by the rates of the cycles.
+    /// Worn volume in a state, m³: where the edge of stick has left worn ground behind, or jumps over it, by the rates of the cycles. The wall where slip has ended lies between springs after a jump
+    /// inwards, and no quadrature over them sees where.
     pub fn worn_volume(&self, state: &State, fields: &Fields) -> f64 {
+        let jumps = self.moving().is_some_and(MovingStick::jumps_between_blocks);
         match &state.stick {
-            Some(stick) if !stick.wear_depth.is_empty() => state.volume_by_rate,
+            Some(stick) if jumps || !stick.wear_depth.is_empty() => state.volume_by_rate,
             _ => self.wear_volume(fields),
         }
     }

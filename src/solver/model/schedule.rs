@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::laws::conditions::Conditions;
 use crate::laws::friction::FrictionLaw;
 use crate::laws::history::History;
-use crate::laws::loading::{Block, Clock, TangentialControl, has_come};
+use crate::laws::loading::{Block, TangentialControl, has_come};
 use crate::laws::motion::SampledPath;
 use crate::laws::path::Path;
 use crate::laws::wear::WearLaw;
@@ -227,10 +227,7 @@ impl Schedule {
     pub fn new(contact: &InitialContact, conditions: &Conditions, resolution: Resolution) -> Result<Self> {
         let whole = Block { duration: f64::INFINITY, amplitude_factor: 1.0, indentation_factor: 1.0 };
         let blocks = if conditions.blocks.is_empty() { vec![whole] } else { conditions.blocks.clone() };
-        let clock_rate = match conditions.clock {
-            Clock::Cycles => 1.0,
-            Clock::Tau => contact.tau_per_cycle(),
-        };
+        let clock_rate = conditions.clock.per_cycle(contact.tau_per_cycle());
         let mut end = 0.0;
         let ends = conditions.blocks.iter().map(|block| {
             end += block.duration / clock_rate;

@@ -97,19 +97,23 @@ impl MovingStick {
         if in_blocks || falls && rises {
             let amplitudes: Vec<f64> = schedule.amplitude_factors().collect();
             let shrink = !amplitudes.is_sorted();
-            // Where some shrink and the last slip farthest, the mesh from where the edge is innermost tells the profile better.
+            let rests = rests_on_worn_ground(schedule, contact);
+            // Where it comes to rest on worn ground after one that slips farther than the first, an edge that turns takes less work.
             let jumps = match shrink {
-                true => amplitudes.iter().all(|factor| *factor <= amplitudes[0]),
+                true => {
+                    !rests && schedule.follows_jumps()
+                        || amplitudes.iter().all(|factor| *factor <= amplitudes[0])
+                }
                 false => schedule.follows_jumps(),
             };
             // What has slipped may go on to although the amplitude falls.
-            let stays = || shrink && remembers && !rests_on_worn_ground(schedule, contact);
+            let stays = || shrink && remembers && !rests;
             if level && jumps && !changes && !conditions.repeat && !stays() {
                 return Ok(Some(Self { outwards: shrink, jumps: true, ..by }));
             }
             // Beside friction that changes an edge that is followed finds no step on from some time on, on many springs, where a block lifts the indenter.
             let follows = level || !changes && !schedule.lifts();
-            return Ok((follows && rests_on_worn_ground(schedule, contact)).then_some(turning));
+            return Ok((follows && rests).then_some(turning));
         }
         Ok(changes.then_some(Self { outwards: rises, ..by }))
     }

@@ -13,6 +13,11 @@ const JUMP_STEPS: usize = 1000;
 /// Of how many of these places one is kept for the cubics of an edge that may turn.
 const SMOOTHED: usize = 25;
 
+/// Parts of a squared radius around which the balance of forces on the springs is looked for: the least, by how much the next is larger, and the largest.
+const NEXT_TO: f64 = 1e-6;
+const WIDER: f64 = 8.0;
+const FARTHEST: f64 = 0.1;
+
 /// Squared radii and compressions that differ by less than this part are the same by two ways.
 const SAME_PLACE: f64 = 1e-12;
 
@@ -126,8 +131,6 @@ impl Model {
         if driven.is_some_and(|compression| (compression / before - 1.0).abs() < SAME_PLACE) {
             return Ok(state);
         }
-        let profile = self.contact.equivalent_profile();
-        let exponent = 1.0 + profile.grading();
         let mut on_springs = state.compression.clone();
         on_springs.push(0.0);
         let (old, slip_area) = (stick.area, state.slip_area);
@@ -141,9 +144,9 @@ impl Model {
             stick,
         };
         let [least, most] = [self.stick_zone.stick_area, old + slip_area];
-        let compression = match driven {
-            Some(compression) => compression,
-            None => ground.compression(self.edge_in_balance(&ground, &loading, [least, most], &state)?),
+        let Some(compression) = driven else {
+            let area = self.edge_in_balance(&ground, &loading, [least, most], &state)?;
+            return Ok(self.begun_in_balance(&ground, &loading, area, &state));
         };
         let excess = |squared: f64| ground.compression(squared) - compression;
         let new = match compression {
@@ -151,6 +154,48 @@ impl Model {
             _ if excess(least) <= 0.0 => least,
             _ => bracketed(excess, least, old, 0.0)?,
         };
+        Ok(self.begun_at(&ground, new, compression, &state))
+    }
+
+    /// The state with the edge of stick where tangential forces balance on the springs of the mesh that begins there: next to worn ground that is steeper than springs are apart, the profile between
+    /// those before tells it roughly.
+    ///
+    /// # Arguments
+    /// * `guess` -- squared radius, m²
+    fn begun_in_balance(&self, ground: &Ground, loading: &CycleLoading, guess: f64, state: &State) -> State {
+        let begun = |area: f64| self.begun_at(ground, area, ground.compression(area), state);
+        let excess = |area: f64| {
+            let next = begun(area);
+            let displaced = self.displaced(loading.clone(), ground.compression(area));
+            let amplitude = displaced.amplitude;
+            loading
+                .excess(self.force(&displaced, &next.compression, &self.fields(&next), amplitude), amplitude)
+        };
+        // Springs that come to steep ground bend it.
+        let [least, most] = [self.stick_zone.stick_area, ground.stick_area + ground.slip_area];
+        let mut part = NEXT_TO;
+        let around = loop {
+            let ends = [(1.0 - part) * guess, (1.0 + part) * guess].map(|area| area.clamp(least, most));
+            let [below, above] = ends.map(excess);
+            if below * above <= 0.0 {
+                break Some(ends);
+            }
+            if part > FARTHEST {
+                break None;
+            }
+            part *= WIDER;
+        };
+        let found = around.and_then(|[low, high]| bracketed(excess, low, high, 0.0).ok());
+        begun(found.unwrap_or(guess))
+    }
+
+    /// The state with the edge of stick at a squared radius, m², where the compression is that of slip, m.
+    fn begun_at(&self, ground: &Ground, new: f64, compression: f64, state: &State) -> State {
+        let (stick, indentation) = (ground.stick, ground.indentation);
+        let (old, slip_area) = (ground.stick_area, ground.slip_area);
+        let moving = self.moving().expect("the edge of stick moves");
+        let profile = self.contact.equivalent_profile();
+        let exponent = 1.0 + profile.grading();
         let (mut left_behind, mut load) = (stick.left_behind.clone(), stick.load);
         let (mut places_at_rest, mut raised_at_rest) =
             (stick.places_at_rest.clone(), stick.raised_at_rest.clone());
@@ -200,10 +245,10 @@ impl Model {
             }
         }
         let next = StickZone { stick_area: new, slip_compression: compression, stick_load: load };
-        let (mut fields, moved_area) = (self.fields(&state), slip_area - (new - old));
+        let (mut fields, moved_area) = (self.fields(state), slip_area - (new - old));
         // Slip is what is carried over: small numbers next to the edge of stick, where compressions differ by little.
-        let (slip_area, moved) = if new < old && stick.places_at_rest.is_empty() {
-            self.on_unworn_ground(&next, &fields, moved_area)
+        let (slip_area, moved) = if new < old && places_at_rest.is_empty() {
+            self.on_unworn_ground(&next, &fields, stick, moved_area)
         } else {
             self.evaluate_at(&next, moved_area, &state.compression, &mut fields);
             let nodes = &self.annulus().operators.abel.nodes()[1..];
@@ -237,25 +282,33 @@ impl Model {
                 slip_compression: moving.kept(compression),
                 rates: [0.0; 3],
             }),
-            ..state
+            ..state.clone()
         };
-        Ok(if moving.in_blocks { self.close_force(next) } else { next })
+        if moving.in_blocks { self.close_force(next) } else { next }
     }
 
     /// Slip area, m², and compressions, m, of a mesh that begins anew within unworn ground: the depth worn at each place stays,
     ///
     /// ```text
-    /// S = S_0 + w
+    /// S = S_0 + w,    w = S' - S_0' + Σ Δh Φ
     /// ```
     ///
+    /// with slip as it was on the mesh before, and steps `Δh` of the equivalent profile on the ground that came to rest within that.
+    ///
     /// # Arguments
-    /// * `fields` -- of the mesh before
+    /// * `fields`, `stick` -- of the mesh before
     /// * `guess` -- slip area of the contact edge before
-    fn on_unworn_ground(&self, next: &StickZone, fields: &Fields, guess: f64) -> (f64, Vec<f64>) {
+    fn on_unworn_ground(
+        &self,
+        next: &StickZone,
+        fields: &Fields,
+        stick: &StickEdge,
+        guess: f64,
+    ) -> (f64, Vec<f64>) {
         let before = &fields.stick_zone;
         let nodes = &self.annulus().operators.abel.nodes()[1..];
-        let worn = |z: f64| {
-            let from = next.stick_area - before.stick_area + z;
+        let on_springs = |squared: f64| {
+            let from = squared - before.stick_area;
             let x = from / fields.slip_area;
             if x <= 0.0 || x >= 1.0 {
                 return 0.0;
@@ -264,10 +317,31 @@ impl Model {
             // Within the first cell slip may have grown by any factor, which no polynomial extrapolates.
             unworn * self.between_springs(&fields.log_slip, x.max(nodes[0])).exp_m1()
         };
-        let slip =
-            |slip_area: f64| move |i: usize, unworn: &UnwornValues| unworn.slip + worn(slip_area * nodes[i]);
-        let slip_area = next_to(|slip_area| self.mismatch_at(next, slip_area, slip(slip_area)), guess);
-        (slip_area, self.compression_at(next, slip_area, slip(slip_area)))
+        let at_slip_area = |slip_area: f64| {
+            let places: Vec<f64> = nodes.iter().map(|x| next.stick_area + slip_area * x).collect();
+            let mut worn: Vec<f64> = places.iter().map(|squared| on_springs(*squared)).collect();
+            self.add_worn_at_rest(stick, &places, &mut worn);
+            worn
+        };
+        let with = |worn: Vec<f64>| move |i: usize, unworn: &UnwornValues| unworn.slip + worn[i];
+        let slip_area =
+            next_to(|slip_area| self.mismatch_at(next, slip_area, with(at_slip_area(slip_area))), guess);
+        (slip_area, self.compression_at(next, slip_area, with(at_slip_area(slip_area))))
+    }
+
+    /// Adds the depth worn, m, of which the ground that came to rest within the edge of stick tells, at squared radii, m², that increase.
+    fn add_worn_at_rest(&self, stick: &StickEdge, squared: &[f64], worn: &mut [f64]) {
+        let steps = stick.places_at_rest.windows(2).zip(stick.raised_at_rest.windows(2));
+        let mut uniform = vec![0.0; squared.len()];
+        for (ends, heights) in steps {
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let within = squared.partition_point(|it| *it <= middle);
+            let beyond = &squared[within..];
+            let uniform = &mut uniform[within..];
+            self.annulus().unworn.fill_uniform_at_stick(middle, |i| beyond[i] - middle, uniform);
+            let rise = heights[1] - heights[0];
+            worn[within..].iter_mut().zip(uniform).for_each(|(worn, uniform)| *worn += rise * *uniform);
+        }
     }
 
     /// Squared radius, m², at which stick ends where a balance of tangential forces begins anew on the profile as it is.
