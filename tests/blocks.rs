@@ -345,14 +345,14 @@ fn blocks_that_never_begin_are_left_out() {
     assert_eq!(alone.error_estimate(), before.error_estimate());
 }
 
-/// The wall that a long block leaves where its slip ends lay amid the cells of a mesh made for the larger one: on 56 to 560 springs volumes were 2e-3 to 9e-3 of the limit off.
+/// The wall that a long block leaves where its slip ends lay amid the cells of a mesh made for the larger one: volumes were 2.7e-3 to 3.5e-2 of the limit off, 5.7e-2 on 60 springs, and told with as little as 2e-3.
 #[test]
 fn a_long_block_before_a_larger_one_wears_as_if_it_were_alone() {
     for (exponent, grading, ratio) in [(2.0, 0.0, 0.7), (3.0, -0.4, 0.4), (2.0, 0.0, 0.4), (2.0, -0.4, 0.7)] {
         let of = |lasting, numerics: &str| long_blocks(exponent, grading, ratio, lasting, numerics);
         let alone = of(None, "accuracy = 1e-6");
         let wanted = [1e-2, 1e-3, 1e-4].map(|accuracy| (format!("accuracy = {accuracy:e}"), accuracy));
-        for (numerics, most) in wanted.into_iter().chain([("springs = 60".to_owned(), 1e-3)]) {
+        for (numerics, most) in wanted.into_iter().chain([("springs = 60".to_owned(), 2e-3)]) {
             // Those after the first last for a moment: what they wear is nothing, but the mesh has to carry them.
             let run = of(Some(("tau", [10.0 - 2e-7, 1e-7, 1e-7])), &numerics);
             let off = volume_off(&run, &alone);
@@ -380,4 +380,32 @@ fn blocks_that_shrink_and_grow_converge_over_springs() {
     let [few, many, most] = [60, 120, 240].map(on);
     println!("{:e} {:e}", few / most - 1.0, many / most - 1.0);
     assert!((few / most - 1.0).abs() < 2e-3 && (many / most - 1.0).abs() < 5e-4);
+}
+
+/// After long wear the ground at the edge of stick is as steep as springs are apart: where blocks recur, it has to come to where the springs of its own mesh balance the force. No step led on from there, and such runs were told with an error of 1.
+#[test]
+fn recurring_blocks_under_a_held_tangential_force_go_on_from_steep_ground() {
+    let of = |repeat: bool| {
+        let passes = if repeat { 1 } else { 2 };
+        let pass = [(0.5, 1.0), (2.0, 1.235), (10.0, 1.08)]
+            .map(|(tau, factor)| format!("[[loading.blocks]]\ntau = {tau}\namplitude_factor = {factor}\n"))
+            .concat();
+        let text = format!(
+            "[indenter.paraboloid]\nradius = 0.01\n[half_space]\ngrading = -0.3\nnormal_stiffness = 3e10\nstiffness_ratio = 0.85\n\
+             [friction.coulomb]\ncoefficient = 0.5\n[wear.archard]\ncoefficient = 1e-14\n\
+             [loading]\ninitial_force = 10\namplitude_ratio = 0.45\ntau = 21.25\ntangential_control = \"force\"\nrepeat = {repeat}\n{}\
+             [numerics]\naccuracy = 1e-2\n",
+            pass.repeat(passes)
+        );
+        Scene::from_toml(&text, "recurring.toml").unwrap().simulate().unwrap()
+    };
+    let runs = [true, false].map(of);
+    let [recurring, written_out] = runs.each_ref().map(|it| it.last().wear_volume);
+    println!(
+        "{:e} apart, told {:?}",
+        recurring / written_out - 1.0,
+        runs.each_ref().map(Results::error_estimate)
+    );
+    assert!(runs.iter().all(|it| it.error_estimate().is_some_and(|error| error < 1e-2)));
+    assert!((recurring / written_out - 1.0).abs() < 1e-3);
 }

@@ -247,7 +247,9 @@ impl Model {
         let next = StickZone { stick_area: new, slip_compression: compression, stick_load: load };
         let (mut fields, moved_area) = (self.fields(state), slip_area - (new - old));
         // Slip is what is carried over: small numbers next to the edge of stick, where compressions differ by little.
-        let (slip_area, moved) = if new < old && places_at_rest.is_empty() {
+        // Ground at rest of which few places are kept tells depths worse than the springs do.
+        let tells_depth = stick.places_at_rest.is_empty() || moving.jumps && places_at_rest.is_empty();
+        let (slip_area, moved) = if new < old && tells_depth {
             self.on_unworn_ground(&next, &fields, stick, moved_area)
         } else {
             self.evaluate_at(&next, moved_area, &state.compression, &mut fields);
