@@ -256,20 +256,12 @@ pub fn steady_cycle(
         }
         out.periods += 1;
         if static_factor != 1.0 {
-            if let Some(count) = ends.since(&spring, PERIODIC * largest_limit) {
-                let (slip_path, loaded) = mean_of(count, out, |out| {
-                    general_period(
-                        path,
-                        &limits,
-                        path.points.len(),
-                        compression,
-                        &mut spring,
-                        static_factor,
-                        out,
-                    )
+            if let Some(periods) = ends.since(&spring, PERIODIC * largest_limit) {
+                let (slip_path, loaded) = mean_of(periods, out, |out| {
+                    general_period(path, &limits, count, compression, &mut spring, static_factor, out)
                 });
                 out.finish(stiffness_ratio, slip_path, negligible(loaded));
-                out.alternates = count;
+                out.alternates = periods;
                 break;
             }
             ends.push(spring);

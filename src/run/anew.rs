@@ -165,7 +165,7 @@ impl Attempts<'_> {
     fn instead_of_too_long(&self, work: u64) -> Vec<Anew> {
         let attempt = self.recorder.attempt;
         let fewer_find_none = attempt.refinements > 0 && !attempt.has_end();
-        if fewer_find_none && !attempt.is_last_resort() {
+        if fewer_find_none {
             return vec![];
         }
         self.coarser(attempt.refinements, work, self.recorder.is_far_too_long())

@@ -143,10 +143,10 @@ impl Model {
             before,
             stick,
         };
-        let [least, most] = [self.stick_zone.stick_area, old + slip_area];
+        let bounds @ [least, most] = [self.stick_zone.stick_area, old + slip_area];
         let Some(compression) = driven else {
-            let area = self.edge_in_balance(&ground, &loading, [least, most], &state)?;
-            return Ok(self.begun_in_balance(&ground, &loading, area, &state));
+            let area = self.edge_in_balance(&ground, &loading, bounds, &state)?;
+            return Ok(self.begun_in_balance(&ground, &loading, area, bounds, &state));
         };
         let excess = |squared: f64| ground.compression(squared) - compression;
         let new = match compression {
@@ -162,7 +162,15 @@ impl Model {
     ///
     /// # Arguments
     /// * `guess` -- squared radius, m²
-    fn begun_in_balance(&self, ground: &Ground, loading: &CycleLoading, guess: f64, state: &State) -> State {
+    /// * `least`, `most` -- its bounds
+    fn begun_in_balance(
+        &self,
+        ground: &Ground,
+        loading: &CycleLoading,
+        guess: f64,
+        [least, most]: [f64; 2],
+        state: &State,
+    ) -> State {
         let begun = |area: f64| self.begun_at(ground, area, ground.compression(area), state);
         let excess = |area: f64| {
             let next = begun(area);
@@ -172,7 +180,6 @@ impl Model {
                 .excess(self.force(&displaced, &next.compression, &self.fields(&next), amplitude), amplitude)
         };
         // Springs that come to steep ground bend it.
-        let [least, most] = [self.stick_zone.stick_area, ground.stick_area + ground.slip_area];
         let mut part = NEXT_TO;
         let around = loop {
             let ends = [(1.0 - part) * guess, (1.0 + part) * guess].map(|area| area.clamp(least, most));
@@ -214,14 +221,9 @@ impl Model {
         let sign = if new > old { 1.0 } else { -1.0 };
         let raised: Vec<f64> = places.iter().map(|place| ground.raised(*place)).collect();
         let stations: Vec<f64> = moving.stations().collect();
-        let mut uniform = vec![0.0; stations.len()];
-        for (ends, heights) in places.windows(2).zip(raised.windows(2)) {
+        self.add_of_steps([&places, &raised], -sign, &stations, &mut left_behind);
+        for ends in places.windows(2) {
             let middle = 0.5 * (ends[0] + ends[1]);
-            let rise = sign * (heights[1] - heights[0]);
-            if rise != 0.0 {
-                self.annulus().unworn.fill_uniform_at_stick(middle, |i| stations[i] - middle, &mut uniform);
-                left_behind.iter_mut().zip(&uniform).for_each(|(value, uniform)| *value -= rise * uniform);
-            }
             let borne = ground.compression(middle) * middle.powf(0.5 * (exponent - 2.0));
             load += sign * 0.5 * (ends[1] - ends[0]) * borne;
         }
@@ -322,7 +324,7 @@ impl Model {
         let at_slip_area = |slip_area: f64| {
             let places: Vec<f64> = nodes.iter().map(|x| next.stick_area + slip_area * x).collect();
             let mut worn: Vec<f64> = places.iter().map(|squared| on_springs(*squared)).collect();
-            self.add_worn_at_rest(stick, &places, &mut worn);
+            self.add_of_steps([&stick.places_at_rest, &stick.raised_at_rest], 1.0, &places, &mut worn);
             worn
         };
         let with = |worn: Vec<f64>| move |i: usize, unworn: &UnwornValues| unworn.slip + worn[i];
@@ -331,18 +333,23 @@ impl Model {
         (slip_area, self.compression_at(next, slip_area, with(at_slip_area(slip_area))))
     }
 
-    /// Adds the depth worn, m, of which the ground that came to rest within the edge of stick tells, at squared radii, m², that increase.
-    fn add_worn_at_rest(&self, stick: &StickEdge, squared: &[f64], worn: &mut [f64]) {
-        let steps = stick.places_at_rest.windows(2).zip(stick.raised_at_rest.windows(2));
+    /// Adds the slip depth `Σ Δh Φ`, m, of steps of the equivalent profile within squared radii, m², that increase.
+    ///
+    /// # Arguments
+    /// * `places`, `heights` -- squared radii, m², and heights there, m
+    /// * `factor` -- on all steps
+    fn add_of_steps(&self, [places, heights]: [&[f64]; 2], factor: f64, squared: &[f64], to: &mut [f64]) {
         let mut uniform = vec![0.0; squared.len()];
-        for (ends, heights) in steps {
+        for (ends, heights) in places.windows(2).zip(heights.windows(2)) {
+            let step = factor * (heights[1] - heights[0]);
+            if step == 0.0 {
+                continue;
+            }
             let middle = 0.5 * (ends[0] + ends[1]);
             let within = squared.partition_point(|it| *it <= middle);
-            let beyond = &squared[within..];
-            let uniform = &mut uniform[within..];
+            let (beyond, uniform) = (&squared[within..], &mut uniform[within..]);
             self.annulus().unworn.fill_uniform_at_stick(middle, |i| beyond[i] - middle, uniform);
-            let rise = heights[1] - heights[0];
-            worn[within..].iter_mut().zip(uniform).for_each(|(worn, uniform)| *worn += rise * *uniform);
+            to[within..].iter_mut().zip(uniform).for_each(|(value, uniform)| *value += step * *uniform);
         }
     }
 
