@@ -20,8 +20,9 @@ pub(super) const LAST_RESORT: u64 = REFINEMENTS + 2;
 /// Substeps of a period that is sampled in that attempt.
 const COARSE_SUBSTEPS: usize = 48;
 
-/// The springs that it tries one after the other until there is an end: in gross slip, where the contact may bear at its rim, and elsewhere, where a mesh from near the axis needs more.
+/// The springs that it tries one after the other until there is an end: in gross slip, where cubics carry debris that spreads, where the contact may bear at its rim, and elsewhere, where a mesh from near the axis needs more.
 const IN_GROSS_SLIP: &[usize] = &[10, 8];
+const WHERE_DEBRIS_SPREADS: &[usize] = &[28, 10, 8];
 const AT_RIM: &[usize] = &[80, 10, 8];
 const ELSEWHERE: &[usize] = &[24, 48, 96, 60, 16];
 
@@ -29,6 +30,7 @@ const ELSEWHERE: &[usize] = &[24, 48, 96, 60, 16];
 pub(super) fn springs_of_last_resort(model: &Model) -> &'static [usize] {
     match model.gross() {
         Some(_) if may_bear_at_rim(model) => AT_RIM,
+        Some(_) if model.schedule().conditions().wear.spreading().is_some() => WHERE_DEBRIS_SPREADS,
         Some(_) => IN_GROSS_SLIP,
         None => ELSEWHERE,
     }

@@ -22,6 +22,12 @@ const THIN: f64 = 1e-6;
 const NEXT_TO_EDGE: f64 = 1e-2;
 const SPARED: f64 = 0.06;
 
+/// Compression of springs that pull, and difference by which springs in a row alternate, over the largest compression, and springs less one in such a row, from which on they are why no
+/// step leads on.
+const PULL: f64 = 0.02;
+const SWING: f64 = 0.01;
+const IN_A_ROW: usize = 4;
+
 /// Part of the steps of a run that end with a block, from which on blocks are why they are many.
 const OF_STEPS: f64 = 0.3;
 
@@ -57,6 +63,41 @@ fn spared_edge(model: &Model) -> String {
     " (friction: with the load it falls faster than the pressure towards the contact edge, so that wear spares the ground there, which takes the load; exponents up to 0.9 are followed at \
      gradings down to -0.9 under a paraboloid, up to 0.75 and down to -0.7 under a cone)"
         .to_owned()
+}
+
+/// What the compressions of the springs tell about why no step leads on, if anything.
+fn by_compressions(model: &Model, compression: &[f64]) -> String {
+    let most = compression.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+    let pull = compression.iter().fold(0.0, |least: f64, it| least.min(*it)).abs();
+    if model.schedule().conditions().wear.spreading().is_some() && pull > PULL * most {
+        return format!(
+            " (wear.non-local: debris has worn the ground away from under the pressure, so that springs pull with up to {:.2} of the largest compression, and a rim takes the load)",
+            pull / most
+        );
+    }
+    let swing = swing(compression);
+    if swing <= SWING * most {
+        return String::new();
+    }
+    format!(
+        " (numerics.springs: compressions swing from spring to spring by {:.2} of the largest, for what changes there is narrower than springs are apart)",
+        swing / most
+    )
+}
+
+/// The largest difference that many springs in a row alternate by at least.
+///
+/// ```text
+/// max_i min_{j < n} (-1)^j (q_{i+j+1} - q_{i+j})
+/// ```
+fn swing(compression: &[f64]) -> f64 {
+    let differences: Vec<f64> = compression.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let alternates = |run: &[f64]| {
+        let falls = |(place, it): (usize, &f64)| if place % 2 == 0 { *it } else { -it };
+        let least = |sign: f64| run.iter().enumerate().map(falls).fold(f64::INFINITY, |a, b| a.min(sign * b));
+        least(1.0).max(least(-1.0))
+    };
+    differences.windows(IN_A_ROW).map(alternates).fold(0.0, f64::max)
 }
 
 /// What cuts steps short where blocks follow one another as fast.
@@ -196,10 +237,11 @@ impl Simulation {
             what: STEPPING,
             why: self.after_loss(format!(
                 "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m, wear goes on in steps of {:.1e} \
-                 cycles{}{}, and {} were tried on {} springs; end before (loading.tau = {tau:.3e}), or go on by hand (numerics.springs and numerics.tolerance), \
+                 cycles{}{}{}, and {} were tried on {} springs; end before (loading.tau = {tau:.3e}), or go on by hand (numerics.springs and numerics.tolerance), \
                  however long it takes",
                 progress.next_step,
                 at_edge(model),
+                by_compressions(model, &self.state.compression),
                 by_blocks(model, cycles, progress.steps),
                 progress.steps + progress.rejected_steps,
                 model.springs()
@@ -245,9 +287,10 @@ impl Simulation {
         Error::NotConverged {
             what: STEPPING,
             why: self.after_loss(format!(
-                "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}{layer}; \
+                "at cycle {cycles} (τ = {tau:.4e}), with slip from the radius {stick:.4e} m to the contact radius {edge:.4e} m: {why}{healed}{layer}{shown}; \
                  {springs}{cure}",
-                layer = at_edge(model)
+                layer = at_edge(model),
+                shown = by_compressions(model, &self.state.compression)
             )),
         }
     }
