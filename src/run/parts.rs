@@ -1,6 +1,7 @@
 //! Everything that a run needs and that follows from its scene alone: model, stepper, tolerance, plan and limit.
 
 use std::cell::Cell;
+use std::f64::consts::PI;
 use std::slice;
 
 use super::budget::{self, FEWEST_CUBICS, NEAR_GROSS_SLIP, OF_STEPS, springs_taken_up};
@@ -31,6 +32,9 @@ const MARGIN: f64 = 1.02;
 
 /// Depth worn in a run, over the indentation, below which it is short.
 const SHORT: f64 = 0.1;
+
+/// Largest depth over the mean one: 1.5 in the first cycles at k = 0.
+const DEEPEST: f64 = 2.0;
 
 /// Least tolerance there: errors of the compressions that are round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -332,7 +336,7 @@ impl Reach {
         let (_, _, tolerance) = COARSE;
         let numerics = Numerics { accuracy: budget::CHEAPEST, tolerance: Some(tolerance), ..*numerics };
         let coarse = Parts::on_any(scene, &numerics, None, Some(parts.model.schedule()), None, store).ok()?;
-        let plan = Plan { outputs: vec![], end: coarse.plan.end };
+        let plan = Plan::straight_to(coarse.plan.end);
         let mut coarse = Parts { plan, ..coarse }.begin().ok()?;
         let outcome = coarse.run(&mut [&mut Bounded { most_work: MOST_WORK }]).ok()?;
         let ends = outcome != Outcome::Interrupted;
@@ -351,7 +355,7 @@ impl Reach {
         let (sticks_again, most_work) = (Cell::new(false), Cell::new(most_work));
         let coarse = |springs: usize, follow: bool| -> Result<std::result::Result<Self, Error>> {
             let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
-            let plan = Plan { outputs: vec![], end: parts.plan.end };
+            let plan = Plan::straight_to(parts.plan.end);
             let hand_over = HandOver { springs: springs_taken_up(&model), tolerance, expected: false };
             let coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
             let mut coarse = coarse.handing_over(if follow { slice::from_ref(&hand_over) } else { &[] });
@@ -367,11 +371,14 @@ impl Reach {
                 Some(_) => coarse.fields().wear_depth.clone(),
                 None => coarse.wear_depth(),
             };
-            let depths = depths.into_iter().chain(before);
+            let deepest = depths.into_iter().chain(before).fold(0.0, f64::max);
+            // Of a little wear depths are differences of compressions, as good as the tolerance; what is worn by the rates is not.
+            let area = PI * coarse.model().contact_radius(coarse.state()).powi(2);
+            let by_rates = DEEPEST * coarse.state().volume_by_rate / area;
             Ok(Ok(Self {
                 radius: coarse.model().worn_radius(coarse.state()),
                 sticks_again: sticks_again.get(),
-                worn: depths.fold(0.0, f64::max) / contact.indentation(),
+                worn: deepest.min(by_rates) / contact.indentation(),
             }))
         };
         let [first, then] = if Gross::is_smooth(contact, schedule) { polynomials } else { cubics };

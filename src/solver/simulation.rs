@@ -55,6 +55,17 @@ pub struct Plan {
     pub end: End,
 }
 
+impl Plan {
+    /// Without a snapshot on the way.
+    pub fn straight_to(end: End) -> Self {
+        let outputs = match end {
+            End::Cycles(last) => vec![last],
+            End::Rate(_) => vec![],
+        };
+        Self { outputs, end }
+    }
+}
+
 /// How a simulation ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {

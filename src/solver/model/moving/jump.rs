@@ -220,7 +220,8 @@ impl Model {
         places.dedup();
         let sign = if new > old { 1.0 } else { -1.0 };
         let raised: Vec<f64> = places.iter().map(|place| ground.raised(*place)).collect();
-        let stations: Vec<f64> = moving.stations().collect();
+        // None where no ground is left behind.
+        let stations: Vec<f64> = moving.stations().take(left_behind.len()).collect();
         self.add_of_steps([&places, &raised], -sign, &stations, &mut left_behind);
         for ends in places.windows(2) {
             let middle = 0.5 * (ends[0] + ends[1]);
