@@ -276,3 +276,53 @@ fn check_tells_how_a_scene_is_computed() {
     let (scene, told) = method("paraboloid.toml");
     assert_eq!(scene.simulate().unwrap().springs(), told.springs);
 }
+
+/// The end by the rate is an event, located to the tolerance: it used to be the first step beyond, up to half the rate asked for, 1.5e-2 of the limit's volume away.
+#[test]
+fn a_run_ends_where_its_rate_is_what_was_asked_for() {
+    let laws = [
+        (
+            "[friction.coulomb]\ncoefficient = 0.5",
+            "[wear.archard]\ncoefficient = 1e-13",
+            "amplitude_ratio = 0.3",
+        ),
+        (
+            "[friction.static-kinetic]\nstatic_coefficient = 0.0700\nkinetic_coefficient = 0.0693",
+            "[wear.power-law]\ncoefficient = 1e-18\npressure_exponent = 1.44\nslip_exponent = 0.76",
+            "amplitude_ratio = 1e-5",
+        ),
+        // The edge of stick moves, and the whole contact slides.
+        (
+            "[friction.coulomb]\ncoefficient = 0.5",
+            "[wear.archard]\ncoefficient = 1e-13",
+            "amplitude_ratio = 0.5\ntangential_control = \"force\"",
+        ),
+        (
+            "[friction.coulomb]\ncoefficient = 0.5",
+            "[wear.archard]\ncoefficient = 1e-13",
+            "amplitude_ratio = 2.0",
+        ),
+    ];
+    for (friction, wear, loading) in laws {
+        for rate in [0.9, 0.5, 0.1] {
+            let run = |accuracy: f64| {
+                let text = format!(
+                    "[indenter.cone]\nslope = 0.01\n[half_space]\ngrading = 0.3\nnormal_stiffness = 6e8\nstiffness_ratio = 0.4\n{friction}\n{wear}\n\
+                     [loading]\nindentation = 2.4e-8\n{loading}\nuntil_rate = {rate}\n[numerics]\naccuracy = {accuracy}\n"
+                );
+                let run = fretwear::Simulation::new(&text.parse().unwrap()).unwrap().run().unwrap();
+                (run.last().wear_volume, run.error_estimate().unwrap(), run.accuracy_met())
+            };
+            let (exact, ..) = run(1e-5);
+            for accuracy in [1e-2, 1e-3, 1e-4] {
+                let (volume, told, met) = run(accuracy);
+                let off = volume / exact - 1.0;
+                println!("{loading}, {rate} at {accuracy:e}: {off:.1e} off, {told:.1e} told");
+                assert!(
+                    off.abs() < accuracy || met != Some(true),
+                    "{loading}, {rate} at {accuracy:e}: {off:e} off, {told:e} told"
+                );
+            }
+        }
+    }
+}

@@ -167,7 +167,8 @@ impl Simulation {
         }
     }
 
-    /// The step that ends where the rate is what was asked for, if this one leaves it far behind; the rate falls exponentially.
+    /// The step that ends where the rate is what was asked for, or just beyond, if this one leaves it so far behind that the worn volume shows it, to the tolerance, or
+    /// far behind; the rate falls exponentially.
     pub(super) fn overshoot(&self, rate: f64, step: f64) -> Option<f64> {
         let End::Rate(fraction) = self.plan.end else { return None };
         if self.stepper.prescribed_step().is_some() {
@@ -177,9 +178,11 @@ impl Simulation {
         let reached = rate.max(f64::MIN_POSITIVE);
         let now = self.wear_rate();
         let part = (now / wanted).ln() / (now / reached).ln();
-        let shorter = step * part.clamp(SMALLEST_FACTOR, 0.99);
-        (now > wanted && reached < OVERSHOT * wanted && part < 1.0 && !self.rounds_off(shorter))
-            .then_some(shorter)
+        let allowed = self.tolerance * (self.state.volume_by_rate + step * reached) / (step * wanted);
+        let shorter = step * (part + 0.5 * allowed).clamp(SMALLEST_FACTOR, 0.99);
+        let leads_there = reached < wanted && wanted < now;
+        let is_far_behind = reached < OVERSHOT * wanted || 1.0 - part > allowed;
+        (leads_there && is_far_behind && !self.rounds_off(shorter)).then_some(shorter)
     }
 
     /// Whether a block of another amplitude or indentation has begun just now.
