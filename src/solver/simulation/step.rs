@@ -26,8 +26,9 @@ const NOTHING_PRESSES: f64 = 10.0;
 /// Steps shorter than this part of the planned one, because they end at an output or a break, do not decide the next.
 const CUT_SHORT: f64 = 1e-3;
 
-/// Least rate at the end of the last step, over the one asked for.
+/// Least rate at the end of the last step, over the one asked for, and most of a step that is gone beyond it on purpose.
 const OVERSHOT: f64 = 0.5;
+const JUST_BEYOND: f64 = 0.02;
 
 /// Relative difference of errors of steps that are alike, by how much shorter each is than the one before, and after how many of them the next is taken as it is.
 const ALIKE: f64 = 0.02;
@@ -179,9 +180,12 @@ impl Simulation {
         let now = self.wear_rate();
         let part = (now / wanted).ln() / (now / reached).ln();
         let allowed = self.tolerance * (self.state.volume_by_rate + step * reached) / (step * wanted);
-        let shorter = step * (part + 0.5 * allowed).clamp(SMALLEST_FACTOR, 0.99);
+        let shorter = step * (part + 0.5 * allowed.min(JUST_BEYOND)).clamp(SMALLEST_FACTOR, 0.99);
         let leads_there = reached < wanted && wanted < now;
-        let is_far_behind = reached < OVERSHOT * wanted || 1.0 - part > allowed;
+        // Where other blocks are to come the run does not end there.
+        let schedule = self.model.schedule();
+        let may_end = || schedule.has_shown_all(self.progress.busy_until, self.state.cycles + step);
+        let is_far_behind = reached < OVERSHOT * wanted || 1.0 - part > allowed && may_end();
         (leads_there && is_far_behind && !self.rounds_off(shorter)).then_some(shorter)
     }
 
