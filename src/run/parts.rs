@@ -336,7 +336,7 @@ impl Reach {
         let (_, _, tolerance) = COARSE;
         let numerics = Numerics { accuracy: budget::CHEAPEST, tolerance: Some(tolerance), ..*numerics };
         let coarse = Parts::on_any(scene, &numerics, None, Some(parts.model.schedule()), None, store).ok()?;
-        let plan = Plan::straight_to(coarse.plan.end);
+        let plan = Plan { outputs: vec![], end: coarse.plan.end };
         let mut coarse = Parts { plan, ..coarse }.begin().ok()?;
         let outcome = coarse.run(&mut [&mut Bounded { most_work: MOST_WORK }]).ok()?;
         let ends = outcome != Outcome::Interrupted;
@@ -355,7 +355,7 @@ impl Reach {
         let (sticks_again, most_work) = (Cell::new(false), Cell::new(most_work));
         let coarse = |springs: usize, follow: bool| -> Result<std::result::Result<Self, Error>> {
             let model = Model::in_gross_slip(contact, schedule.clone(), springs)?;
-            let plan = Plan::straight_to(parts.plan.end);
+            let plan = Plan { outputs: vec![], end: parts.plan.end };
             let hand_over = HandOver { springs: springs_taken_up(&model), tolerance, expected: false };
             let coarse = Simulation::new(model, Box::new(GrossSdirk::new(tolerance)), tolerance, plan)?;
             let mut coarse = coarse.handing_over(if follow { slice::from_ref(&hand_over) } else { &[] });

@@ -49,21 +49,10 @@ pub enum End {
 /// When to take snapshots and when to stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// Cycles at which steps land, increasing, positive, none beyond the end.
+    /// Cycles at which steps land, as they do at the end, increasing, positive, none beyond it.
     pub outputs: Vec<f64>,
     /// When to stop.
     pub end: End,
-}
-
-impl Plan {
-    /// Without a snapshot on the way.
-    pub fn straight_to(end: End) -> Self {
-        let outputs = match end {
-            End::Cycles(last) => vec![last],
-            End::Rate(_) => vec![],
-        };
-        Self { outputs, end }
-    }
 }
 
 /// How a simulation ended.

@@ -4,7 +4,7 @@ use super::Simulation;
 use super::step::{SMALLEST_FACTOR, SMALLEST_GROWTH};
 use crate::error::{Error, Result};
 use crate::laws::loading::TangentialControl;
-use crate::numerics::linear::largest;
+use crate::numerics::linear::{largest, largest_magnitude};
 use crate::numerics::roots::SEARCH;
 use crate::solver::model::{FEWEST_SPRINGS, Model};
 
@@ -67,7 +67,7 @@ fn spared_edge(model: &Model) -> String {
 
 /// What the compressions of the springs tell about why no step leads on, if anything.
 fn by_compressions(model: &Model, compression: &[f64]) -> String {
-    let most = compression.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+    let most = largest_magnitude(compression);
     let pull = compression.iter().fold(0.0, |least: f64, it| least.min(*it)).abs();
     if model.schedule().conditions().wear.spreading().is_some() && pull > PULL * most {
         return format!(
@@ -88,16 +88,19 @@ fn by_compressions(model: &Model, compression: &[f64]) -> String {
 /// The largest difference that many springs in a row alternate by at least.
 ///
 /// ```text
-/// max_i min_{j < n} (-1)^j (q_{i+j+1} - q_{i+j})
+/// max_i max_± min_{j < n} ±(-1)^j (q_{i+j+1} - q_{i+j})
 /// ```
 fn swing(compression: &[f64]) -> f64 {
-    let differences: Vec<f64> = compression.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let alternates = |run: &[f64]| {
-        let falls = |(place, it): (usize, &f64)| if place % 2 == 0 { *it } else { -it };
-        let least = |sign: f64| run.iter().enumerate().map(falls).fold(f64::INFINITY, |a, b| a.min(sign * b));
-        least(1.0).max(least(-1.0))
+    let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let turned = |(i, pair): (usize, &[f64])| sign(i) * (pair[1] - pair[0]);
+    let differences: Vec<f64> = compression.windows(2).enumerate().map(turned).collect();
+    // Those that alternate are now of one sign.
+    let least = |run: &[f64]| {
+        let [least, most] =
+            run.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], it| [a.min(*it), b.max(*it)]);
+        least.max(-most)
     };
-    differences.windows(IN_A_ROW).map(alternates).fold(0.0, f64::max)
+    differences.windows(IN_A_ROW).map(least).fold(0.0, f64::max)
 }
 
 /// What cuts steps short where blocks follow one another as fast.

@@ -82,10 +82,13 @@ impl Simulation {
     /// The step to try, and where it lands if it does.
     pub(super) fn choose_step(&self) -> Result<Landing> {
         let now = self.state.cycles;
-        let output = match self.plan.end {
-            End::Cycles(end) if self.stepper.interpolates() => Some(end),
-            End::Rate(_) if self.stepper.interpolates() => None,
-            _ => self.plan.outputs.get(self.progress.next_output as usize).copied(),
+        let end = match self.plan.end {
+            End::Cycles(end) => Some(end),
+            End::Rate(_) => None,
+        };
+        let output = match self.stepper.interpolates() {
+            true => end,
+            false => self.plan.outputs.get(self.progress.next_output as usize).copied().or(end),
         };
         let target = match (self.model.schedule().next_break(now), output) {
             // Where they differ by rounding, the step lands on the output.
@@ -168,8 +171,8 @@ impl Simulation {
         }
     }
 
-    /// The step that ends where the rate is what was asked for, or just beyond, if this one leaves it so far behind that the worn volume shows it, to the tolerance, or
-    /// far behind; the rate falls exponentially.
+    /// The step that ends where the rate is what was asked for, or just beyond, if this one leaves it far behind, or so far that the worn volume shows it; the rate is
+    /// taken to fall exponentially.
     pub(super) fn overshoot(&self, rate: f64, step: f64) -> Option<f64> {
         let End::Rate(fraction) = self.plan.end else { return None };
         if self.stepper.prescribed_step().is_some() {
